@@ -1,0 +1,47 @@
+//! Whatever can advance a scene: our integrators, rapier's worlds, and later other programs.
+
+mod integrator;
+pub mod rapier;
+mod simulate;
+
+pub use integrator::IntegratorEngine;
+pub use simulate::{Ended, Limits, Observer, simulate};
+
+use crate::integrators::StepError;
+use crate::system::State;
+
+/// A scene being advanced step by step.
+///
+/// Two engines built from the same scene and timestep give the same bits.
+pub trait Engine: Send {
+    /// Advances by one timestep.
+    ///
+    /// # Errors
+    /// [`StepError`] when an implicit step cannot be solved; the state is then the last good one.
+    fn step(&mut self) -> Result<(), StepError>;
+
+    /// The state now: all particles, fixed ones included; t is not kept here but by the caller,
+    /// who counts steps.
+    fn state(&self) -> &State;
+
+    /// What has been computed so far.
+    fn counts(&self) -> Counts;
+}
+
+/// Work that can be counted; None where an engine does not tell.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Full evaluations of all forces.
+    pub force_evaluations: Option<u64>,
+    /// Evaluations of the velocity-dependent effects alone (inside exact damping flows).
+    pub damping_evaluations: Option<u64>,
+    pub linear_solves: Option<u64>,
+}
+
+/// Why an engine cannot run a scene. An answer, not a fault.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{reason}")]
+pub struct Unsupported {
+    /// What the scene has that the engine cannot mirror.
+    pub reason: String,
+}

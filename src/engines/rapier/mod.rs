@@ -1,0 +1,1 @@
+//! rapier worlds that mirror a scene.

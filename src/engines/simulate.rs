@@ -1,0 +1,120 @@
+//! Advances an engine over a run, hands states to an observer, and stops what diverges.
+
+use super::Engine;
+use crate::integrators::StepError;
+use crate::system::{ParticleSystem, State, System};
+
+/// Sees the states of a run.
+pub trait Observer {
+    /// The first step number, at or after `from`, at which it wants the state; None for no more.
+    fn next(&self, from: u64) -> Option<u64>;
+
+    /// The state at step `step` (0 is the start), called at the steps asked for, in order.
+    fn observe(&mut self, step: u64, state: &State);
+}
+
+/// When a run counts as diverged: non-finite, or K + U_elastic beyond 1e12 S.
+#[derive(Clone)]
+pub struct Limits {
+    pub system: ParticleSystem,
+    /// The energy scale S, J; None leaves only the finiteness test.
+    pub scale: Option<f64>,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ended {
+    Completed,
+    /// At the end of this step; the cause in words.
+    Diverged {
+        step: u64,
+        reason: String,
+    },
+    /// In this step, which could not be taken.
+    Failed {
+        step: u64,
+        error: StepError,
+    },
+}
+
+/// Diverged beyond this multiple of S.
+const DIVERGED: f64 = 1e12;
+/// The elastic energy is looked at only when the kinetic energy has passed this multiple of S: in
+/// an exploding run it passes first unless one step alone grows the energy a millionfold.
+const SUSPECT: f64 = 1e6;
+
+impl Limits {
+    /// Why this state counts as diverged, if it does.
+    fn exceeded(&self, state: &State) -> Option<String> {
+        let kinetic = self.system.kinetic(&state.v);
+        let calm = match self.scale {
+            Some(scale) => kinetic <= SUSPECT * scale,
+            None => kinetic.is_finite(),
+        };
+        // NaN is not calm.
+        if calm { None } else { self.examine(state) }
+    }
+
+    /// The definition in full.
+    fn examine(&self, state: &State) -> Option<String> {
+        let bad = |values: &[f64]| values.iter().position(|c| !c.is_finite());
+        if let Some(at) = bad(&state.x).or_else(|| bad(&state.v)) {
+            return Some(format!("particle {} is no longer finite", at / 3));
+        }
+        let energy = self.system.kinetic(&state.v) + self.system.elastic(state.t, &state.x);
+        if !energy.is_finite() {
+            return Some("the energy is no longer finite".to_owned());
+        }
+        let scale = self.scale?;
+        (energy > DIVERGED * scale).then(|| {
+            let fastest = fastest(&state.v);
+            format!("its energy passed 1e12 times the scene's scale, fastest at particle {fastest}")
+        })
+    }
+}
+
+/// The particle with the largest speed.
+fn fastest(v: &[f64]) -> usize {
+    let speeds = v.chunks_exact(3).map(|v| v.iter().map(|c| c * c).sum::<f64>());
+    speeds
+        .enumerate()
+        .fold((0, 0.0), |best, (i, s)| if s > best.1 { (i, s) } else { best })
+        .0
+}
+
+/// Takes `steps` steps, or fewer if the run diverges or fails; observes step 0 first.
+///
+/// `tick` is called now and then with the steps taken since the last call.
+pub fn simulate(
+    engine: &mut dyn Engine,
+    steps: u64,
+    limits: &Limits,
+    observer: &mut dyn Observer,
+    tick: &dyn Fn(u64),
+) -> Ended {
+    let mut due = observer.next(0);
+    let mut ticked = 0;
+    for step in 0..=steps {
+        if step > 0 {
+            if let Err(error) = engine.step() {
+                return Ended::Failed {
+                    step: step - 1,
+                    error,
+                };
+            }
+            if let Some(reason) = limits.exceeded(engine.state()) {
+                return Ended::Diverged { step, reason };
+            }
+        }
+        if due == Some(step) {
+            observer.observe(step, engine.state());
+            due = observer.next(step + 1);
+        }
+        if step - ticked == 1024 {
+            tick(1024);
+            ticked = step;
+        }
+    }
+    tick(steps - ticked);
+    Ended::Completed
+}

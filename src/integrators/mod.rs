@@ -1,0 +1,179 @@
+//! Time-stepping methods: one file a family, each method a row of facts in [`REGISTRY`].
+
+mod implicit;
+mod newton;
+mod runge_kutta;
+mod splitting;
+mod velocity_flow;
+
+pub use implicit::{Implicit, Scheme};
+pub use runge_kutta::{RungeKutta, Tableau};
+pub use splitting::{DampingTreatment, Splitting, Stage};
+
+use crate::system::{State, System};
+
+/// Advances a state by one step.
+///
+/// An integrator keeps scratch memory and may keep the last force evaluation; it serves one system.
+/// Handing it any state is allowed at any time: what it kept is used only if it still fits.
+pub trait Integrator: Send {
+    /// Advances `state` from t to t + h: positions, velocities and work. On an error the state is
+    /// left as it was.
+    ///
+    /// # Errors
+    /// [`StepError`] when an implicit step cannot be solved.
+    fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError>;
+
+    /// Linear systems solved so far; 0 for explicit methods.
+    fn linear_solves(&self) -> u64 {
+        0
+    }
+}
+
+/// Why a step could not be taken.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StepError {
+    #[error(
+        "Newton's iteration stopped at a relative residual of {residual:.1e} after {iterations} \
+         iterations (wanted {tolerance:.0e}): a smaller timestep helps"
+    )]
+    NotConverged {
+        iterations: u32,
+        residual: f64,
+        tolerance: f64,
+    },
+    #[error("the implicit step's matrix is singular: the stiffness is indefinite at this state")]
+    Singular,
+    #[error("the implicit step left the range of finite numbers")]
+    NotFinite,
+}
+
+/// One method's facts. Everything a report says of a method, and every law it is tested by,
+/// stands here.
+#[derive(Clone, Copy)]
+pub struct Method {
+    /// The id scenes, reports and the command line use.
+    pub id: &'static str,
+    pub name: &'static str,
+    /// Order of the global error on smooth problems without damping.
+    pub order: u32,
+    /// Order with dampers or drag.
+    pub order_damped: u32,
+    /// Keeps the symplectic form on undamped problems.
+    pub symplectic: bool,
+    /// Stepping h, flipping velocities, stepping h again returns to the start.
+    pub reversible: bool,
+    pub evaluations: PerStep,
+    /// On x'' = -w² x, with z = h w.
+    pub oscillator: Oscillator,
+    /// Paper or textbook.
+    pub source: &'static str,
+    /// What it must not be confused with.
+    pub not: &'static str,
+    /// A fresh integrator.
+    pub build: fn(&Settings) -> Box<dyn Integrator>,
+}
+
+impl std::fmt::Debug for Method {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Method").field("id", &self.id).finish()
+    }
+}
+
+/// Force evaluations a step costs on an undamped system, once running.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PerStep {
+    Exactly(u32),
+    /// One per Newton iteration.
+    PerIteration,
+}
+
+/// What a method does to the undamped linear oscillator.
+#[derive(Debug, Clone, Copy)]
+pub struct Oscillator {
+    pub stable: Stable,
+    pub energy: EnergyLaw,
+}
+
+/// For which z = h w the oscillator's amplitude stays bounded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stable {
+    Never,
+    Below(f64),
+    /// For linear forces; non-linear ones can still break it.
+    Always,
+}
+
+/// What happens to the oscillator's energy, as a function of z = h w.
+#[derive(Debug, Clone, Copy)]
+pub enum EnergyLaw {
+    /// Multiplied by this factor every step.
+    Factor {
+        factor: fn(f64) -> f64,
+        formula: &'static str,
+    },
+    /// From rest, stays within these multiples of its initial value for ever.
+    Band {
+        band: fn(f64) -> (f64, f64),
+        formula: &'static str,
+    },
+    /// Bounded for ever; the band has no short formula.
+    Bounded,
+}
+
+/// What a build may be told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Relative residual at which Newton's iteration stops.
+    pub tolerance: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { tolerance: 1e-12 }
+    }
+}
+
+/// Every method, in the order reports list them.
+pub static REGISTRY: &[Method] = &[
+    runge_kutta::EXPLICIT_EULER,
+    splitting::SYMPLECTIC_EULER,
+    splitting::SYMPLECTIC_EULER_DRIFT_FIRST,
+    runge_kutta::MIDPOINT,
+    runge_kutta::HEUN,
+    runge_kutta::RALSTON,
+    splitting::VELOCITY_VERLET,
+    runge_kutta::RK4,
+    splitting::YOSHIDA4,
+    splitting::PEFRL,
+    implicit::IMPLICIT_EULER,
+    implicit::LINEARIZED_IMPLICIT,
+    implicit::LINEARIZED_IMPLICIT_MATERIAL,
+    implicit::IMPLICIT_MIDPOINT,
+    implicit::TRAPEZOIDAL,
+];
+
+/// The method of this id.
+pub fn find(id: &str) -> Option<&'static Method> {
+    REGISTRY.iter().find(|method| method.id == id)
+}
+
+/// All ids, in registry order.
+pub fn ids() -> Vec<&'static str> {
+    REGISTRY.iter().map(|method| method.id).collect()
+}
+
+/// Resizes scratch memory on first use or when the system's size changed.
+fn fit(buffer: &mut Vec<f64>, n: usize) {
+    if buffer.len() != n {
+        *buffer = vec![0.0; n];
+    }
+}
+
+/// y += a x.
+#[inline(always)]
+fn axpy(y: &mut [f64], a: f64, x: &[f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += a * x;
+    }
+}

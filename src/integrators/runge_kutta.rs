@@ -1,0 +1,194 @@
+//! Explicit Runge-Kutta methods: one stepper, a tableau a method.
+
+use super::{
+    EnergyLaw, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy, fit,
+};
+use crate::system::{Power, State, System};
+
+/// An explicit tableau for the first-order system (x, v)' = (v, a), s stages.
+#[derive(Debug, Clone, Copy)]
+pub struct Tableau {
+    /// Row i holds a_i0 .. a_i,i-1; s rows, the first empty.
+    pub a: &'static [&'static [f64]],
+    /// s weights, summing to 1.
+    pub b: &'static [f64],
+    /// s nodes, c_i = sum of row i.
+    pub c: &'static [f64],
+}
+
+const EULER: Tableau = Tableau {
+    a: &[&[]],
+    b: &[1.0],
+    c: &[0.0],
+};
+const MIDPOINT_TABLEAU: Tableau = Tableau {
+    a: &[&[], &[0.5]],
+    b: &[0.0, 1.0],
+    c: &[0.0, 0.5],
+};
+const HEUN_TABLEAU: Tableau = Tableau {
+    a: &[&[], &[1.0]],
+    b: &[0.5, 0.5],
+    c: &[0.0, 1.0],
+};
+const RALSTON_TABLEAU: Tableau = Tableau {
+    a: &[&[], &[2.0 / 3.0]],
+    b: &[0.25, 0.75],
+    c: &[0.0, 2.0 / 3.0],
+};
+const RK4_TABLEAU: Tableau = Tableau {
+    a: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
+    b: &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
+    c: &[0.0, 0.5, 0.5, 1.0],
+};
+
+const fn explicit(
+    id: &'static str,
+    name: &'static str,
+    order: u32,
+    stages: u32,
+    oscillator: Oscillator,
+) -> Method {
+    Method {
+        id,
+        name,
+        order,
+        order_damped: order,
+        symplectic: false,
+        reversible: false,
+        evaluations: PerStep::Exactly(stages),
+        oscillator,
+        source: "",
+        not: "",
+        build: |_: &Settings| Box::new(RungeKutta::new(EULER)),
+    }
+}
+
+/// All second-order two-stage methods share R(z) on linear problems.
+const SECOND_ORDER: Oscillator = Oscillator {
+    stable: Stable::Never,
+    energy: EnergyLaw::Factor {
+        factor: |z| 1.0 + z.powi(4) / 4.0,
+        formula: "1 + z⁴/4",
+    },
+};
+
+pub(super) const EXPLICIT_EULER: Method = Method {
+    source: "Euler 1768; Hairer, Nørsett, Wanner, Solving ODEs I, II.1",
+    not: "symplectic_euler, which drifts with the new velocity",
+    ..explicit(
+        "explicit_euler",
+        "explicit Euler",
+        1,
+        1,
+        Oscillator {
+            stable: Stable::Never,
+            energy: EnergyLaw::Factor {
+                factor: |z| 1.0 + z * z,
+                formula: "1 + z²",
+            },
+        },
+    )
+};
+
+pub(super) const MIDPOINT: Method = Method {
+    source: "Runge 1895; Hairer, Nørsett, Wanner, Solving ODEs I, II.1",
+    not: "implicit_midpoint; nor the common mistake that drifts with the end velocity",
+    build: |_| Box::new(RungeKutta::new(MIDPOINT_TABLEAU)),
+    ..explicit("midpoint", "explicit midpoint", 2, 2, SECOND_ORDER)
+};
+
+pub(super) const HEUN: Method = Method {
+    source: "Heun 1900; the explicit trapezoidal rule",
+    not: "trapezoidal, its implicit namesake",
+    build: |_| Box::new(RungeKutta::new(HEUN_TABLEAU)),
+    ..explicit("heun", "Heun (explicit trapezoid)", 2, 2, SECOND_ORDER)
+};
+
+pub(super) const RALSTON: Method = Method {
+    source: "Ralston 1962, Math. Comp. 16: the two-stage method of least error bound",
+    not: "Ralston's third-order method",
+    build: |_| Box::new(RungeKutta::new(RALSTON_TABLEAU)),
+    ..explicit("ralston", "Ralston", 2, 2, SECOND_ORDER)
+};
+
+pub(super) const RK4: Method = Method {
+    source: "Kutta 1901; Hairer, Nørsett, Wanner, Solving ODEs I, II.1",
+    not: "the 3/8 rule",
+    build: |_| Box::new(RungeKutta::new(RK4_TABLEAU)),
+    ..explicit(
+        "rk4",
+        "classical Runge-Kutta",
+        4,
+        4,
+        Oscillator {
+            // 2 sqrt(2).
+            stable: Stable::Below(2.0 * std::f64::consts::SQRT_2),
+            energy: EnergyLaw::Factor {
+                factor: |z| 1.0 - z.powi(6) / 72.0 + z.powi(8) / 576.0,
+                formula: "1 - z⁶/72 + z⁸/576",
+            },
+        },
+    )
+};
+
+/// The stepper all explicit tableaux share.
+#[derive(Debug, Clone)]
+pub struct RungeKutta {
+    tableau: Tableau,
+    /// Stage slopes of x: the stage velocities.
+    velocities: Vec<Vec<f64>>,
+    /// Stage slopes of v: the stage accelerations.
+    accelerations: Vec<Vec<f64>>,
+    powers: Vec<Power>,
+    /// Stage position.
+    x: Vec<f64>,
+}
+
+impl RungeKutta {
+    pub fn new(tableau: Tableau) -> Self {
+        let stages = tableau.b.len();
+        Self {
+            tableau,
+            velocities: vec![Vec::new(); stages],
+            accelerations: vec![Vec::new(); stages],
+            powers: vec![Power::default(); stages],
+            x: Vec::new(),
+        }
+    }
+}
+
+impl Integrator for RungeKutta {
+    fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
+        let n = state.x.len();
+        fit(&mut self.x, n);
+        for (v, a) in self.velocities.iter_mut().zip(&mut self.accelerations) {
+            fit(v, n);
+            fit(a, n);
+        }
+        for (stage, row) in self.tableau.a.iter().enumerate() {
+            let (before, rest) = self.velocities.split_at_mut(stage);
+            let velocity = &mut rest[0];
+            self.x.copy_from_slice(&state.x);
+            velocity.copy_from_slice(&state.v);
+            for (earlier, &weight) in row.iter().enumerate() {
+                if weight != 0.0 {
+                    axpy(&mut self.x, h * weight, &before[earlier]);
+                    axpy(velocity, h * weight, &self.accelerations[earlier]);
+                }
+            }
+            let t = state.t + h * self.tableau.c[stage];
+            self.powers[stage] =
+                system.acceleration(t, &self.x, velocity, &mut self.accelerations[stage]);
+        }
+        for (stage, &weight) in self.tableau.b.iter().enumerate() {
+            if weight != 0.0 {
+                axpy(&mut state.x, h * weight, &self.velocities[stage]);
+                axpy(&mut state.v, h * weight, &self.accelerations[stage]);
+                state.work.advance(self.powers[stage], h * weight);
+            }
+        }
+        state.t += h;
+        Ok(())
+    }
+}

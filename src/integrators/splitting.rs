@@ -1,0 +1,277 @@
+//! Splitting methods: one stepper, a list of kicks and drifts a method.
+
+use super::velocity_flow::VelocityFlow;
+use super::{
+    EnergyLaw, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy, fit,
+};
+use crate::system::{State, System};
+
+/// One factor of the composition; its coefficient multiplies the step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stage {
+    /// x += c h v.
+    Drift(f64),
+    /// The velocity under frozen positions for c h.
+    Kick(f64),
+}
+use Stage::{Drift, Kick};
+
+/// How a kick treats forces that depend on velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DampingTreatment {
+    /// v += c h a(x, v): the textbook kick, first order in the damping.
+    Explicit,
+    /// The exact flow of v' = a(x, v) at frozen x, so that the composition keeps its order.
+    ExactFlow,
+}
+
+/// A symplectic method, undamped evaluations and all: what the rows below share.
+const fn symplectic(
+    id: &'static str,
+    name: &'static str,
+    order: u32,
+    evaluations: u32,
+    limit: f64,
+    energy: EnergyLaw,
+) -> Method {
+    Method {
+        id,
+        name,
+        order,
+        order_damped: order,
+        symplectic: true,
+        reversible: order > 1,
+        evaluations: PerStep::Exactly(evaluations),
+        oscillator: Oscillator {
+            stable: Stable::Below(limit),
+            energy,
+        },
+        source: "",
+        not: "",
+        build: |_: &Settings| Box::new(Splitting::new(&[], DampingTreatment::Explicit)),
+    }
+}
+
+/// |w x v| <= E turns the invariant E ∓ (h/2) w² x v into a band around E0.
+const EULER_BAND: EnergyLaw = EnergyLaw::Band {
+    band: |z| (1.0 / (1.0 + z / 2.0), 1.0 / (1.0 - z / 2.0)),
+    formula: "[1/(1 + z/2), 1/(1 - z/2)]",
+};
+
+pub(super) const SYMPLECTIC_EULER: Method = Method {
+    source: "de Vogelaere 1956; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
+    not: "explicit_euler, which drifts with the old velocity",
+    build: |_| {
+        Box::new(Splitting::new(
+            &[Kick(1.0), Drift(1.0)],
+            DampingTreatment::Explicit,
+        ))
+    },
+    ..symplectic(
+        "symplectic_euler",
+        "symplectic Euler (kick, drift)",
+        1,
+        1,
+        2.0,
+        EULER_BAND,
+    )
+};
+
+pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Method = Method {
+    source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
+    not: "explicit_euler, for which it is often taken: it kicks at the position already moved",
+    build: |_| {
+        Box::new(Splitting::new(
+            &[Drift(1.0), Kick(1.0)],
+            DampingTreatment::Explicit,
+        ))
+    },
+    ..symplectic(
+        "symplectic_euler_drift_first",
+        "symplectic Euler (drift, kick)",
+        1,
+        1,
+        2.0,
+        EULER_BAND,
+    )
+};
+
+pub(super) const VELOCITY_VERLET: Method = Method {
+    source: "Swope et al. 1982; Hairer, Lubich, Wanner, Acta Numerica 2003 (Störmer-Verlet)",
+    not: "position Verlet (drift, kick, drift), or Verlet with a predicted velocity in the damper",
+    build: |_| {
+        Box::new(Splitting::new(
+            &[Kick(0.5), Drift(1.0), Kick(0.5)],
+            DampingTreatment::ExactFlow,
+        ))
+    },
+    ..symplectic(
+        "velocity_verlet",
+        "velocity Verlet",
+        2,
+        1,
+        2.0,
+        EnergyLaw::Band {
+            band: |z| (1.0 - z * z / 4.0, 1.0),
+            formula: "[1 - z²/4, 1]",
+        },
+    )
+};
+
+/// 1 / (2 - 2^(1/3)).
+const W1: f64 = 1.351_207_191_959_657_8;
+/// 1 - 2 W1.
+const W0: f64 = -1.702_414_383_919_315_3;
+
+pub(super) const YOSHIDA4: Method = Method {
+    source: "Forest & Ruth 1990, Physica D 43; Yoshida 1990, Phys. Lett. A 150",
+    not: "Yoshida's sixth- and eighth-order methods",
+    build: |_| {
+        Box::new(Splitting::new(
+            &[
+                Drift(W1 / 2.0),
+                Kick(W1),
+                Drift((W0 + W1) / 2.0),
+                Kick(W0),
+                Drift((W0 + W1) / 2.0),
+                Kick(W1),
+                Drift(W1 / 2.0),
+            ],
+            DampingTreatment::ExactFlow,
+        ))
+    },
+    ..symplectic(
+        "yoshida4",
+        "Yoshida / Forest-Ruth",
+        4,
+        3,
+        1.573_402,
+        EnergyLaw::Bounded,
+    )
+};
+
+// Omelyan, Mryglod, Folk 2002, their position-extended Forest-Ruth-like solution.
+const XI: f64 = 0.178_617_895_844_809_1;
+const LAMBDA: f64 = -0.212_341_831_062_605_4;
+const CHI: f64 = -0.066_264_582_669_818_49;
+
+pub(super) const PEFRL: Method = Method {
+    source: "Omelyan, Mryglod, Folk 2002, Comput. Phys. Commun. 146, 188",
+    not: "Forest-Ruth (yoshida4): one evaluation more, an error constant far smaller",
+    build: |_| {
+        Box::new(Splitting::new(
+            &[
+                Drift(XI),
+                Kick((1.0 - 2.0 * LAMBDA) / 2.0),
+                Drift(CHI),
+                Kick(LAMBDA),
+                Drift(1.0 - 2.0 * (CHI + XI)),
+                Kick(LAMBDA),
+                Drift(CHI),
+                Kick((1.0 - 2.0 * LAMBDA) / 2.0),
+                Drift(XI),
+            ],
+            DampingTreatment::ExactFlow,
+        ))
+    },
+    ..symplectic(
+        "pefrl",
+        "PEFRL",
+        4,
+        4,
+        2.989_450,
+        EnergyLaw::Bounded,
+    )
+};
+
+/// The stepper all compositions of kicks and drifts share.
+#[derive(Debug, Clone)]
+pub struct Splitting {
+    stages: &'static [Stage],
+    damping: DampingTreatment,
+    flow: VelocityFlow,
+    kept: Kept,
+    zero: Vec<f64>,
+}
+
+/// The last acceleration at rest, reused by a kick at the same place: first-same-as-last.
+#[derive(Debug, Clone, Default)]
+struct Kept {
+    valid: bool,
+    t: f64,
+    x: Vec<f64>,
+    a: Vec<f64>,
+}
+
+impl Splitting {
+    /// The coefficients of the drifts sum to 1, and so do those of the kicks.
+    pub fn new(stages: &'static [Stage], damping: DampingTreatment) -> Self {
+        Self {
+            stages,
+            damping,
+            flow: VelocityFlow::default(),
+            kept: Kept::default(),
+            zero: Vec::new(),
+        }
+    }
+
+    /// v += h a(x, v), the work with it.
+    fn kick_explicitly(&mut self, system: &dyn System, t: f64, h: f64, state: &mut State) {
+        fit(&mut self.kept.a, state.x.len());
+        let power = system.acceleration(t, &state.x, &state.v, &mut self.kept.a);
+        axpy(&mut state.v, h, &self.kept.a);
+        state.work.advance(power, h);
+    }
+
+    /// The flow of v' = a(x, v) at frozen x over h, the work with it.
+    fn kick_exactly(&mut self, system: &dyn System, t: f64, h: f64, state: &mut State) {
+        let n = state.x.len();
+        fit(&mut self.zero, n);
+        fit(&mut self.kept.a, n);
+        // Bits decide: the kept force is the force here, or it is taken anew.
+        if !(self.kept.valid && self.kept.t == t && self.kept.x == state.x) {
+            system.acceleration(t, &state.x, &self.zero, &mut self.kept.a);
+            self.kept.x.clone_from(&state.x);
+            self.kept.t = t;
+            self.kept.valid = true;
+        }
+        if system.is_damped() {
+            self.flow.advance(system, t, h, &self.kept.a, state);
+        } else if system.is_driven() {
+            // The power is linear in v, and v is linear in time: the trapezoid is exact.
+            let before = system.injected_power(t, &state.x, &state.v);
+            axpy(&mut state.v, h, &self.kept.a);
+            let after = system.injected_power(t, &state.x, &state.v);
+            state.work.injected += 0.5 * h * (before + after);
+        } else {
+            axpy(&mut state.v, h, &self.kept.a);
+        }
+    }
+}
+
+impl Integrator for Splitting {
+    fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
+        let start = state.t;
+        let mut drifted = 0.0;
+        for &stage in self.stages {
+            match stage {
+                Drift(c) => {
+                    axpy(&mut state.x, c * h, &state.v);
+                    drifted += c;
+                }
+                // A kick's time is where the drifts have come to.
+                Kick(c) => {
+                    let t = start + drifted * h;
+                    match self.damping {
+                        DampingTreatment::Explicit => {
+                            self.kick_explicitly(system, t, c * h, state);
+                        }
+                        DampingTreatment::ExactFlow => self.kick_exactly(system, t, c * h, state),
+                    }
+                }
+            }
+        }
+        state.t = start + h;
+        Ok(())
+    }
+}

@@ -1,0 +1,263 @@
+//! What a run found, as data: the JSON contract (`docs/contract.md`) as types, and beside it the
+//! curves that plots are drawn from. Reports read this and nothing else.
+//!
+//! Every number that could be missing is an `Option`; no field ever holds NaN or infinity.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Version of the JSON layout.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// Everything one scene's run found.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    pub schema_version: u32,
+    pub scene: SceneFacts,
+    pub truth: Truth,
+    pub outcomes: Vec<Outcome>,
+    pub checks: Vec<Check>,
+    /// What plots need and the JSON does not carry.
+    #[serde(skip)]
+    pub figures: Figures,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub struct SceneFacts {
+    pub name: String,
+    pub file: String,
+    pub particles: usize,
+    pub springs: usize,
+    /// Only what the scene calls for.
+    pub effects: Vec<EffectUse>,
+    /// The scene's own timestep, seconds.
+    pub timestep: f64,
+    /// Seconds.
+    pub duration: f64,
+    /// The scale S that energy errors are relative to, joules; null where the scene has none.
+    pub energy_scale_j: Option<f64>,
+    /// Free text from the file, for headings.
+    #[serde(skip)]
+    pub description: Option<String>,
+    /// The integrator the file names.
+    #[serde(skip)]
+    pub own_method: String,
+}
+
+/// One line of the effect ledger.
+#[derive(Debug, Clone, Serialize)]
+pub struct EffectUse {
+    pub id: &'static str,
+    /// Particles, springs or pairs it acts on.
+    pub members: usize,
+    /// Times its force was evaluated, summed over the hand-written integrators of this run.
+    pub evaluations: u64,
+    /// Nanoseconds one evaluation takes, measured; shown, never part of the JSON.
+    #[serde(skip)]
+    pub nanoseconds: Option<f64>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub struct Truth {
+    pub kind: TruthKind,
+    pub method: Option<String>,
+    pub error_bound_m: Option<f64>,
+    pub horizon_s: Option<f64>,
+    /// Why there is none, or why this form applies.
+    pub reason: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TruthKind {
+    ClosedForm,
+    Converged,
+    None,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    Integrator,
+    Rapier,
+    External,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    Completed,
+    Diverged,
+    Failed,
+    Unsupported,
+}
+
+/// One engine at one timestep.
+#[derive(Debug, Clone, Serialize)]
+pub struct Outcome {
+    pub engine: String,
+    pub kind: Kind,
+    /// Seconds between recorded steps of this engine.
+    pub timestep: f64,
+    /// The step the scheme really takes: rapier's dt / iterations, else the timestep.
+    pub substep: f64,
+    pub status: Status,
+    /// Null unless the run ended early.
+    pub stopped_at_s: Option<f64>,
+    /// Why it ended early or is unsupported.
+    pub reason: Option<String>,
+    /// Against the truth; null where there is none.
+    pub position_error_m: Option<Spread>,
+    pub velocity_error_m_s: Option<Spread>,
+    /// Against each reference engine that ran at this timestep.
+    pub deviation_m: BTreeMap<String, Deviation>,
+    /// Null when nothing was recorded (unsupported).
+    pub energy: Option<Energy>,
+    pub momentum: Option<Momentum>,
+    pub work: Work,
+    /// Null until a replay has named the scheme.
+    pub identified: Option<Identified>,
+    /// Plain sentences for the table's foot; not part of the JSON.
+    #[serde(skip)]
+    pub remarks: Vec<String>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub struct Spread {
+    #[serde(rename = "final")]
+    pub last: f64,
+    pub max: f64,
+    pub rms: f64,
+}
+
+/// Largest distance over the particles, metres, over the instants both engines recorded.
+#[derive(Debug, Clone, Serialize)]
+pub struct Deviation {
+    #[serde(rename = "final")]
+    pub last: f64,
+    pub max: f64,
+    /// When it first passed the tolerance (1 % of the scene's size); null if never.
+    pub first_exceeds_s: Option<f64>,
+}
+
+/// The energy balance B = E + dissipated - injected.
+#[derive(Debug, Clone, Serialize)]
+pub struct Energy {
+    pub initial_j: Option<f64>,
+    pub final_j: Option<f64>,
+    /// max |B - B(0)| / S.
+    pub relative_error_max: Option<f64>,
+    /// Fitted trend of B, in units of S per second.
+    pub drift_per_s: Option<f64>,
+    /// 99.9 % interval of the trend, autocorrelation accounted for.
+    pub drift_per_s_ci: Option<[f64; 2]>,
+    /// Half the peak-to-peak of what the trend leaves, in units of S.
+    pub fluctuation: Option<f64>,
+    pub class: Option<EnergyClass>,
+    /// Potential energy by effect at the end, joules.
+    pub potential_final_j: BTreeMap<&'static str, f64>,
+    /// Dissipated and injected over the run, joules; 0 where the scene has neither.
+    pub dissipated_j: Option<f64>,
+    pub injected_j: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EnergyClass {
+    Bounded,
+    Drifting,
+    Dissipating,
+    Growing,
+}
+
+/// Largest departure from the initial value; null where the scene does not conserve it.
+#[derive(Debug, Clone, Serialize)]
+pub struct Momentum {
+    /// kg m/s.
+    pub linear_error_max: Option<f64>,
+    /// kg m²/s, about the origin.
+    pub angular_error_max: Option<f64>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub struct Work {
+    pub steps: u64,
+    /// Evaluations of all forces; null where the engine does not tell (rapier's joints).
+    pub force_evaluations: Option<u64>,
+    pub linear_solves: Option<u64>,
+    pub wall_s: Option<WallTime>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub struct WallTime {
+    pub min: f64,
+    pub median: f64,
+    /// Median absolute deviation; null for a single run.
+    pub mad: Option<f64>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub struct Identified {
+    pub method: String,
+    pub substeps: u32,
+    pub defect: f64,
+    pub runner_up: Option<String>,
+    pub runner_up_defect: Option<f64>,
+    pub decisive: bool,
+    pub equivalent: Vec<String>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub struct Check {
+    pub id: String,
+    pub subject: String,
+    pub status: CheckStatus,
+    pub measured: Option<f64>,
+    pub bound: Option<f64>,
+    pub derivation: String,
+    pub message: String,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CheckStatus {
+    Pass,
+    Fail,
+    Skip,
+    Inconclusive,
+}
+
+/// What the figures are drawn from.
+#[derive(Debug, Clone, Default)]
+pub struct Figures {
+    /// One per outcome that recorded anything, in the outcomes' order.
+    pub curves: Vec<Curves>,
+    /// The curve the scene asks for: its axis label and range.
+    pub plot: Option<PlotAxis>,
+    /// The two coordinates (0, 1, 2) trajectories are projected on: the widest, `up` vertical.
+    pub plane: [usize; 2],
+    /// Fixed particles on that plane, drawn as squares.
+    pub fixed: Vec<[f64; 2]>,
+}
+
+#[derive(Debug, Clone)]
+pub struct PlotAxis {
+    /// Such as `particle 1, z (m)`.
+    pub label: String,
+    pub y_range: Option<[f64; 2]>,
+}
+
+/// Series over the recorded instants of one outcome; all finite, equally long.
+#[derive(Debug, Clone)]
+pub struct Curves {
+    /// Index into the report's outcomes.
+    pub outcome: usize,
+    /// Seconds.
+    pub t: Vec<f64>,
+    /// (B - B(0)) / S, or joules where the scene has no scale.
+    pub energy: Vec<f64>,
+    /// The coordinate `plot` names; empty without one.
+    pub plot: Vec<f64>,
+    /// A few particles' paths projected on `Figures::plane`: one polyline each.
+    pub paths: Vec<Vec<[f64; 2]>>,
+}

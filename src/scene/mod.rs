@@ -1,0 +1,3 @@
+//! The scene file: read strictly, checked, complete.
+mod model;
+pub use model::*;

@@ -1,0 +1,69 @@
+//! The state an integrator advances.
+
+use std::ops::AddAssign;
+
+/// Time, positions, velocities, and the work done so far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Seconds.
+    pub t: f64,
+    /// Positions, m.
+    pub x: Vec<f64>,
+    /// Velocities, m/s.
+    pub v: Vec<f64>,
+    /// Work integrals, advanced beside the motion by the method's own stages.
+    pub work: Work,
+}
+
+impl State {
+    /// At t = 0 with no work done yet. `x` and `v` are equally long.
+    pub fn new(x: Vec<f64>, v: Vec<f64>) -> Self {
+        debug_assert_eq!(x.len(), v.len());
+        Self {
+            t: 0.0,
+            x,
+            v,
+            work: Work::default(),
+        }
+    }
+
+    /// No NaN and no infinity anywhere.
+    pub fn is_finite(&self) -> bool {
+        self.x.iter().chain(&self.v).all(|c| c.is_finite())
+            && self.work.dissipated.is_finite()
+            && self.work.injected.is_finite()
+    }
+}
+
+/// Energy that has left or entered the system since the start, joules.
+///
+/// The balance B = E + dissipated - injected is what a correct run keeps.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Work {
+    /// By dampers and drag; grows.
+    pub dissipated: f64,
+    /// By external forces without a potential; either sign.
+    pub injected: f64,
+}
+
+impl Work {
+    /// Adds `h` seconds at constant power.
+    pub fn advance(&mut self, power: Power, h: f64) {
+        self.dissipated += h * power.dissipated;
+        self.injected += h * power.injected;
+    }
+}
+
+/// Rate of change of [`Work`], watts.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Power {
+    pub dissipated: f64,
+    pub injected: f64,
+}
+
+impl AddAssign for Power {
+    fn add_assign(&mut self, other: Self) {
+        self.dissipated += other.dissipated;
+        self.injected += other.injected;
+    }
+}
