@@ -122,7 +122,9 @@ impl Springs {
         let (k, c) = (spring.stiffness, spring.damping);
         let identity = Matrix3::identity();
         if length <= SHORTEST {
-            let position = if spring.rest_length == 0.0 {
+            // Without a direction n there is no k n nᵀ, although the exact stiffness is k.
+            let exact = linearization == Linearization::Exact;
+            let position = if exact && spring.rest_length == 0.0 {
                 identity * k
             } else {
                 Matrix3::zeros()

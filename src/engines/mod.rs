@@ -2,9 +2,11 @@
 
 mod integrator;
 pub mod rapier;
+mod registry;
 mod simulate;
 
 pub use integrator::IntegratorEngine;
+pub use registry::{EngineRow, REGISTRY, find, ids, rapier_with};
 pub use simulate::{Ended, Limits, Observer, simulate};
 
 use crate::integrators::StepError;

@@ -11,6 +11,11 @@ pub trait Observer {
 
     /// The state at step `step` (0 is the start), called at the steps asked for, in order.
     fn observe(&mut self, step: u64, state: &State);
+
+    /// The state a run diverged in, if it is still finite: the last one of this run.
+    fn observe_diverged(&mut self, step: u64, state: &State) {
+        self.observe(step, state);
+    }
 }
 
 /// When a run counts as diverged: non-finite, or K + U_elastic beyond 1e12 S.
@@ -103,6 +108,9 @@ pub fn simulate(
                 };
             }
             if let Some(reason) = limits.exceeded(engine.state()) {
+                if engine.state().is_finite() {
+                    observer.observe_diverged(step, engine.state());
+                }
                 return Ended::Diverged { step, reason };
             }
         }

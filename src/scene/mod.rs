@@ -1,3 +1,85 @@
-//! The scene file: read strictly, checked, complete.
+//! The scene file: bytes in, a checked [`Scene`] out, or one error that points at its place.
+//!
+//! ```text
+//! bytes -> text (size, UTF-8, nesting) -> raw (YAML's shape) -> validate (meaning) -> Scene
+//! ```
+//! Only [`Scene`] and what it is made of leaves this module, so nothing after it needs to doubt a
+//! number: ids are valid, quantities are finite and within [`limits`].
+
+mod check;
+mod error;
+mod keys;
+mod leaf;
+pub mod limits;
+mod locate;
+mod members;
 mod model;
-pub use model::*;
+mod number;
+mod path;
+mod raw;
+mod refusal;
+mod shown;
+mod suggest;
+mod text;
+mod times;
+mod validate;
+
+pub use error::SceneError;
+pub use model::{
+    Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, Solver, Spring, Wind, steps,
+};
+
+pub use times::{TimesError, check_times};
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// Reads a scene from the bytes of a YAML file.
+///
+/// `file` names the source in errors and, without a `name` in the file, the scene. `methods` are the
+/// integrator ids `solver.type` may take. A UTF-8 BOM and CRLF line ends are fine.
+///
+/// # Errors
+/// The first thing wrong, with its line and column. No input panics.
+pub fn parse(bytes: &[u8], file: &str, methods: &[&str]) -> Result<Scene, SceneError> {
+    if bytes.len() > limits::FILE_BYTES {
+        let cap = limits::FILE_BYTES >> 20;
+        return Err(SceneError::of_file(
+            file,
+            format!("expected at most {cap} MiB"),
+        ));
+    }
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text = text::check(bytes)
+        .map_err(|fault| SceneError::at(file, &String::from_utf8_lossy(bytes), fault))?;
+    let raw = raw::document(text).map_err(|fault| SceneError::at(file, text, fault))?;
+    validate::scene(raw, file, methods)
+        .map_err(|problem| SceneError::at(file, text, problem.locate(text)))
+}
+
+/// Reads a scene file from disk.
+///
+/// # Errors
+/// A missing or unreadable file, a directory and a file above [`limits::FILE_BYTES`] are errors
+/// without a line; the others are those of [`parse`].
+pub fn read(path: &Path, methods: &[&str]) -> Result<Scene, SceneError> {
+    let file = path.display().to_string();
+    let refuse = |message: String| Err(SceneError::of_file(&file, message));
+    if path.is_dir() {
+        return refuse("this is a directory: name a scene file, such as scene.yml".into());
+    }
+    let mut bytes = Vec::new();
+    // One byte beyond the cap is enough to know, even of a pipe or a device that never ends.
+    let opened = File::open(path).and_then(|f| {
+        f.take(limits::FILE_BYTES as u64 + 1)
+            .read_to_end(&mut bytes)
+    });
+    match opened {
+        Ok(_) => parse(&bytes, &file, methods),
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+            refuse("there is no such file".into())
+        }
+        Err(e) => refuse(format!("cannot be read: {e}")),
+    }
+}

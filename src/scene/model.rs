@@ -32,6 +32,8 @@ pub struct Solver {
     pub timestep: f64,
     /// Signed acceleration along `up`, m/s². Default -9.81.
     pub gravity: f64,
+    /// Relative residual at which an implicit method's solve ends; the method's own if absent.
+    pub tolerance: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -123,15 +125,20 @@ impl Scene {
     pub fn size(&self) -> f64 {
         let mut diagonal = 0.0;
         for axis in 0..3 {
-            let (lo, hi) = self.particles.iter().fold(
-                (f64::INFINITY, f64::NEG_INFINITY),
-                |(lo, hi), p| (lo.min(p.position[axis]), hi.max(p.position[axis])),
-            );
+            let (lo, hi) = self
+                .particles
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| {
+                    (lo.min(p.position[axis]), hi.max(p.position[axis]))
+                });
             if hi > lo {
                 diagonal += (hi - lo) * (hi - lo);
             }
         }
-        let longest = self.springs.iter().fold(0.0_f64, |l, s| l.max(s.rest_length));
+        let longest = self
+            .springs
+            .iter()
+            .fold(0.0_f64, |l, s| l.max(s.rest_length));
         f64::sqrt(diagonal) + longest
     }
 }

@@ -154,10 +154,14 @@ pub struct Energy {
     /// Half the peak-to-peak of what the trend leaves, in units of S.
     pub fluctuation: Option<f64>,
     pub class: Option<EnergyClass>,
-    /// Potential energy by effect at the end, joules.
+    /// Potential energy by effect at the end, joules; shown, not part of the JSON.
+    #[serde(skip)]
     pub potential_final_j: BTreeMap<&'static str, f64>,
-    /// Dissipated and injected over the run, joules; 0 where the scene has neither.
+    /// Dissipated and injected over the run, joules; 0 where the scene has neither; shown, not part
+    /// of the JSON.
+    #[serde(skip)]
     pub dissipated_j: Option<f64>,
+    #[serde(skip)]
     pub injected_j: Option<f64>,
 }
 
@@ -173,9 +177,10 @@ pub enum EnergyClass {
 /// Largest departure from the initial value; null where the scene does not conserve it.
 #[derive(Debug, Clone, Serialize)]
 pub struct Momentum {
-    /// kg m/s.
+    #[serde(rename = "linear_error_max_kg_m_s")]
     pub linear_error_max: Option<f64>,
-    /// kg m²/s, about the origin.
+    /// About the origin.
+    #[serde(rename = "angular_error_max_kg_m2_s")]
     pub angular_error_max: Option<f64>,
 }
 

@@ -1,0 +1,103 @@
+//! `springcheck list integrators|effects|engines`
+
+use clap::ValueEnum;
+use comfy_table::{ContentArrangement, Table, presets};
+use springcheck::integrators::{EnergyLaw, Method, PerStep, Stable};
+use springcheck::{effects, engines, integrators};
+use std::process::ExitCode;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[arg(value_enum)]
+    what: What,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum What {
+    Integrators,
+    Effects,
+    Engines,
+}
+
+/// Prints a registry.
+pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
+    let table = match args.what {
+        What::Integrators => of_integrators(),
+        What::Effects => {
+            let rows = effects::REGISTRY.iter();
+            table(
+                &["effect", "what", "formula"],
+                rows.map(|row| vec![row.id.into(), row.summary.into(), row.source.into()]),
+            )
+        }
+        What::Engines => {
+            let rows = engines::REGISTRY.iter();
+            table(
+                &["engine", "what"],
+                rows.map(|row| vec![row.id.to_string(), row.summary.into()]),
+            )
+        }
+    };
+    super::print(&format!("{table}\n"))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn of_integrators() -> Table {
+    table(
+        &["integrator", "order", "geometry", "forces/step", "stable", "energy per step", "source"],
+        integrators::REGISTRY.iter().map(|method| {
+            vec![
+                method.id.into(),
+                order(method),
+                geometry(method),
+                match method.evaluations {
+                    PerStep::Exactly(n) => n.to_string(),
+                    PerStep::PerIteration => "1 an iteration".into(),
+                },
+                match method.oscillator.stable {
+                    Stable::Never => "never".into(),
+                    Stable::Below(z) => format!("z < {z:.4}"),
+                    Stable::Always => "linear: always".into(),
+                },
+                match method.oscillator.energy {
+                    EnergyLaw::Factor { formula, .. } => format!("times {formula}"),
+                    EnergyLaw::Band { formula, .. } => format!("within {formula}"),
+                    EnergyLaw::Bounded => "bounded".into(),
+                },
+                method.source.into(),
+            ]
+        }),
+    )
+}
+
+fn order(method: &Method) -> String {
+    if method.order == method.order_damped {
+        method.order.to_string()
+    } else {
+        format!("{} (damped {})", method.order, method.order_damped)
+    }
+}
+
+fn geometry(method: &Method) -> String {
+    let mut facts = Vec::new();
+    if method.symplectic {
+        facts.push("symplectic");
+    }
+    if method.reversible {
+        facts.push("reversible");
+    }
+    facts.join(", ")
+}
+
+fn table(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {
+    let mut table = Table::new();
+    table
+        .load_style(presets::UTF8_HORIZONTAL_ONLY)
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_width(100)
+        .set_header(header.to_vec());
+    for row in rows {
+        table.add_row(row);
+    }
+    table
+}

@@ -1,0 +1,96 @@
+//! Verbs, one file each: the only place that touches files, the terminal and exit codes.
+
+mod list;
+mod output;
+mod progress;
+mod rapier;
+mod run;
+mod save;
+
+use clap::{Parser, Subcommand, ValueEnum};
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Is a particle-spring integrator right, and what does being right cost?
+///
+/// Runs hand-written integrators side by side with the equivalent rapier world and reports energy,
+/// trajectories and stability.
+#[derive(Debug, Parser)]
+#[command(name = "springcheck", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+
+    /// When to colour.
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
+    color: Color,
+
+    /// No progress bar, no notes on stderr; errors still show.
+    #[arg(long, global = true)]
+    quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Cross-check scenes: every chosen integrator beside rapier; a table and reports/<scene>/.
+    Run(run::Args),
+    /// What there is: integrators, effects, engines, with their facts.
+    List(list::Args),
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+/// The exit code for usage, scene and input errors.
+const USAGE: u8 = 2;
+
+/// Parses the arguments, runs the verb, and turns whatever happens into an exit code.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // clap's own code is 2 for usage and 0 for --help.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(USAGE));
+        }
+    };
+    match cli.color {
+        Color::Auto => anstream::ColorChoice::Auto,
+        Color::Always => anstream::ColorChoice::Always,
+        Color::Never => anstream::ColorChoice::Never,
+    }
+    .write_global();
+    let done = match cli.verb {
+        Verb::Run(args) => run::run(&args, cli.quiet),
+        Verb::List(args) => list::list(&args),
+    };
+    match done {
+        Ok(code) => code,
+        Err(error) => {
+            let _ = writeln!(anstream::stderr(), "{}", message(&error));
+            ExitCode::from(USAGE)
+        }
+    }
+}
+
+/// A scene error stands for itself; anything else is introduced, with its causes.
+fn message(error: &anyhow::Error) -> String {
+    if error.is::<springcheck::scene::SceneError>() {
+        error.to_string()
+    } else {
+        format!("error: {error:#}")
+    }
+}
+
+/// Writes to stdout. A reader that has gone away (`| head`) is not an error.
+fn print(text: &str) -> anyhow::Result<()> {
+    let mut out = anstream::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        other => Ok(other?),
+    }
+}

@@ -1,0 +1,247 @@
+//! `springcheck run SCENE...`
+
+use super::output::{self, Place};
+use super::progress::Progress;
+use super::rapier::Custom;
+use super::save::{FileKind, Files};
+use anyhow::{Context, bail};
+use clap::ValueEnum;
+use springcheck::crosscheck::{Choice, ChosenEngine, Estimate, Plan};
+use springcheck::engines;
+use springcheck::integrators;
+use springcheck::outcome::{CheckStatus, Report};
+use springcheck::report;
+use springcheck::scene::{self, Scene};
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Scene files (YAML).
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+
+    /// Integrators to run, in this order: ids separated by commas, or `all`.
+    /// Default: the scene's own first, then the usual six.
+    #[arg(long, value_name = "A,B|all", value_delimiter = ',')]
+    integrators: Vec<String>,
+
+    /// Reference engines: ids separated by commas, or `none`. Default: rapier,rapier-forces.
+    #[arg(long, value_name = "A,B|none", value_delimiter = ',')]
+    engines: Vec<String>,
+
+    /// One more rapier row with these settings, such as `dt=0.001,iterations=8,pgs=4`; repeatable.
+    #[arg(long, value_name = "KEY=VALUE,...")]
+    rapier: Vec<Custom>,
+
+    /// Timesteps in seconds, separated by commas: everything runs at each. Default: the scene's.
+    #[arg(long, value_name = "H,...", value_delimiter = ',')]
+    timestep: Vec<f64>,
+
+    /// Seconds to simulate. Default: the scene's.
+    #[arg(long, value_name = "SECONDS")]
+    duration: Option<f64>,
+
+    /// What goes to stdout.
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    format: Format,
+
+    /// Where reports go [default: reports; with a --format other than human, nowhere].
+    #[arg(long, value_name = "DIR")]
+    output: Option<PathBuf>,
+
+    /// Save every step of every engine beside the report.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    save: Option<FileKind>,
+
+    /// Save only every N-th step, and the last.
+    #[arg(long, value_name = "N", requires = "save", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    every: u64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Human,
+    Json,
+    Markdown,
+}
+
+impl Format {
+    fn id(self) -> &'static str {
+        match self {
+            Format::Human => "human",
+            Format::Json => "json",
+            Format::Markdown => "markdown",
+        }
+    }
+}
+
+/// Work expected to take longer than this is announced, seconds.
+const ANNOUNCED: f64 = 10.0;
+
+/// Runs the verb.
+pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
+    // All scenes are read before any runs: a typo in the last one costs nothing.
+    let scenes = args
+        .scenes
+        .iter()
+        .map(|path| read(args, path))
+        .collect::<anyhow::Result<Vec<_>>>()?;
+    let mut reports = Vec::new();
+    for (scene, path) in scenes.iter().zip(&args.scenes) {
+        let report = one(args, quiet, scene, path)?;
+        if args.format == Format::Human {
+            let several = reports.is_empty().then_some("").unwrap_or("\n");
+            super::print(&format!("{several}{}", human(args, path, &report)))?;
+        }
+        reports.push(report);
+    }
+    if args.format != Format::Human {
+        let format = report::format(args.format.id()).context("a format without a row")?;
+        super::print(&(format.render)(&reports))?;
+    }
+    let failed = |report: &Report| report.checks.iter().any(|c| c.status == CheckStatus::Fail);
+    Ok(ExitCode::from(u8::from(reports.iter().any(failed))))
+}
+
+/// Reads a scene and applies the flags that change it.
+fn read(args: &Args, path: &std::path::Path) -> anyhow::Result<Scene> {
+    let mut scene = scene::read(path, &integrators::ids())?;
+    if let Some(duration) = args.duration {
+        scene.duration = duration;
+    }
+    let custom = args.rapier.iter().filter_map(|c| c.timestep.as_ref());
+    let all = args.timestep.iter().chain(custom);
+    for &timestep in all.chain([&scene.solver.timestep]) {
+        scene::check_times(timestep, scene.duration)?;
+    }
+    Ok(scene)
+}
+
+fn one(
+    args: &Args,
+    quiet: bool,
+    scene: &Scene,
+    path: &std::path::Path,
+) -> anyhow::Result<Report> {
+    let plan = Plan::new(scene, &choice(args, scene)?);
+    let estimates = plan.estimate();
+    let expected = expected(&estimates);
+    if expected > ANNOUNCED && !quiet {
+        announce(&estimates, expected);
+    }
+    let place = place(args, path);
+    if let Some(place) = &place {
+        place.create()?;
+    }
+    let files = args.save.map(|kind| (kind, place.as_ref(), args.every));
+    let files = match files {
+        None => None,
+        Some((kind, Some(place), every)) => Some(Files::new(kind, place, every)),
+        Some((_, None, _)) => bail!("--save needs --output when --format is not human"),
+    };
+    let steps = plan.cases.iter().map(|case| case.label.steps).sum();
+    let progress = Progress::new(steps, expected, quiet);
+    let report = plan.execute(&output::host(&progress, files.as_ref()))?;
+    progress.finish();
+    if let Some(place) = &place {
+        place.write(&report)?;
+    }
+    Ok(report)
+}
+
+/// Reports are files only where somebody asked for them or looks at the table.
+fn place(args: &Args, scene: &std::path::Path) -> Option<Place> {
+    match (&args.output, args.format) {
+        (Some(output), _) => Some(Place::new(output, scene)),
+        (None, Format::Human) => Some(Place::new("reports".as_ref(), scene)),
+        (None, _) => None,
+    }
+}
+
+/// The table and, as its last three lines, verdict, report path, next command.
+fn human(args: &Args, path: &std::path::Path, report: &Report) -> String {
+    let table = report::terminal::render(report);
+    let written = place(args, path).map_or_else(String::new, |place| {
+        format!("report: {}\n", place.report().display())
+    });
+    let next = if args.timestep.len() > 1 {
+        format!("springcheck run {} --integrators all", path.display())
+    } else {
+        let h = report.scene.timestep;
+        let steps = [2.0 * h, h, 0.5 * h].map(|h| h.to_string()).join(",");
+        format!("springcheck run {} --timestep {steps}", path.display())
+    };
+    format!("{table}{written}next: {next}\n")
+}
+
+fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
+    let mut choice = Choice::default_for(scene);
+    if args.integrators == ["all"] {
+        choice.methods = Choice::all_methods(scene);
+    } else if !args.integrators.is_empty() {
+        choice.methods = each(&args.integrators, integrators::find, || {
+            format!("integrators: {}, or all", integrators::ids().join(", "))
+        })?;
+    }
+    if args.engines == ["none"] {
+        choice.engines.clear();
+    } else if !args.engines.is_empty() {
+        let rows = each(&args.engines, engines::find, || {
+            format!("engines: {}, or none", engines::ids().join(", "))
+        })?;
+        choice.engines = rows.into_iter().map(ChosenEngine::from).collect();
+    }
+    choice.engines.extend(args.rapier.iter().map(Custom::chosen));
+    if !args.timestep.is_empty() {
+        choice.timesteps.clear();
+        for &timestep in &args.timestep {
+            if !choice.timesteps.contains(&timestep) {
+                choice.timesteps.push(timestep);
+            }
+        }
+    }
+    Ok(choice)
+}
+
+/// Looks each id up, once; an unknown one is an error that lists what there is.
+fn each<T>(
+    ids: &[String],
+    find: impl Fn(&str) -> Option<&'static T>,
+    known: impl Fn() -> String,
+) -> anyhow::Result<Vec<&'static T>> {
+    let mut rows = Vec::new();
+    for (at, id) in ids.iter().enumerate() {
+        if ids[..at].contains(id) {
+            continue;
+        }
+        rows.push(find(id).with_context(|| format!("unknown `{id}`; known {}", known()))?);
+    }
+    Ok(rows)
+}
+
+/// Wall seconds all cases will take together: no less than the longest, no less than a fair share.
+fn expected(estimates: &[Estimate]) -> f64 {
+    let sum: f64 = estimates.iter().map(|e| e.seconds).sum();
+    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let longest = estimates.iter().fold(0.0, |m: f64, e| m.max(e.seconds));
+    longest.max(sum / threads as f64)
+}
+
+fn announce(estimates: &[Estimate], expected: f64) {
+    let mut err = anstream::stderr().lock();
+    let _ = writeln!(err, "about {expected:.0} s expected:");
+    for estimate in estimates {
+        let Estimate { label, seconds } = estimate;
+        let _ = writeln!(
+            err,
+            "  {:<30} {seconds:>8.1} s  ({} steps)",
+            label.engine, label.steps
+        );
+    }
+    let _ = writeln!(
+        err,
+        "shorter: --duration, a larger --timestep, --integrators A,B, --engines none"
+    );
+}

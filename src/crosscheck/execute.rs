@@ -1,0 +1,162 @@
+//! Runs the cases in parallel.
+
+use super::plan::{Case, Label};
+use crate::engines::{Counts, Ended, Limits, Observer, Unsupported, simulate};
+use crate::outcome::WallTime;
+use crate::scene::Scene;
+use crate::system::State;
+use crate::trajectory::{Recorder, SaveError, Trajectory};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// What a run needs from the outside: files to save to, somebody to show progress.
+pub trait Host: Sync {
+    /// Where every step of this case goes; None if nowhere.
+    ///
+    /// # Errors
+    /// When the file cannot be made.
+    fn saver(&self, case: &Label) -> Result<Option<Box<dyn Saver>>, SaveError>;
+
+    /// So many more steps have been taken.
+    fn progress(&self, steps: u64);
+}
+
+/// Saves a run as it goes.
+pub trait Saver: Observer {
+    /// Completes the file.
+    ///
+    /// # Errors
+    /// The first failure, whenever it happened.
+    fn finish(self: Box<Self>) -> Result<(), SaveError>;
+}
+
+/// A host that saves nothing and shows nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Quiet;
+
+impl Host for Quiet {
+    fn saver(&self, _case: &Label) -> Result<Option<Box<dyn Saver>>, SaveError> {
+        Ok(None)
+    }
+
+    fn progress(&self, _steps: u64) {}
+}
+
+/// What one case left.
+pub(super) enum Run {
+    Unsupported(Unsupported),
+    Ran {
+        ended: Ended,
+        steps: u64,
+        trajectory: Trajectory,
+        counts: Counts,
+        wall: WallTime,
+    },
+}
+
+pub(super) fn all(
+    cases: &[Case],
+    scene: &Scene,
+    limits: &Limits,
+    host: &dyn Host,
+) -> Result<Vec<Run>, SaveError> {
+    let dim = 3 * scene.particles.len();
+    cases
+        .par_iter()
+        .map(|case| one(case, dim, limits, host))
+        .collect()
+}
+
+fn one(case: &Case, dim: usize, limits: &Limits, host: &dyn Host) -> Result<Run, SaveError> {
+    let mut engine = match (case.build)() {
+        Ok(engine) => engine,
+        Err(unsupported) => {
+            host.progress(case.label.steps);
+            return Ok(Run::Unsupported(unsupported));
+        }
+    };
+    let Label {
+        steps, timestep, ..
+    } = case.label;
+    let tick = |taken| host.progress(taken);
+    let mut recorder = Recorder::new(steps, dim, timestep);
+    let start = Instant::now();
+    let ended = simulate(engine.as_mut(), steps, limits, &mut recorder, &tick);
+    let first = start.elapsed().as_secs_f64();
+    if let Some(mut saver) = host.saver(&case.label)? {
+        save(case, limits, saver.as_mut());
+        saver.finish()?;
+    }
+    let taken = match &ended {
+        Ended::Completed => steps,
+        Ended::Diverged { step, .. } | Ended::Failed { step, .. } => *step,
+    };
+    host.progress(steps.saturating_sub(taken));
+    Ok(Run::Ran {
+        steps: taken,
+        trajectory: recorder.finish(),
+        counts: engine.counts(),
+        wall: time(case, limits, first),
+        ended,
+    })
+}
+
+/// The same run once more, to the file: bits are the same, and the timed run writes nothing.
+fn save(case: &Case, limits: &Limits, saver: &mut dyn Saver) {
+    if let Ok(mut engine) = (case.build)() {
+        simulate(engine.as_mut(), case.label.steps, limits, saver, &|_| {});
+    }
+}
+
+/// Repeated at most this often, within this many seconds in all.
+const REPEATS: usize = 5;
+const PATIENCE: f64 = 0.1;
+
+/// Times the case. The recorded run stands for itself if it was long; else it was the warm-up.
+fn time(case: &Case, limits: &Limits, first: f64) -> WallTime {
+    let mut times = Vec::new();
+    while times.len() < REPEATS && (times.iter().sum::<f64>() + first) < PATIENCE {
+        let Ok(mut engine) = (case.build)() else {
+            break;
+        };
+        let start = Instant::now();
+        simulate(
+            engine.as_mut(),
+            case.label.steps,
+            limits,
+            &mut Nobody,
+            &|_| {},
+        );
+        times.push(start.elapsed().as_secs_f64());
+    }
+    if times.is_empty() {
+        times.push(first);
+    }
+    let median = median(&mut times);
+    let mut off: Vec<f64> = times.iter().map(|t| (t - median).abs()).collect();
+    WallTime {
+        min: times[0],
+        median,
+        mad: (off.len() > 1).then(|| self::median(&mut off)),
+    }
+}
+
+struct Nobody;
+
+impl Observer for Nobody {
+    fn next(&self, _from: u64) -> Option<u64> {
+        None
+    }
+    fn observe(&mut self, _step: u64, _state: &State) {}
+}
+
+/// Sorts; not empty.
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let half = values.len() / 2;
+    if values.len() % 2 == 1 {
+        values[half]
+    } else {
+        0.5 * (values[half - 1] + values[half])
+    }
+}

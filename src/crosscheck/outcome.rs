@@ -1,0 +1,131 @@
+//! From what a case left to its outcome.
+
+use super::execute::Run;
+use super::plan::{Case, Plan};
+use super::remarks;
+use crate::engines::Ended;
+use crate::measure::{self, EnergySeries, TOLERANCE};
+use crate::outcome::{Outcome, Status, Work};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// One outcome a case, and the energies the figures draw.
+pub(super) fn all(
+    plan: &Plan,
+    runs: &[Run],
+    scale: Option<f64>,
+) -> (Vec<Outcome>, Vec<Option<EnergySeries>>) {
+    (0..runs.len())
+        .into_par_iter()
+        .map(|index| one(plan, runs, index, scale))
+        .unzip()
+}
+
+fn one(
+    plan: &Plan,
+    runs: &[Run],
+    index: usize,
+    scale: Option<f64>,
+) -> (Outcome, Option<EnergySeries>) {
+    let case = &plan.cases[index];
+    let mut outcome = empty(case);
+    let mut series = None;
+    match &runs[index] {
+        Run::Unsupported(unsupported) => {
+            outcome.status = Status::Unsupported;
+            outcome.reason = Some(unsupported.reason.clone());
+        }
+        Run::Ran {
+            ended,
+            steps,
+            trajectory,
+            counts,
+            wall,
+        } => {
+            (outcome.status, outcome.reason) = match ended {
+                Ended::Completed => (Status::Completed, None),
+                Ended::Diverged { step, reason } => {
+                    (Status::Diverged, Some(format!("at step {step}: {reason}")))
+                }
+                Ended::Failed { step, error } => {
+                    (Status::Failed, Some(format!("in step {step}: {error}")))
+                }
+            };
+            if outcome.status != Status::Completed {
+                outcome.stopped_at_s = Some(*steps as f64 * case.label.timestep);
+            }
+            series = EnergySeries::new(&plan.system, trajectory);
+            let diverged = outcome.status == Status::Diverged;
+            outcome.energy = series
+                .as_ref()
+                .map(|series| measure::judge(series, scale, diverged));
+            outcome.momentum = measure::momentum(plan.scene, &plan.system, trajectory);
+            outcome.deviation_m = deviations(plan, runs, index);
+            outcome.work = Work {
+                steps: *steps,
+                force_evaluations: counts.force_evaluations,
+                linear_solves: counts.linear_solves,
+                wall_s: Some(wall.clone()),
+            };
+        }
+    }
+    outcome.remarks = remarks::remarks(plan, case, &outcome);
+    (outcome, series)
+}
+
+fn empty(case: &Case) -> Outcome {
+    Outcome {
+        engine: case.label.engine.clone(),
+        kind: case.kind,
+        timestep: case.label.timestep,
+        substep: case.label.timestep / f64::from(case.substeps),
+        status: Status::Completed,
+        stopped_at_s: None,
+        reason: None,
+        position_error_m: None,
+        velocity_error_m_s: None,
+        deviation_m: BTreeMap::new(),
+        energy: None,
+        momentum: None,
+        work: Work {
+            steps: 0,
+            force_evaluations: None,
+            linear_solves: None,
+            wall_s: None,
+        },
+        identified: None,
+        remarks: Vec::new(),
+    }
+}
+
+/// Distances from every other reference engine that ran at the same timestep.
+fn deviations(
+    plan: &Plan,
+    runs: &[Run],
+    index: usize,
+) -> BTreeMap<String, crate::outcome::Deviation> {
+    let own = &plan.cases[index].label;
+    let Run::Ran { trajectory, .. } = &runs[index] else {
+        return BTreeMap::new();
+    };
+    let tolerance = TOLERANCE * plan.scene.size();
+    plan.cases
+        .iter()
+        .zip(runs)
+        .enumerate()
+        .filter(|(at, (case, _))| {
+            *at != index && case.reference && case.label.timestep == own.timestep
+        })
+        .filter_map(|(_, (case, run))| {
+            let Run::Ran {
+                trajectory: reference,
+                ..
+            } = run
+            else {
+                return None;
+            };
+            let deviation = measure::deviation(trajectory, reference, tolerance)?;
+            Some((case.label.engine.clone(), deviation))
+        })
+        .collect()
+}

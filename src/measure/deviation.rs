@@ -1,0 +1,51 @@
+//! How far two trajectories are apart.
+
+use crate::outcome::Deviation;
+use crate::trajectory::Trajectory;
+
+/// The distance at which `first_exceeds_s` is read, as a share of the scene's size.
+pub const TOLERANCE: f64 = 0.01;
+
+/// Largest distance over the particles between two runs of the same scene and timestep, over the
+/// instants both recorded; `tolerance` in metres.
+///
+/// None when they share no instant. A distance says that two runs differ, not which one is wrong.
+pub fn deviation(ours: &Trajectory, reference: &Trajectory, tolerance: f64) -> Option<Deviation> {
+    let mut result: Option<Deviation> = None;
+    let mut other = 0;
+    for k in 0..ours.len() {
+        while other < reference.len() && reference.step(other) < ours.step(k) {
+            other += 1;
+        }
+        if other == reference.len() {
+            break;
+        }
+        if reference.step(other) != ours.step(k) {
+            continue;
+        }
+        let distance = farthest(ours.x(k), reference.x(other));
+        let entry = result.get_or_insert(Deviation {
+            last: 0.0,
+            max: 0.0,
+            first_exceeds_s: None,
+        });
+        entry.last = distance;
+        entry.max = entry.max.max(distance);
+        if distance > tolerance && entry.first_exceeds_s.is_none() {
+            entry.first_exceeds_s = Some(ours.time(k));
+        }
+    }
+    result.filter(|d| d.max.is_finite())
+}
+
+/// Largest distance between the same particle of two states, m.
+fn farthest(a: &[f64], b: &[f64]) -> f64 {
+    let square = |(a, b): (&[f64], &[f64])| -> f64 {
+        a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+    };
+    a.chunks_exact(3)
+        .zip(b.chunks_exact(3))
+        .map(square)
+        .fold(0.0, f64::max)
+        .sqrt()
+}

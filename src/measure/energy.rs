@@ -1,0 +1,111 @@
+//! The energy balance of a run, and the verdict on it.
+
+use super::trend::trend;
+use crate::outcome::{Energy, EnergyClass};
+use crate::system::{ParticleSystem, System};
+use crate::trajectory::Trajectory;
+use std::collections::BTreeMap;
+
+/// Energies at the recorded instants of one run, joules; all finite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnergySeries {
+    /// Seconds.
+    pub t: Vec<f64>,
+    /// B = E + dissipated - injected; constant in the truth.
+    pub balance: Vec<f64>,
+    initial: f64,
+    last: f64,
+    potential_last: BTreeMap<&'static str, f64>,
+    dissipated: f64,
+    injected: f64,
+    /// Steps taken up to the last instant, and the largest term ever summed: what rounding grows with.
+    steps: u64,
+    largest_term: f64,
+}
+
+impl EnergySeries {
+    /// None when nothing was recorded. Instants whose energy is not finite are left out.
+    pub fn new(system: &ParticleSystem, run: &Trajectory) -> Option<Self> {
+        let mut series = Self {
+            t: Vec::with_capacity(run.len()),
+            balance: Vec::with_capacity(run.len()),
+            initial: 0.0,
+            last: 0.0,
+            potential_last: BTreeMap::new(),
+            dissipated: 0.0,
+            injected: 0.0,
+            steps: 0,
+            largest_term: 0.0,
+        };
+        for k in 0..run.len() {
+            let (t, x) = (run.time(k), run.x(k));
+            let mut energy = system.kinetic(run.v(k));
+            let mut largest = energy;
+            let mut potential = BTreeMap::new();
+            for (row, effect) in system.effects() {
+                let u = effect.potential(t, x);
+                energy += u;
+                largest = largest.max(u.abs());
+                potential.insert(row.id, u);
+            }
+            let work = run.work(k);
+            let balance = energy + work.dissipated - work.injected;
+            if !(balance.is_finite() && energy.is_finite() && largest.is_finite()) {
+                continue;
+            }
+            if series.t.is_empty() {
+                series.initial = energy;
+            }
+            series.t.push(t);
+            series.balance.push(balance);
+            series.last = energy;
+            series.potential_last = potential;
+            series.dissipated = work.dissipated;
+            series.injected = work.injected;
+            series.steps = run.step(k);
+            series.largest_term = series
+                .largest_term
+                .max(largest)
+                .max(work.dissipated.abs())
+                .max(work.injected.abs());
+        }
+        (!series.t.is_empty()).then_some(series)
+    }
+
+    /// Balance minus its initial value at every instant, in units of `scale` (1 for joules).
+    pub fn error(&self, scale: f64) -> Vec<f64> {
+        let start = self.balance[0];
+        self.balance.iter().map(|b| (b - start) / scale).collect()
+    }
+
+    /// What rounding alone may do to the balance: a random walk of last bits of the largest term,
+    /// to eight standard deviations.
+    fn floor(&self) -> f64 {
+        8.0 * f64::EPSILON * self.largest_term * (self.steps.max(1) as f64).sqrt()
+    }
+}
+
+/// The verdict on a run's balance; `scale` is S, without which errors have no relative size.
+/// A run that `diverged` is growing by definition, however few instants it left.
+pub fn judge(series: &EnergySeries, scale: Option<f64>, diverged: bool) -> Energy {
+    let trend = trend(&series.t, &series.balance, series.floor());
+    let in_scale = |joules: f64| scale.map(|s| joules / s).filter(|r| r.is_finite());
+    let worst = series.error(1.0).into_iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+    let interval = [in_scale(trend.interval[0]), in_scale(trend.interval[1])];
+    Energy {
+        initial_j: Some(series.initial),
+        final_j: Some(series.last),
+        relative_error_max: in_scale(worst),
+        drift_per_s: in_scale(trend.slope),
+        drift_per_s_ci: interval[0].zip(interval[1]).map(|(lo, hi)| [lo, hi]),
+        fluctuation: in_scale(trend.fluctuation),
+        class: Some(if diverged {
+            EnergyClass::Growing
+        } else {
+            trend.class
+        }),
+        potential_final_j: series.potential_last.clone(),
+        dissipated_j: Some(series.dissipated),
+        injected_j: Some(series.injected),
+    }
+}

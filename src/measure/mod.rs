@@ -1,0 +1,14 @@
+//! What a trajectory shows, as numbers: pure functions of recorded states.
+
+mod deviation;
+mod energy;
+mod momentum;
+mod scale;
+mod trend;
+pub mod twin;
+
+pub use deviation::{TOLERANCE, deviation};
+pub use energy::{EnergySeries, judge};
+pub use momentum::momentum;
+pub use scale::energy_scale;
+pub use trend::{Trend, trend};

@@ -1,0 +1,50 @@
+//! Linear and angular momentum where the scene conserves them.
+
+use crate::outcome::Momentum;
+use crate::scene::Scene;
+use crate::system::ParticleSystem;
+use crate::trajectory::Trajectory;
+
+/// Largest departures from the initial values over the recorded instants; each None where
+/// something is fixed or an effect does not keep it.
+pub fn momentum(scene: &Scene, system: &ParticleSystem, run: &Trajectory) -> Option<Momentum> {
+    let free = scene.particles.iter().all(|p| !p.fixed);
+    let keeps = |keeps: fn(&dyn crate::effects::Effect) -> bool| {
+        free && system.effects().iter().all(|(_, e)| keeps(e.as_ref()))
+    };
+    let linear = keeps(|e| e.keeps_momentum());
+    let angular = keeps(|e| e.keeps_angular_momentum());
+    if run.is_empty() || !(linear || angular) {
+        return None;
+    }
+    let start = totals(scene, run, 0);
+    let (mut linear_error, mut angular_error) = (0.0_f64, 0.0_f64);
+    for k in 1..run.len() {
+        let now = totals(scene, run, k);
+        linear_error = linear_error.max(distance(now.0, start.0));
+        angular_error = angular_error.max(distance(now.1, start.1));
+    }
+    Some(Momentum {
+        linear_error_max: (linear && linear_error.is_finite()).then_some(linear_error),
+        angular_error_max: (angular && angular_error.is_finite()).then_some(angular_error),
+    })
+}
+
+/// Momentum, and angular momentum about the origin.
+fn totals(scene: &Scene, run: &Trajectory, k: usize) -> ([f64; 3], [f64; 3]) {
+    let (mut p, mut l) = ([0.0; 3], [0.0; 3]);
+    let states = run.x(k).chunks_exact(3).zip(run.v(k).chunks_exact(3));
+    for (particle, (x, v)) in scene.particles.iter().zip(states) {
+        let m = particle.mass;
+        for a in 0..3 {
+            let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+            p[a] += m * v[a];
+            l[a] += m * (x[b] * v[c] - x[c] * v[b]);
+        }
+    }
+    (p, l)
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum::<f64>().sqrt()
+}

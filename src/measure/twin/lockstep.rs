@@ -1,0 +1,75 @@
+//! Two engines over the same few instants.
+
+use crate::engines::{Engine, IntegratorEngine};
+use crate::integrators::{self, StepError};
+use crate::scene::Scene;
+use crate::system::{ParticleSystem, State};
+
+/// The states at the start and after each of a few world steps.
+pub(super) struct Path {
+    states: Vec<State>,
+    failed: Option<StepError>,
+}
+
+impl Path {
+    /// `steps` world steps of `substeps` engine steps each, or fewer if a step fails.
+    pub(super) fn of(mut engine: impl Engine, substeps: u32, steps: u32) -> Self {
+        let mut path = Self {
+            states: vec![engine.state().clone()],
+            failed: None,
+        };
+        for _ in 0..steps {
+            for _ in 0..substeps {
+                if let Err(error) = engine.step() {
+                    path.failed = Some(error);
+                    return path;
+                }
+            }
+            path.states.push(engine.state().clone());
+        }
+        path
+    }
+
+    /// Why the path is not a whole one.
+    pub(super) fn ended(&self) -> Option<String> {
+        if let Some(error) = &self.failed {
+            return Some(error.to_string());
+        }
+        let finite = self.states.iter().all(State::is_finite);
+        (!finite).then(|| "it leaves the finite numbers".to_owned())
+    }
+}
+
+/// The engine of our integrator of this id, at its default settings.
+pub(super) fn ours(scene: &Scene, method: &'static str, h: f64) -> IntegratorEngine {
+    let system = ParticleSystem::new(scene);
+    let settings = integrators::Settings::default();
+    // A missing row would be a fault of this program's; explicit Euler, the first, then fails the
+    // proof instead of stopping the run.
+    let method = integrators::find(method).unwrap_or(&integrators::REGISTRY[0]);
+    IntegratorEngine::new(scene, system, method, &settings, h)
+}
+
+/// Largest distance over the instants both have: positions in units of the largest coordinate,
+/// velocities in units of the largest speed. None if a number is not finite.
+///
+/// In units of the whole path's largest, so that a growing mode, which every shaken scene contains,
+/// grows in the unit as it does in the error.
+pub(super) fn distance(a: &Path, b: &Path) -> Option<f64> {
+    let over = |part: fn(&State) -> &[f64]| {
+        let (mut apart, mut unit) = (0.0_f64, 0.0_f64);
+        for (a, b) in a.states.iter().zip(&b.states) {
+            for (a, b) in part(a).iter().zip(part(b)) {
+                let (d, size) = ((a - b).abs(), a.abs().max(b.abs()));
+                if !(d.is_finite() && size.is_finite()) {
+                    return None;
+                }
+                apart = apart.max(d);
+                unit = unit.max(size);
+            }
+        }
+        Some(if apart > 0.0 { apart / unit } else { 0.0 })
+    };
+    let (x, v) = (over(|state| &state.x)?, over(|state| &state.v)?);
+    Some(x.max(v))
+}

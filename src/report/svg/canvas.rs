@@ -1,0 +1,180 @@
+//! SVG text, written element by element. Every number has one fixed decimal, so equal input gives
+//! equal bytes; there are no ids, so several figures can stand inline on one page.
+
+use std::fmt::Write;
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stroke {
+    pub colour: &'static str,
+    /// As `stroke-dasharray` takes it; empty for a solid line.
+    pub dash: &'static str,
+    /// Pixels.
+    pub width: f64,
+}
+
+/// Where a text stands relative to its point.
+#[derive(Debug, Clone, Copy)]
+pub enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// Dark grey of text.
+pub const INK: &str = "#222222";
+/// Grey of what stands back: axes, notes.
+pub const FAINT: &str = "#6b6b6b";
+/// Light grey of grid lines.
+pub const GRID: &str = "#e4e4e4";
+
+/// A drawing under way; pixels, y downward.
+#[derive(Default)]
+pub struct Canvas {
+    body: String,
+}
+
+impl Canvas {
+    pub fn line(&mut self, from: [f64; 2], to: [f64; 2], colour: &str, width: f64) {
+        let [x1, y1] = from.map(px);
+        let [x2, y2] = to.map(px);
+        self.push(&format!(
+            r#"<path d="M{x1} {y1}L{x2} {y2}" stroke="{colour}" stroke-width="{}" fill="none"/>"#,
+            px(width)
+        ));
+    }
+
+    /// `data` as in the `d` attribute; nothing if empty.
+    pub fn path(&mut self, data: &str, stroke: Stroke) {
+        if data.is_empty() {
+            return;
+        }
+        let dash = match stroke.dash {
+            "" => String::new(),
+            dash => format!(r#" stroke-dasharray="{dash}""#),
+        };
+        // Dashes with round caps would close their own gaps.
+        let cap = if stroke.dash.is_empty() {
+            "round"
+        } else {
+            "butt"
+        };
+        self.push(&format!(
+            r#"<path d="{data}" fill="none" stroke="{}" stroke-width="{}" stroke-linejoin="round" stroke-linecap="{cap}"{dash}/>"#,
+            stroke.colour,
+            px(stroke.width),
+        ));
+    }
+
+    /// A rectangle with an outline and no filling.
+    pub fn frame(&mut self, corner: [f64; 2], size: [f64; 2]) {
+        let ([x, y], [w, h]) = (corner.map(px), size.map(px));
+        self.push(&format!(
+            r#"<rect x="{x}" y="{y}" width="{w}" height="{h}" fill="none" stroke="{FAINT}"/>"#
+        ));
+    }
+
+    /// A square around `centre`, filled.
+    pub fn square(&mut self, centre: [f64; 2], half: f64, colour: &str) {
+        let [x, y] = centre.map(|c| px(c - half));
+        let side = px(2.0 * half);
+        self.push(&format!(
+            r#"<rect x="{x}" y="{y}" width="{side}" height="{side}" fill="{colour}"/>"#
+        ));
+    }
+
+    pub fn circle(&mut self, centre: [f64; 2], radius: f64, fill: &str, outline: &str) {
+        let [x, y] = centre.map(px);
+        self.push(&format!(
+            r#"<circle cx="{x}" cy="{y}" r="{}" fill="{fill}" stroke="{outline}"/>"#,
+            px(radius)
+        ));
+    }
+
+    /// A diagonal cross: a run that ended early.
+    pub fn cross(&mut self, centre: [f64; 2], half: f64, colour: &str) {
+        let [x, y] = centre;
+        self.line([x - half, y - half], [x + half, y + half], colour, 2.0);
+        self.line([x - half, y + half], [x + half, y - half], colour, 2.0);
+    }
+
+    /// `size` in pixels.
+    pub fn text(&mut self, at: [f64; 2], anchor: Anchor, size: f64, fill: &str, text: &str) {
+        let [x, y] = at.map(px);
+        self.push(&format!(
+            r#"<text x="{x}" y="{y}" text-anchor="{}" font-size="{}" fill="{fill}">{}</text>"#,
+            anchor_word(anchor),
+            px(size),
+            escape(text)
+        ));
+    }
+
+    /// Text read from bottom to top, centred on `at`.
+    pub fn text_upward(&mut self, at: [f64; 2], size: f64, fill: &str, text: &str) {
+        let [x, y] = at.map(px);
+        self.push(&format!(
+            r#"<text transform="translate({x} {y}) rotate(-90)" text-anchor="middle" font-size="{}" fill="{fill}">{}</text>"#,
+            px(size),
+            escape(text)
+        ));
+    }
+
+    fn push(&mut self, element: &str) {
+        self.body.push_str(element);
+        self.body.push('\n');
+    }
+
+    /// The whole file: white behind everything, so that dark pages show it too.
+    pub fn finish(self, width: f64, height: f64, title: &str) -> String {
+        let (width, height) = (px(width.ceil()), px(height.ceil()));
+        let mut svg = String::with_capacity(self.body.len() + 512);
+        // Writing to a String cannot fail.
+        let _ = write!(
+            svg,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" role=\"img\" \
+             font-family=\"Helvetica, Arial, sans-serif\">\n<title>{}</title>\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            escape(title),
+            self.body
+        );
+        svg
+    }
+}
+
+fn anchor_word(anchor: Anchor) -> &'static str {
+    match anchor {
+        Anchor::Start => "start",
+        Anchor::Middle => "middle",
+        Anchor::End => "end",
+    }
+}
+
+/// A coordinate with at most one decimal, never `-0`.
+pub fn px(value: f64) -> String {
+    let text = format!("{value:.1}");
+    let text = text.strip_suffix(".0").unwrap_or(&text);
+    if text == "-0" {
+        "0".into()
+    } else {
+        text.into()
+    }
+}
+
+/// Text as XML carries it; characters XML 1.0 forbids are left out.
+pub fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped += "&amp;",
+            '<' => escaped += "&lt;",
+            '>' => escaped += "&gt;",
+            '"' => escaped += "&quot;",
+            '\'' => escaped += "&#39;",
+            '\u{fffe}' | '\u{ffff}' => {}
+            c if c.is_control() => {}
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}

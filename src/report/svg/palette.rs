@@ -1,0 +1,72 @@
+//! One look per engine, the same in every figure: colours a colour-blind reader tells apart
+//! (Okabe and Ito, without the yellow that white swallows), dashes for rapier.
+
+use super::canvas::Stroke;
+use crate::outcome::{EnergyClass, Kind, Outcome, Report, Status};
+
+const COLOURS: [&str; 7] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255",
+];
+/// Tells apart the integrators that share a colour.
+const ROUNDS: [&str; 3] = ["", "1.5 2", "6 2 1 2"];
+/// The second, which mostly lies on the scene's own integrator, is thin enough to leave it in sight.
+const RAPIER: [(&str, &str, f64); 3] = [
+    ("#000000", "7 4", 1.6),
+    ("#000000", "2 4", 1.0),
+    ("#000000", "9 3 2 3", 1.6),
+];
+
+/// The look of the outcome's engine.
+pub fn stroke(report: &Report, outcome: &Outcome) -> Stroke {
+    let mut seen: Vec<&str> = Vec::new();
+    for other in report.outcomes.iter().filter(|o| o.kind == outcome.kind) {
+        if other.engine == outcome.engine {
+            break;
+        }
+        if !seen.contains(&other.engine.as_str()) {
+            seen.push(&other.engine);
+        }
+    }
+    let place = seen.len();
+    match outcome.kind {
+        Kind::Rapier => {
+            let (colour, dash, width) = RAPIER[place % RAPIER.len()];
+            Stroke {
+                colour,
+                dash,
+                width,
+            }
+        }
+        Kind::External => Stroke {
+            colour: "#000000",
+            dash: ROUNDS[place % ROUNDS.len()],
+            width: 2.4,
+        },
+        Kind::Integrator => Stroke {
+            colour: COLOURS[place % COLOURS.len()],
+            dash: ROUNDS[place / COLOURS.len() % ROUNDS.len()],
+            width: if outcome.engine == report.scene.own_method {
+                3.0
+            } else {
+                1.5
+            },
+        },
+    }
+}
+
+/// Runs that may leave the picture: unfinished ones and those that gain energy.
+pub fn is_wild(outcome: &Outcome) -> bool {
+    let class = outcome.energy.as_ref().and_then(|e| e.class);
+    outcome.status != Status::Completed || class == Some(EnergyClass::Growing)
+}
+
+/// Painted first to last: wild runs below, then the integrators with the scene's own on top, then
+/// rapier's dashes, which let what they cover show through.
+pub fn layer(report: &Report, outcome: &Outcome) -> u8 {
+    match outcome.kind {
+        Kind::Rapier => 3,
+        _ if is_wild(outcome) => 0,
+        _ if outcome.engine == report.scene.own_method => 2,
+        _ => 1,
+    }
+}

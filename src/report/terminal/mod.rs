@@ -1,0 +1,129 @@
+//! The terminal's report: what ran, a table of outcomes that fits [`WIDTH`] columns, what is
+//! notable about them, and whether the harness proved itself.
+
+mod fit;
+mod paint;
+mod table;
+
+use super::notes::notes;
+use super::verdict;
+use super::words;
+use crate::outcome::{Check, CheckStatus, EffectUse, Report};
+use fit::{clip, pad, width, wrap};
+use paint::{Tone, mark, paint};
+
+/// Visible columns no line exceeds.
+pub const WIDTH: usize = 100;
+
+/// The report with ANSI colours, which the caller's stream strips where they are not wanted. Ends
+/// with the verdict and a newline.
+pub fn render(report: &Report) -> String {
+    let mut lines = scene(report);
+    lines.extend(ledger(&report.scene.effects));
+    lines.push(String::new());
+    lines.extend(table::table(report));
+    lines.extend(remarks(report));
+    lines.extend(checks(&report.checks));
+    lines.push(String::new());
+    let verdict = wrap(&verdict::within(report, WIDTH), WIDTH, "");
+    lines.extend(verdict.iter().map(|line| mark(Tone::Strong, line)));
+    let mut text = paint(&lines.join("\n"));
+    text.push('\n');
+    text
+}
+
+fn scene(report: &Report) -> Vec<String> {
+    let scene = &report.scene;
+    let facts = format!(
+        "  {}, {}, {} s at h = {} s, {}",
+        words::plural(scene.particles, "particle"),
+        words::plural(scene.springs, "spring"),
+        words::short(scene.duration),
+        words::short(scene.timestep),
+        clip(&words::one_line(&scene.own_method), 28),
+    );
+    let room = WIDTH.saturating_sub(width(&facts)).max(12);
+    let name = clip(&words::one_line(&scene.name), room);
+    let mut lines = wrap(&(mark(Tone::Strong, &name) + &facts), WIDTH, "");
+    if let Some(description) = &scene.description {
+        lines.extend(wrap(&words::one_line(description), WIDTH, ""));
+    }
+    let truth = words::one_line(&words::truth(&report.truth));
+    lines.extend(wrap(&format!("truth    {truth}"), WIDTH, "         "));
+    lines
+}
+
+/// One line an effect: whom it acts on, how often it ran, what one evaluation costs.
+fn ledger(effects: &[EffectUse]) -> Vec<String> {
+    let longest = effects
+        .iter()
+        .map(|e| width(e.id))
+        .max()
+        .unwrap_or(0)
+        .min(24);
+    let lines = effects.iter().enumerate().map(|(i, effect)| {
+        let label = if i == 0 { "effects" } else { "" };
+        let id = pad(&clip(effect.id, longest), longest);
+        let on = format!("on {}", words::count(effect.members as u64));
+        let evaluations = words::count(effect.evaluations);
+        let cost = effect
+            .nanoseconds
+            .map(|ns| format!(", {} each", words::seconds(ns * 1e-9)))
+            .unwrap_or_default();
+        format!("{label:<7}  {id}  {on:<8}  {evaluations} evaluations{cost}")
+    });
+    lines.collect()
+}
+
+fn remarks(report: &Report) -> Vec<String> {
+    let mut lines = Vec::new();
+    for note in notes(report) {
+        let text = if note.sentence.starts_with(&note.subject) {
+            note.sentence
+        } else {
+            format!("{}: {}", note.subject, note.sentence)
+        };
+        lines.extend(wrap(&format!("- {text}"), WIDTH, "  "));
+    }
+    if !lines.is_empty() {
+        lines.insert(0, String::new());
+    }
+    lines
+}
+
+fn checks(checks: &[Check]) -> Vec<String> {
+    if checks.is_empty() {
+        return Vec::new();
+    }
+    let ids = checks.iter().map(|c| width(&words::one_line(&c.id))).max();
+    let ids = ids.unwrap_or(0).min(24);
+    let mut lines = vec![String::new()];
+    for check in checks {
+        let (tone, word) = match check.status {
+            CheckStatus::Pass => (Tone::Good, "pass"),
+            CheckStatus::Fail => (Tone::Bad, "FAIL"),
+            CheckStatus::Skip => (Tone::Dim, "skip"),
+            CheckStatus::Inconclusive => (Tone::Warn, "open"),
+        };
+        let id = pad(&clip(&words::one_line(&check.id), ids), ids);
+        let measured = measured(check);
+        let room = WIDTH - 4 - ids - width(&measured) - 6;
+        let subject = clip(&words::one_line(&check.subject), room);
+        lines.push(format!("{}  {id}  {subject}  {measured}", mark(tone, word)));
+        if check.status != CheckStatus::Pass && !check.message.is_empty() {
+            let message = format!("      {}", words::one_line(&check.message));
+            lines.extend(wrap(&message, WIDTH, "      "));
+        }
+    }
+    lines
+}
+
+/// `1.1e-16 <= 3.0e-13`
+fn measured(check: &Check) -> String {
+    match (check.measured, check.bound) {
+        (Some(m), Some(b)) if m <= b => format!("{} <= {}", words::sci(m), words::sci(b)),
+        (Some(m), Some(b)) => format!("{} > {}", words::sci(m), words::sci(b)),
+        (Some(m), None) => words::sci(m),
+        _ => String::new(),
+    }
+}

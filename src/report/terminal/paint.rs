@@ -1,0 +1,55 @@
+//! Colour for laid-out text.
+//!
+//! Layout counts columns, and escape sequences would be counted with the text. So cells carry
+//! zero-width marks (variation selectors, which [`words::one_line`](crate::report::words::one_line)
+//! takes out of foreign text) that become ANSI sequences once everything stands in its place.
+
+use anstyle::{AnsiColor, Style};
+
+#[derive(Debug, Clone, Copy)]
+pub enum Tone {
+    Good,
+    Warn,
+    Bad,
+    /// Energy that leaves: neither good nor bad.
+    Cool,
+    Dim,
+    Strong,
+}
+
+const TONES: [(Tone, Style); 6] = [
+    (Tone::Good, AnsiColor::Green.on_default()),
+    (Tone::Warn, AnsiColor::Yellow.on_default()),
+    (Tone::Bad, AnsiColor::Red.on_default()),
+    (Tone::Cool, AnsiColor::Cyan.on_default()),
+    (Tone::Dim, Style::new().dimmed()),
+    (Tone::Strong, Style::new().bold()),
+];
+
+const FIRST: u32 = 0xE0100;
+const END: char = '\u{e01ef}';
+
+/// The text between zero-width marks.
+pub fn mark(tone: Tone, text: &str) -> String {
+    if text.is_empty() {
+        return String::new();
+    }
+    let start = char::from_u32(FIRST + tone as u32).unwrap_or(END);
+    format!("{start}{text}{END}")
+}
+
+/// Marks replaced by ANSI sequences.
+pub fn paint(text: &str) -> String {
+    let mut painted = String::with_capacity(text.len() + 256);
+    for c in text.chars() {
+        let tone = (c as u32).wrapping_sub(FIRST) as usize;
+        if c == END {
+            painted += &format!("{:#}", Style::new().bold());
+        } else if let Some((_, style)) = TONES.get(tone) {
+            painted += &style.to_string();
+        } else {
+            painted.push(c);
+        }
+    }
+    painted
+}

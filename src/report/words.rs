@@ -1,0 +1,174 @@
+//! The words and numbers the human-readable reports share.
+
+use crate::outcome::{Energy, EnergyClass, Outcome, Status, Truth, TruthKind};
+
+/// What stands where there is nothing to say.
+pub const NOTHING: &str = "-";
+
+/// Two significant digits: `3.1e-4`; exact zero is `0`.
+pub fn sci(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    format!("{value:.1e}")
+}
+
+/// A number as an author would write it, at most three digits where it is not short already:
+/// `0.0005`, `5`, `3.33e-4`.
+pub fn short(value: f64) -> String {
+    let plain = format!("{value}");
+    if plain.len() <= 7 {
+        return plain;
+    }
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    let plain = format!("{rounded}");
+    if plain.len() <= 7 {
+        plain
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// Seconds with a fitting prefix and three digits: `12.3 ms`.
+pub fn seconds(value: f64) -> String {
+    let (scale, unit) = match value.abs() {
+        v if v >= 0.9995 => (1.0, "s"),
+        v if v >= 0.9995e-3 => (1e3, "ms"),
+        v if v >= 0.9995e-6 => (1e6, "µs"),
+        _ => (1e9, "ns"),
+    };
+    let scaled = value * scale;
+    let text = match scaled.abs() {
+        v if v >= 1e6 => format!("{scaled:.1e}"),
+        v if v >= 99.95 => format!("{scaled:.0}"),
+        v if v >= 9.995 => format!("{scaled:.1}"),
+        _ => format!("{scaled:.2}"),
+    };
+    format!("{text} {unit}")
+}
+
+/// Counts grouped by thousands up to a million, `1.23M` and `4.50G` beyond.
+pub fn count(value: u64) -> String {
+    match value {
+        0..=999 => value.to_string(),
+        1_000..=999_999 => format!("{},{:03}", value / 1_000, value % 1_000),
+        1_000_000..=999_999_999 => format!("{:.2}M", value as f64 / 1e6),
+        1_000_000_000..=999_999_999_999 => format!("{:.2}G", value as f64 / 1e9),
+        _ => format!("{:.1e}", value as f64),
+    }
+}
+
+/// `1 spring`, `3 springs`.
+pub fn plural(value: usize, noun: &str) -> String {
+    let ending = if value == 1 { "" } else { "s" };
+    format!("{} {noun}{ending}", count(value as u64))
+}
+
+/// The class as the JSON spells it.
+pub fn class(class: EnergyClass) -> &'static str {
+    match class {
+        EnergyClass::Bounded => "bounded",
+        EnergyClass::Drifting => "drifting",
+        EnergyClass::Dissipating => "dissipating",
+        EnergyClass::Growing => "growing",
+    }
+}
+
+/// The status as the JSON spells it.
+pub fn status(status: Status) -> &'static str {
+    match status {
+        Status::Completed => "completed",
+        Status::Diverged => "diverged",
+        Status::Failed => "failed",
+        Status::Unsupported => "unsupported",
+    }
+}
+
+/// The largest relative energy error, signed by the way the energy goes; empty without one.
+pub fn energy_error(energy: &Energy) -> String {
+    let Some(error) = energy.relative_error_max else {
+        return String::new();
+    };
+    let rises = energy.drift_per_s.is_some_and(|d| d > 0.0);
+    let sign = match energy.class {
+        _ if error == 0.0 => "",
+        Some(EnergyClass::Growing) => "+",
+        Some(EnergyClass::Dissipating) => "-",
+        Some(EnergyClass::Drifting) if rises => "+",
+        Some(EnergyClass::Drifting) => "-",
+        Some(EnergyClass::Bounded) => "±",
+        None => "",
+    };
+    format!("{sign}{}", sci(error))
+}
+
+/// An error against the truth; `floor` below ten times the truth's own bar.
+pub fn truth_error(error: f64, truth: &Truth) -> String {
+    match truth.error_bound_m {
+        Some(bar) if error < 10.0 * bar => "floor".into(),
+        _ => sci(error),
+    }
+}
+
+/// What the truth of this scene is, in one line.
+pub fn truth(truth: &Truth) -> String {
+    let mut text = match truth.kind {
+        TruthKind::ClosedForm => String::from("closed form"),
+        TruthKind::Converged => String::from("converged reference"),
+        TruthKind::None => String::from("none"),
+    };
+    if let Some(method) = &truth.method {
+        text += &format!(", {method}");
+    }
+    if let Some(bound) = truth.error_bound_m {
+        text += &format!(", good to {} m", sci(bound));
+    }
+    if let Some(horizon) = truth.horizon_s {
+        text += &format!(" up to {} s", short(horizon));
+    }
+    if let Some(reason) = &truth.reason {
+        text += &format!(" ({reason})");
+    }
+    text
+}
+
+/// Median time, with its spread where that exceeds a tenth: `12.3 ms ±14%`. A run that did not
+/// finish has no speed.
+pub fn wall_time(outcome: &Outcome) -> String {
+    let wall = match &outcome.work.wall_s {
+        Some(wall) if outcome.status == Status::Completed => wall,
+        _ => return NOTHING.into(),
+    };
+    let mut text = seconds(wall.median);
+    if let Some(mad) = wall.mad
+        && mad > 0.1 * wall.median
+    {
+        text += &format!(" ±{:.0}%", (100.0 * mad / wall.median).min(999.0));
+    }
+    text
+}
+
+/// The engine, with rapier's substeps where it takes any: `rapier, dt/4`.
+pub fn engine(outcome: &Outcome) -> String {
+    let ratio = outcome.timestep / outcome.substep;
+    if ratio.is_finite() && ratio > 1.5 && ratio < 1e6 {
+        return format!("{}, dt/{ratio:.0}", outcome.engine);
+    }
+    outcome.engine.clone()
+}
+
+/// One printable line: control characters and runs of white space become single spaces; invisible
+/// characters that could reorder or restyle the line go.
+pub fn one_line(text: &str) -> String {
+    let spaced: String = text
+        .chars()
+        .filter(|c| !is_invisible(*c))
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    spaced.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Direction overrides, and the variation selectors that `terminal::paint` uses as marks.
+fn is_invisible(c: char) -> bool {
+    matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{e0100}'..='\u{e01ef}')
+}

@@ -1,0 +1,153 @@
+//! The one error this module gives: what is wrong, where, and what to do about it.
+
+use super::locate::Fault;
+use super::shown::printable;
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use std::ops::Range;
+
+/// Why a scene cannot be used, for its author. Displays as a block whose first line begins with
+/// `file:line:column` and which shows the offending line.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}", self.render(&Renderer::plain()))]
+pub struct SceneError {
+    /// The file as it was named.
+    pub file: String,
+    /// From 1; absent where the file as a whole is at fault.
+    pub line: Option<u32>,
+    /// From 1, in characters.
+    pub column: Option<u32>,
+    /// The key at fault, as `springs[7].stiffness`; empty for the file as a whole.
+    pub key: String,
+    /// What was expected and what was found, without place and key.
+    pub message: String,
+    /// What to do; empty where the message says it all.
+    pub help: String,
+    excerpt: Option<Box<Excerpt>>,
+}
+
+/// The part of the offending line that is shown.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Excerpt {
+    line: String,
+    /// Bytes of `line`.
+    marked: Range<usize>,
+}
+
+impl SceneError {
+    /// An error about the file, not about a place in it.
+    pub(super) fn of_file(file: &str, message: String) -> SceneError {
+        SceneError {
+            file: file.to_owned(),
+            line: None,
+            column: None,
+            key: String::new(),
+            message,
+            help: String::new(),
+            excerpt: None,
+        }
+    }
+
+    /// An error at a place in `text`.
+    pub(super) fn at(file: &str, text: &str, fault: Fault) -> SceneError {
+        let mut offset = fault.offset.min(text.len());
+        while !text.is_char_boundary(offset) {
+            offset -= 1;
+        }
+        let (before, after) = text.split_at(offset);
+        let start = before.rfind(['\n', '\r']).map_or(0, |i| i + 1);
+        let end = offset + after.find(['\n', '\r']).unwrap_or(after.len());
+        // "\r\n" ends one line, a lone "\r" ends one too.
+        let bytes = &before.as_bytes()[..start];
+        let breaks = (0..start)
+            .filter(|&i| bytes[i] == b'\n' || bytes[i] == b'\r' && bytes.get(i + 1) != Some(&b'\n'))
+            .count();
+        let column = text[start..offset].chars().count();
+        SceneError {
+            line: u32::try_from(breaks + 1).ok(),
+            column: u32::try_from(column + 1).ok(),
+            key: fault.key,
+            help: fault.help,
+            excerpt: Some(Box::new(excerpt(&text[start..offset], &text[offset..end]))),
+            ..SceneError::of_file(file, fault.message)
+        }
+    }
+
+    /// `file:line:column: key: message` on one line, without excerpt and help.
+    pub fn headline(&self) -> String {
+        let mut headline = self.file.clone();
+        for number in [self.line, self.column].into_iter().flatten() {
+            headline.push_str(&format!(":{number}"));
+        }
+        if !self.key.is_empty() {
+            headline.push_str(&format!(": {}", self.key));
+        }
+        format!("{headline}: {}", self.message)
+    }
+
+    /// The whole block, by a renderer of the caller's choice: plain or styled.
+    pub fn render(&self, renderer: &Renderer) -> String {
+        let title = Level::ERROR.no_name().primary_title(self.headline());
+        let mut report = Group::with_title(title);
+        if let (Some(excerpt), Some(line)) = (&self.excerpt, self.line) {
+            report = report.element(
+                Snippet::source(&excerpt.line)
+                    .line_start(line as usize)
+                    .annotation(AnnotationKind::Primary.span(excerpt.marked.clone())),
+            );
+        }
+        if !self.help.is_empty() {
+            report = report.element(Level::HELP.message(&self.help));
+        }
+        renderer.render(&[report])
+    }
+}
+
+/// Longest part of a line shown before and after the marked place, in characters.
+const AROUND: usize = 70;
+
+/// Cuts the line to what fits, and control characters to what a terminal may be shown.
+fn excerpt(before: &str, after: &str) -> Excerpt {
+    let mut line = String::new();
+    if let Some((cut, _)) = before.char_indices().rev().nth(AROUND) {
+        line.push_str("… ");
+        line.extend(before[cut..].chars().skip(1).map(printable));
+    } else {
+        line.extend(before.chars().map(printable));
+    }
+    let start = line.len();
+    let marked = token(after);
+    line.extend(after.chars().take(AROUND).map(printable));
+    let end = start
+        + line[start..]
+            .chars()
+            .take(marked)
+            .map(char::len_utf8)
+            .sum::<usize>();
+    if after.chars().nth(AROUND).is_some() {
+        line.push_str(" …");
+    }
+    Excerpt {
+        line,
+        marked: start..end,
+    }
+}
+
+/// Characters of the value or key that begins here; a bracket or an indicator is one.
+fn token(text: &str) -> usize {
+    let mut chars = text.chars();
+    match chars.next() {
+        None => 0,
+        Some('[' | ']' | '{' | '}' | ',' | ':') => 1,
+        Some(quote @ ('"' | '\'')) => chars
+            .take(AROUND)
+            .position(|c| c == quote)
+            .map_or(1, |inner| inner + 2),
+        Some(_) => {
+            1 + chars
+                .take_while(|c| {
+                    !c.is_whitespace() && !matches!(c, ',' | ':' | '[' | ']' | '{' | '}')
+                })
+                .count()
+        }
+    }
+}

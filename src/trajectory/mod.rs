@@ -1,0 +1,32 @@
+//! What a run leaves behind: a thinned record in memory, and files of every step.
+
+mod csv;
+mod npz;
+mod record;
+
+pub use csv::CsvWriter;
+pub use npz::{NpzWriter, Scratch};
+pub use record::{Recorder, Trajectory, stride};
+
+/// A trajectory file could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum SaveError {
+    #[error("could not write the trajectory: {0}")]
+    Io(#[from] std::io::Error),
+    #[error("could not pack the trajectory: {0}")]
+    Zip(#[from] zip::result::ZipError),
+}
+
+/// The steps a file of every `every`-th step holds: those, and the last.
+#[derive(Debug, Clone, Copy)]
+struct Selection {
+    every: u64,
+    steps: u64,
+}
+
+impl Selection {
+    fn next(self, from: u64) -> Option<u64> {
+        let due = from.div_ceil(self.every) * self.every;
+        (from <= self.steps).then(|| due.min(self.steps))
+    }
+}

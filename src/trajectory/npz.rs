@@ -1,0 +1,129 @@
+//! Every step for NumPy: `t` (T), `x` (T, N, 3), `v` (T, N, 3), doubles, in one NPZ.
+
+use super::{SaveError, Selection};
+use crate::engines::Observer;
+use crate::system::State;
+use npyz::WriterBuilder;
+use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use zip::write::SimpleFileOptions;
+
+/// Where an array waits until its length is known.
+pub trait Scratch: Read + Write + Seek {}
+impl<T: Read + Write + Seek> Scratch for T {}
+
+/// Collects rows in scratch files as a run goes on, since a run's length is known only at its end.
+pub struct NpzWriter<S: Scratch> {
+    x: BufWriter<S>,
+    v: BufWriter<S>,
+    rows: u64,
+    last_step: u64,
+    particles: usize,
+    selection: Selection,
+    timestep: f64,
+    failed: Option<std::io::Error>,
+}
+
+impl<S: Scratch> NpzWriter<S> {
+    /// Every `every`-th of `steps` steps of `particles` particles, and the last.
+    /// The scratch streams are empty.
+    pub fn new(
+        scratch: [S; 2],
+        particles: usize,
+        steps: u64,
+        every: u64,
+        timestep: f64,
+    ) -> Self {
+        let [x, v] = scratch.map(BufWriter::new);
+        Self {
+            x,
+            v,
+            rows: 0,
+            last_step: 0,
+            particles,
+            selection: Selection { every, steps },
+            timestep,
+            failed: None,
+        }
+    }
+
+    /// Writes the archive to `out`.
+    ///
+    /// # Errors
+    /// The first failure of any stream, whenever it happened.
+    pub fn finish<W: Write + Seek>(self, out: W) -> Result<W, SaveError> {
+        if let Some(error) = self.failed {
+            return Err(error.into());
+        }
+        let rows = self.rows;
+        let (every, last_step, timestep) = (self.selection.every, self.last_step, self.timestep);
+        let time = |row| {
+            let step = if row + 1 < rows { row * every } else { last_step };
+            Ok(step as f64 * timestep)
+        };
+        let shape = [rows, self.particles as u64, 3];
+        let mut archive = zip::ZipWriter::new(out);
+        // No clock in the archive: two runs give the same bytes.
+        let options = SimpleFileOptions::default()
+            .compression_method(zip::CompressionMethod::Stored)
+            .last_modified_time(zip::DateTime::default())
+            .large_file(true);
+        archive.start_file("t.npy", options)?;
+        write_array(&mut archive, &[rows], (0..rows).map(time))?;
+        for (name, scratch) in [("x.npy", self.x), ("v.npy", self.v)] {
+            let mut scratch = scratch
+                .into_inner()
+                .map_err(std::io::IntoInnerError::into_error)?;
+            scratch.seek(SeekFrom::Start(0))?;
+            archive.start_file(name, options)?;
+            let count = rows * self.particles as u64 * 3;
+            write_array(&mut archive, &shape, doubles(BufReader::new(scratch), count))?;
+        }
+        Ok(archive.finish()?)
+    }
+}
+
+/// One array in NPY format.
+fn write_array(
+    out: impl Write,
+    shape: &[u64],
+    values: impl Iterator<Item = std::io::Result<f64>>,
+) -> std::io::Result<()> {
+    let mut array = npyz::WriteOptions::<f64>::new()
+        .default_dtype()
+        .shape(shape)
+        .writer(BufWriter::new(out))
+        .begin_nd()?;
+    for value in values {
+        array.push(&value?)?;
+    }
+    array.finish()
+}
+
+fn doubles(mut from: impl Read, count: u64) -> impl Iterator<Item = std::io::Result<f64>> {
+    (0..count).map(move |_| {
+        let mut bytes = [0; 8];
+        from.read_exact(&mut bytes)?;
+        Ok(f64::from_le_bytes(bytes))
+    })
+}
+
+fn append(out: &mut impl Write, values: &[f64]) -> std::io::Result<()> {
+    values
+        .iter()
+        .try_for_each(|value| out.write_all(&value.to_le_bytes()))
+}
+
+impl<S: Scratch> Observer for NpzWriter<S> {
+    fn next(&self, from: u64) -> Option<u64> {
+        self.selection.next(from)
+    }
+
+    fn observe(&mut self, step: u64, state: &State) {
+        if self.failed.is_none() {
+            self.rows += 1;
+            self.last_step = step;
+            let written = append(&mut self.x, &state.x).and_then(|()| append(&mut self.v, &state.v));
+            self.failed = written.err();
+        }
+    }
+}

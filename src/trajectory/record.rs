@@ -1,0 +1,200 @@
+//! The record every measure reads: bounded in memory however long the run.
+
+use crate::engines::Observer;
+use crate::system::{State, Work};
+
+/// At most this many instants, both ends included.
+const INSTANTS: u64 = 2_000;
+/// And at most about this much memory, bytes: large scenes are recorded at fewer instants.
+const BUDGET: u64 = 10 << 20;
+/// But never fewer instants than this.
+const FEWEST: u64 = 50;
+
+/// States at evenly spaced steps, and beside each the next step's state, so that a thinned run can
+/// still be replayed step by step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory {
+    timestep: f64,
+    dim: usize,
+    steps: Vec<u64>,
+    x: Vec<f64>,
+    v: Vec<f64>,
+    work: Vec<Work>,
+    /// Step numbers of the states in `next_x`, `next_v`: each one past an instant's.
+    next_steps: Vec<u64>,
+    next_x: Vec<f64>,
+    next_v: Vec<f64>,
+}
+
+/// Steps from one recorded instant to the next for a run of `steps` steps of `particles` particles.
+pub fn stride(steps: u64, particles: usize) -> u64 {
+    let bytes = 2 * 6 * 8 * particles.max(1) as u64;
+    let instants = (BUDGET / bytes).clamp(FEWEST, INSTANTS);
+    steps.div_ceil(instants - 1).max(1)
+}
+
+impl Trajectory {
+    /// Recorded instants.
+    pub fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.steps.is_empty()
+    }
+
+    /// Coordinates of a state, 3 a particle.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// The step number of instant `k`.
+    pub fn step(&self, k: usize) -> u64 {
+        self.steps[k]
+    }
+
+    /// The time of instant `k`, s.
+    pub fn time(&self, k: usize) -> f64 {
+        self.steps[k] as f64 * self.timestep
+    }
+
+    /// Positions at instant `k`, length [`dim`](Self::dim).
+    pub fn x(&self, k: usize) -> &[f64] {
+        &self.x[k * self.dim..(k + 1) * self.dim]
+    }
+
+    /// Velocities at instant `k`.
+    pub fn v(&self, k: usize) -> &[f64] {
+        &self.v[k * self.dim..(k + 1) * self.dim]
+    }
+
+    /// Work done up to instant `k`.
+    pub fn work(&self, k: usize) -> Work {
+        self.work[k]
+    }
+
+    fn push(&mut self, step: u64, state: &State) {
+        self.steps.push(step);
+        self.x.extend_from_slice(&state.x);
+        self.v.extend_from_slice(&state.v);
+        self.work.push(state.work);
+    }
+
+    /// Positions and velocities one step after instant `k`, where they were recorded.
+    pub fn following(&self, k: usize) -> Option<(&[f64], &[f64])> {
+        let wanted = self.steps[k] + 1;
+        if self.steps.get(k + 1) == Some(&wanted) {
+            return Some((self.x(k + 1), self.v(k + 1)));
+        }
+        let at = self.next_steps.binary_search(&wanted).ok()? * self.dim;
+        let range = at..at + self.dim;
+        Some((&self.next_x[range.clone()], &self.next_v[range]))
+    }
+}
+
+/// Fills a [`Trajectory`] while a run goes on.
+#[derive(Debug)]
+pub struct Recorder {
+    stride: u64,
+    last: u64,
+    trajectory: Trajectory,
+}
+
+impl Recorder {
+    /// For `steps` steps of a system of `dim` coordinates.
+    pub fn new(steps: u64, dim: usize, timestep: f64) -> Self {
+        Self {
+            stride: stride(steps, dim / 3),
+            last: steps,
+            trajectory: Trajectory {
+                timestep,
+                dim,
+                steps: Vec::new(),
+                x: Vec::new(),
+                v: Vec::new(),
+                work: Vec::new(),
+                next_steps: Vec::new(),
+                next_x: Vec::new(),
+                next_v: Vec::new(),
+            },
+        }
+    }
+
+    pub fn finish(self) -> Trajectory {
+        self.trajectory
+    }
+}
+
+impl Observer for Recorder {
+    fn next(&self, from: u64) -> Option<u64> {
+        if from > self.last {
+            return None;
+        }
+        // Instants are multiples of the stride and the last step; each one's successor is wanted.
+        let after_instant = from % self.stride == 1;
+        let due = if after_instant || from == 0 {
+            from
+        } else {
+            from.div_ceil(self.stride) * self.stride
+        };
+        Some(due.min(self.last))
+    }
+
+    fn observe(&mut self, step: u64, state: &State) {
+        let t = &mut self.trajectory;
+        let successor = self.stride > 1 && step % self.stride == 1 && step != self.last;
+        if successor {
+            t.next_steps.push(step);
+            t.next_x.extend_from_slice(&state.x);
+            t.next_v.extend_from_slice(&state.v);
+        } else {
+            t.push(step, state);
+        }
+    }
+
+    fn observe_diverged(&mut self, step: u64, state: &State) {
+        self.trajectory.push(step, state);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(steps: u64, particles: usize) -> Trajectory {
+        let mut recorder = Recorder::new(steps, 3 * particles, 0.5);
+        let mut due = recorder.next(0);
+        for step in 0..=steps {
+            if due == Some(step) {
+                let state = State::new(vec![step as f64; 3 * particles], vec![0.0; 3 * particles]);
+                recorder.observe(step, &state);
+                due = recorder.next(step + 1);
+            }
+        }
+        recorder.finish()
+    }
+
+    #[test]
+    fn both_ends_and_every_successor_are_kept_within_the_bound() {
+        for steps in [1, 2, 3, 1998, 1999, 2000, 2001, 3998, 3999, 10_007] {
+            let t = record(steps, 1);
+            assert!(t.len() as u64 <= INSTANTS, "{steps}: {}", t.len());
+            assert_eq!((t.step(0), t.step(t.len() - 1)), (0, steps));
+            for k in 0..t.len() {
+                assert_eq!(t.x(k)[0], t.step(k) as f64);
+                match t.following(k) {
+                    Some((x, _)) => assert_eq!(x[0], t.step(k) as f64 + 1.0, "{steps} {k}"),
+                    None => assert_eq!(t.step(k), steps, "{steps}: no successor at {k}"),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn large_scenes_are_thinned_further() {
+        let t = record(4_000, 1_000);
+        let bytes = (t.x.len() + t.v.len() + t.next_x.len() + t.next_v.len()) * 8;
+        assert!(bytes as u64 <= BUDGET + 2 * 48_000, "{bytes}");
+        assert!(t.len() as u64 >= FEWEST);
+    }
+}

@@ -1,0 +1,219 @@
+//! What each method does to the linear oscillator, against the formulas of its row and the
+//! published limits. Every law has a mutant it must kill.
+
+mod common;
+use common::mutants::{self, Step, mutant};
+use common::{Build, Oscillator, advance, energy, method, one_step_matrix, own, spectral_radius};
+use springcheck::integrators::{EnergyLaw, Method, REGISTRY, Stable};
+use springcheck::system::State;
+
+const W: f64 = 7.0;
+
+
+/// z = h w values inside every explicit limit but the smallest one's.
+const STEPS: [f64; 5] = [0.01, 0.1, 0.5, 1.0, 1.5];
+
+/// The energy law of the row holds for what `build` makes.
+fn energy_law(row: &Method, build: Build) -> Result<(), String> {
+    let system = Oscillator { w: W, zeta: 0.0 };
+    for z in STEPS {
+        let mut integrator = build();
+        let mut state = State::new(vec![0.5], vec![0.0]);
+        let start = energy(&system, &state);
+        match row.oscillator.energy {
+            EnergyLaw::Factor { factor, .. } => {
+                // The maps are normal matrices: the factor holds at every step, whatever the phase.
+                for step in 0..50 {
+                    let before = energy(&system, &state);
+                    advance(integrator.as_mut(), &system, z / W, 1, &mut state);
+                    let found = energy(&system, &state) / before;
+                    // A step and two energies: about 20 roundings of one half eps, worst seen 5 eps.
+                    let bound = 12.0 * f64::EPSILON * factor(z).max(1.0);
+                    if (found - factor(z)).abs() > bound {
+                        return Err(format!(
+                            "{}: z = {z}, step {step}: factor {found}, law {}",
+                            row.id,
+                            factor(z)
+                        ));
+                    }
+                }
+            }
+            EnergyLaw::Band { band, .. } => {
+                let (lo, hi) = band(z);
+                let (mut least, mut most) = (1.0_f64, 1.0_f64);
+                for _ in 0..20_000 {
+                    advance(integrator.as_mut(), &system, z / W, 1, &mut state);
+                    let found = energy(&system, &state) / start;
+                    (least, most) = (least.min(found), most.max(found));
+                }
+                // 20,000 steps of rounding: a random walk of eps, to eight standard deviations.
+                let rounding = 8.0 * f64::EPSILON * 20_000_f64.sqrt();
+                if least < lo - rounding || most > hi + rounding {
+                    return Err(format!("{}: z = {z}: [{least}, {most}] leaves [{lo}, {hi}]", row.id));
+                }
+                // The orbit fills the band: a law three times too wide would be no law.
+                if (hi - lo) > 3.0 * (most - least) {
+                    return Err(format!("{}: z = {z}: [{least}, {most}] in [{lo}, {hi}]", row.id));
+                }
+            }
+            EnergyLaw::Bounded => {
+                let mut excursion = [0.0_f64; 2];
+                for half in &mut excursion {
+                    for _ in 0..20_000 {
+                        advance(integrator.as_mut(), &system, z / W, 1, &mut state);
+                        *half = half.max((energy(&system, &state) / start - 1.0).abs());
+                    }
+                }
+                // An invariant curve is filled within 1 % in 20,000 steps; drift would double it.
+                let rounding = 8.0 * f64::EPSILON * 40_000_f64.sqrt();
+                let grown = excursion[1] > 1.01 * excursion[0] + rounding;
+                if grown || excursion[0] > 2.0 {
+                    return Err(format!("{}: z = {z}: excursions {excursion:?}", row.id));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn every_method_obeys_its_energy_law() {
+    for row in REGISTRY {
+        energy_law(row, &own(row)).unwrap();
+    }
+}
+
+#[test]
+fn the_energy_law_kills_mutants() {
+    let cases: [(&str, Step); 9] = [
+        ("explicit_euler", mutants::euler_drifting_with_the_new_velocity),
+        ("symplectic_euler", mutants::euler_drifting_with_the_old_velocity),
+        ("symplectic_euler", mutants::symplectic_euler_at_half_the_step),
+        ("midpoint", mutants::midpoint_drifting_with_the_end_velocity),
+        ("velocity_verlet", mutants::verlet_with_a_stale_force),
+        ("rk4", mutants::rk4_with_a_wrong_weight),
+        ("yoshida4", mutants::rk4_with_swapped_weights),
+        ("pefrl", mutants::verlet_with_a_stale_force),
+        ("implicit_euler", mutants::frozen),
+    ];
+    for (id, step) in cases {
+        assert!(energy_law(method(id), &mutant(step)).is_err(), "{id}");
+    }
+    // Any other method's energy law is wrong for implicit midpoint's.
+    assert!(energy_law(method("implicit_midpoint"), &own(method("implicit_euler"))).is_err());
+}
+
+/// Largest z such that no smaller one is unstable: a scan, then bisection.
+fn measured_limit(build: Build, zeta: f64, upto: f64) -> Option<f64> {
+    // Spectral radius above 1 by more than rounding; on the boundary itself it grows like the
+    // square root of what z is beyond it, or linearly.
+    let unstable = |z: f64| spectral_radius(one_step_matrix(build, W, zeta, z)) > 1.0 + 1e-12;
+    let cells = 4_000;
+    let first = (1..=cells)
+        .map(|i| upto * f64::from(i) / f64::from(cells))
+        .find(|&z| unstable(z))?;
+    let (mut lo, mut hi) = (first - upto / f64::from(cells), first);
+    while hi - lo > 1e-9 {
+        let middle = 0.5 * (lo + hi);
+        if unstable(middle) {
+            hi = middle;
+        } else {
+            lo = middle;
+        }
+    }
+    Some(lo)
+}
+
+/// The stability of the row is what `build` makes shows, undamped.
+fn limit_law(row: &Method, build: Build) -> Result<(), String> {
+    let found = measured_limit(build, 0.0, 10.0);
+    let holds = match (row.oscillator.stable, found) {
+        // The limits are published to six decimals.
+        (Stable::Below(limit), Some(z)) => (z - limit).abs() < 1e-6,
+        // |R| - 1 is z²/2 or z⁴/8 on the imaginary axis: beyond 1e-12 from the third cell on.
+        (Stable::Never, Some(z)) => z < 0.01,
+        (Stable::Always, None) => true,
+        _ => false,
+    };
+    if holds {
+        Ok(())
+    } else {
+        Err(format!(
+            "{}: stated {:?}, measured {found:?}",
+            row.id, row.oscillator.stable
+        ))
+    }
+}
+
+#[test]
+fn every_method_is_stable_exactly_as_far_as_stated() {
+    for row in REGISTRY {
+        limit_law(row, &own(row)).unwrap();
+    }
+}
+
+#[test]
+fn the_limit_law_kills_mutants() {
+    for (id, step) in [
+        (
+            "symplectic_euler",
+            mutants::symplectic_euler_at_half_the_step as Step,
+        ),
+        ("velocity_verlet", mutants::verlet_with_a_stale_force),
+        ("rk4", mutants::rk4_with_swapped_weights),
+        ("yoshida4", mutants::rk4_with_a_wrong_weight),
+        ("explicit_euler", mutants::euler_drifting_with_the_new_velocity),
+        ("implicit_euler", mutants::euler_drifting_with_the_old_velocity),
+    ] {
+        assert!(limit_law(method(id), &mutant(step)).is_err(), "{id}");
+    }
+}
+
+/// Published limits with damping ratio ζ; None is no limit.
+const DAMPED: [(&str, [Option<f64>; 4]); 9] = [
+    ("explicit_euler", [Some(0.2), Some(1.0), Some(2.0), Some(0.535_898)]),
+    ("midpoint", [Some(1.049_755), Some(2.0), Some(2.0), Some(0.535_898)]),
+    ("heun", [Some(1.049_755), Some(2.0), Some(2.0), Some(0.535_898)]),
+    ("ralston", [Some(1.049_755), Some(2.0), Some(2.0), Some(0.535_898)]),
+    ("rk4", [Some(2.950_853), Some(2.622_542), Some(2.785_294), Some(0.746_317)]),
+    ("symplectic_euler", [Some(1.809_975), Some(1.236_068), Some(0.828_427), Some(0.472_136)]),
+    (
+        "symplectic_euler_drift_first",
+        [Some(1.809_975), Some(1.236_068), Some(0.828_427), Some(0.472_136)],
+    ),
+    // With the exact flow the kick saturates at x / (2 ζ w), so overdamped the limit is 4 ζ.
+    ("velocity_verlet", [Some(2.013_432), Some(2.399_357), Some(4.002_670), Some(8.0)]),
+    ("implicit_euler", [None; 4]),
+];
+
+fn damped_limit_law(id: &str, limits: [Option<f64>; 4], build: Build) -> Result<(), String> {
+    for (zeta, limit) in [0.1, 0.5, 1.0, 2.0].into_iter().zip(limits) {
+        let found = measured_limit(build, zeta, 12.0);
+        let holds = match (found, limit) {
+            (Some(found), Some(limit)) => (found - limit).abs() < 1e-6,
+            (None, None) => true,
+            _ => false,
+        };
+        if !holds {
+            return Err(format!("{id}, ζ = {zeta}: stated {limit:?}, measured {found:?}"));
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn limits_with_damping_are_the_published_ones() {
+    for (id, limits) in DAMPED {
+        damped_limit_law(id, limits, &own(method(id))).unwrap();
+    }
+}
+
+#[test]
+fn limits_with_damping_kill_mutants() {
+    let verlet = DAMPED[7];
+    let explicit = mutant(mutants::verlet_with_explicit_damping);
+    assert!(damped_limit_law(verlet.0, verlet.1, &explicit).is_err());
+    let symplectic = DAMPED[5];
+    let half = mutant(mutants::symplectic_euler_at_half_the_step);
+    assert!(damped_limit_law(symplectic.0, symplectic.1, &half).is_err());
+}

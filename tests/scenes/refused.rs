@@ -1,0 +1,291 @@
+//! Bad scenes, each with the exact place of its error. `»` marks the place and is taken out before
+//! parsing; the last column is what the message must say.
+
+use super::{METHODS, complete, parse};
+use springcheck::scene::{self, SceneError, limits};
+use std::time::{Duration, Instant};
+
+type Row = (&'static str, &'static str, &'static [&'static str]);
+
+/// Completed with a solver and two particles, 0 fixed and 1 free, where the row has none.
+#[rustfmt::skip]
+const PARTS: &[Row] = &[
+    // Keys.
+    ("misspelt", "springs: [{particle_ids: [0, 1], »stifness: 20}]", &["springs[0]", "unknown key `stifness`", "did you mean `stiffness`?"]),
+    ("unknown", "»colour: red", &["unknown key `colour`", "the keys here are name, description"]),
+    ("another format's", "springs: [{particle_ids: [0, 1], »k: 20}]", &["did you mean `stiffness`?"]),
+    ("misplaced", "»gravity: -9.81", &["`gravity` stands under `solver`"]),
+    ("case", "»Springs: []", &["did you mean `springs`?"]),
+    ("duplicate", "duration: 5\nname: a\n»duration: 6", &["duration", "given twice"]),
+    ("duplicate inside", "springs:\n- particle_ids: [0, 1]\n  stiffness: 1\n  »stiffness: 2", &["springs[0].stiffness", "given twice"]),
+    ("merge", "plot:\n  »<<: {dof: 1}\n  particle_id: 0", &["plot", "merge keys", "alias a whole value"]),
+    ("later", "springs: []\n»bending: []", &["bending", "not supported yet"]),
+    ("later, colliders", "»colliders: []", &["not supported yet"]),
+    ("later, objects", "»objects: [{type: cloth}]", &["not supported yet"]),
+    ("later, rods", "»rods: []", &["not supported yet"]),
+    ("later, strain", "»strain_limit: 0.1", &["not supported yet"]),
+    ("later, expect", "»expect: {}", &["not supported yet"]),
+    ("later, moving air", "wind: {direction: [1, 0, 0], »velocity: 3}", &["wind.velocity", "not supported yet"]),
+    ("list as key", "»[1, 2]: 3", &["expected a key, found a list"]),
+    ("empty key", "»'': 3", &["unknown key ``"]),
+    ("number as key", "»1: 3", &["unknown key `1`"]),
+    // Solver.
+    ("no type", "solver: »{timestep: 0.1}", &["solver.type", "missing", "symplectic_euler"]),
+    ("no timestep", "solver: »{type: rk4}", &["solver.timestep", "missing"]),
+    ("unknown integrator", "solver: {type: »rk5, timestep: 0.1}", &["solver.type", "unknown integrator `rk5`", "explicit_euler, symplectic_euler, midpoint, rk4", "did you mean `rk4`?"]),
+    ("far from any integrator", "solver: {type: »magic, timestep: 0.1}", &["unknown integrator `magic`", "expected one of"]),
+    ("type is a list", "solver: {type: »[rk4], timestep: 0.1}", &["solver.type", "expected text", "found a list"]),
+    ("type is a number", "solver: {type: »4, timestep: 0.1}", &["expected text", "found the number `4`"]),
+    ("timestep 0", "solver: {type: rk4, timestep: »0}", &["expected a positive number (s), found 0"]),
+    ("timestep negative", "solver: {type: rk4, timestep: »-0.1}", &["expected a positive number (s), found -0.1"]),
+    ("timestep .nan", "solver: {type: rk4, timestep: ».nan}", &["expected a finite number (s), found NaN"]),
+    ("timestep above the duration", "duration: 2\nsolver: {type: rk4, timestep: »2.5}", &["expected at most the duration (2.0 s), found 2.5"]),
+    ("timestep above the default duration", "solver: {type: rk4, timestep: »6}", &["expected at most the duration (5.0 s)"]),
+    ("too many steps", "duration: 100\nsolver: {type: rk4, timestep: »1e-8}", &["at most 1e9 steps", "larger steps"]),
+    ("underflowing timestep", "solver: {type: rk4, timestep: »1e-400}", &["expected a positive number"]),
+    ("tiny timestep", "solver: {type: rk4, timestep: »1e-40}", &["at least 1e-30"]),
+    ("gravity infinite", "solver: {type: rk4, timestep: 0.1, gravity: »-.inf}", &["solver.gravity", "finite"]),
+    ("tolerance 0", "solver: {type: rk4, timestep: 0.1, tolerance: »0}", &["solver.tolerance", "positive"]),
+    ("solver is a list", "solver: »[rk4]", &["solver", "expected a mapping with `type` and `timestep`, found a list"]),
+    ("solver is text", "solver: »rk4", &["found the text \"rk4\""]),
+    // The scene as a whole.
+    ("duration 0", "duration: »0", &["duration", "positive"]),
+    ("duration infinite", "duration: ».inf", &["finite"]),
+    ("up", "up: »w", &["unknown choice `w`", "expected one of z, x, y"]),
+    ("damping model", "damping_model: »isotropc", &["did you mean `isotropic`?"]),
+    ("empty name", "name: »''", &["name", "expected a name"]),
+    ("escape sequence in a message", "duration: »\"\\e[2J\"", &["the text `\u{fffd}[2J`"]),
+    ("name with control characters", "name: »\"a\\e[2J\"", &["name", "control"]),
+    ("name is a number", "name: »12", &["in quotes"]),
+    ("description with control characters", "description: »\"a\\e[2J\"", &["description", "control"]),
+    // Particles.
+    ("no particles", "particles: »[]", &["particles", "at least one particle"]),
+    ("all fixed", "particles: »[{pos: [0, 0, 0], fixed: true}]", &["at least one free particle"]),
+    ("all fixed, block", "particles:\n»- {pos: [0, 0, 0], fixed: true}\n- {pos: [0, 0, 0], fixed: true}", &["at least one free particle"]),
+    ("particles is a mapping", "particles: »{pos: [0, 0, 0]}", &["expected a list, found a mapping"]),
+    ("particle is null", "particles: [»~]", &["particles[0]", "found nothing"]),
+    ("particle is a list", "particles: [»[0, 0, 0]]", &["expected a particle", "found a list"]),
+    ("no pos", "particles: [»{mass: 1}]", &["particles[0].pos", "missing"]),
+    ("pos of two", "particles: [{pos: »[0, 1], mass: 1}]", &["particles[0].pos", "a list of 3 numbers, found 2"]),
+    ("pos of four", "particles: [{pos: »[0, 1, 2, 3], mass: 1}]", &["a list of 3 numbers, found 4"]),
+    ("pos is a number", "particles: [{pos: »7, mass: 1}]", &["expected a list of 3 numbers, found the number `7`"]),
+    ("pos with a hole", "particles: [{pos: [0, »~, 2], mass: 1}]", &["particles[0].pos[1]", "expected a number, found nothing"]),
+    ("pos with text", "particles: [{pos: [0, »x, 2], mass: 1}]", &["expected a number, found the text `x`", "such as 2, 2.5 or 1e-3"]),
+    ("pos infinite", "particles: [{pos: [0, 1, ».inf], mass: 1}]", &["particles[0].pos[2]", "finite"]),
+    ("pos far away", "particles: [{pos: [0, »1e150, 2], mass: 1}]", &["at most 1e12"]),
+    ("vel NaN", "particles: [{pos: [0, 1, 2], vel: [».nan, 0, 0], mass: 1}]", &["particles[0].vel[0]", "finite"]),
+    ("moving but fixed", "particles: [{pos: [0, 1, 2], vel: »[1, 0, 0], fixed: true}]", &["no velocity on a fixed particle", "remove `vel`"]),
+    ("fixed in quotes", "particles: [{pos: [0, 1, 2], mass: 1, fixed: »'true'}]", &["expected true or false, found the text `true`", "without quotes"]),
+    ("fixed is yes", "particles: [{pos: [0, 1, 2], mass: 1, fixed: »yes}]", &["write true or false"]),
+    ("fixed is 1", "particles: [{pos: [0, 1, 2], mass: 1, fixed: »1}]", &["expected true or false, found the number `1`"]),
+    ("no mass", "particles: [»{pos: [0, 1, 2]}]", &["particles[0].mass", "missing", "free particle"]),
+    ("mass 0", "particles: [{pos: [0, 1, 2], mass: »0}]", &["particles[0].mass", "expected a positive number (kg), found 0"]),
+    ("mass 0 on a fixed one", "particles: [{pos: [0, 1, 2], fixed: true, mass: »0.}]", &["positive number (kg), found 0.0"]),
+    ("mass negative", "particles:\n  - pos: [0, 1, 2]\n    mass: »-2", &["positive number (kg), found -2"]),
+    ("mass NaN", "particles: [{pos: [0, 1, 2], mass: ».nan}]", &["finite number (kg), found NaN"]),
+    ("mass infinite", "particles: [{pos: [0, 1, 2], mass: ».inf}]", &["finite number (kg), found inf"]),
+    ("mass huge", "particles: [{pos: [0, 1, 2], mass: »1e200}]", &["at most 1e30"]),
+    ("mass beyond a double", "particles: [{pos: [0, 1, 2], mass: »1e400}]", &["too large for a double"]),
+    ("mass in quotes", "particles: [{pos: [0, 1, 2], mass: »\"2\"}]", &["expected a number, found the text `2`", "remove the quotes"]),
+    ("mass octal or not", "particles: [{pos: [0, 1, 2], mass: »010}]", &["the text `010`", "a leading zero can mean octal: write 10, or 0o10"]),
+    ("mass with a comma", "particles:\n- pos: [0, 1, 2]\n  mass: »0,5", &["a point, not a comma"]),
+    ("mass with a unit", "particles: [{pos: [0, 1, 2], mass: »2 kg}]", &["the text `2 kg`"]),
+    ("mass is true", "particles: [{pos: [0, 1, 2], mass: »true}]", &["expected a number, found boolean `true`"]),
+    ("mass is a list", "particles: [{pos: [0, 1, 2], mass: »[1]}]", &["expected a number, found a list"]),
+    ("mass with a tag", "particles: [{pos: [0, 1, 2], mass: »!kg 2}]", &["found a value with a YAML tag"]),
+    ("radius negative", "particles: [{pos: [0, 1, 2], mass: 1, radius: »-1}]", &["particles[0].radius", "at least 0 (m), found -1"]),
+    ("drag negative", "particles: [{pos: [0, 1, 2], mass: 1, drag: »-1}]", &["particles[0].drag", "at least 0 (N s/m), found -1"]),
+    ("the alias's definition", "particles:\n- {pos: [0, 0, 0], mass: »&m -1}\n- {pos: [0, 0, 0], mass: *m}", &["particles[0].mass"]),
+    ("unknown anchor", "particles: [»*nobody]", &["not valid YAML: unknown anchor"]),
+    // Springs.
+    ("no ends", "springs: [»{stiffness: 1}]", &["springs[0].particle_ids", "missing"]),
+    ("three ends", "springs: [{particle_ids: »[0, 1, 2], stiffness: 1}]", &["a list of 2 numbers, found 3"]),
+    ("missing particle", "springs: [{particle_ids: [0, »7], stiffness: 1}]", &["springs[0].particle_ids[1]", "a particle from 0 to 1, found 7", "count from 0"]),
+    ("id negative", "springs: [{particle_ids: [»-1, 0], stiffness: 1}]", &["particle_ids[0]", "found -1"]),
+    ("id with a fraction", "springs: [{particle_ids: [0, »0.5], stiffness: 1}]", &["found 0.5", "whole numbers"]),
+    ("id as a float", "springs: [{particle_ids: [0, »1.0], stiffness: 1}]", &["found 1.0", "whole numbers"]),
+    ("id beyond any", "springs: [{particle_ids: [0, »99999999999999999999], stiffness: 1}]", &["a particle from 0 to 1"]),
+    ("onto itself", "springs: [{particle_ids: »[1, 1], stiffness: 1}]", &["two different particles, found 1 twice"]),
+    ("no stiffness", "springs: [»{particle_ids: [0, 1]}]", &["springs[0].stiffness", "missing"]),
+    ("stiffness without value", "springs:\n- particle_ids: [0, 1]\n  stiffness:»", &["springs[0].stiffness", "missing"]),
+    ("stiffness negative", "springs: [{particle_ids: [0, 1], stiffness: »-5}]", &["springs[0].stiffness", "at least 0 (N/m), found -5"]),
+    ("damping negative", "springs: [{particle_ids: [0, 1], stiffness: 1, damping: »-1e-9}]", &["springs[0].damping", "found -1e-9"]),
+    ("rest length negative", "springs: [{particle_ids: [0, 1], stiffness: 1, rest_length: »-0.1}]", &["springs[0].rest_length", "at least 0 (m)"]),
+    ("the eighth", "springs:\n- &s {particle_ids: [0, 1], stiffness: 1}\n- *s\n- *s\n- {particle_ids: [0, 1], stiffness: ».inf}", &["springs[3].stiffness"]),
+    // Pairs, wind, plot.
+    ("G infinite", "gravitational: [{particle_ids: [0, 1], G: ».inf}]", &["gravitational[0].G", "finite"]),
+    ("no G", "gravitational: [»{particle_ids: [0, 1]}]", &["gravitational[0].G", "missing"]),
+    ("g in small", "gravitational: [{particle_ids: [0, 1], »g: 1}]", &["did you mean `G`?"]),
+    ("attraction by no mass", "gravitational: [{particle_ids: »[1, 0], G: 1}]", &["gravitational[0].particle_ids", "0 states none", "add `mass`"]),
+    ("attraction at no distance", "particles: [{pos: [0, 0, 1], mass: 1}, {pos: [0, 0, 1], mass: 1}]\ngravitational: [{particle_ids: »[0, 1], G: 1}]", &["two particles apart", "infinite at distance 0"]),
+    ("wind without length", "wind: {direction: »[0, 0, 0], strength: 1}", &["wind.direction", "length 0"]),
+    ("wind without strength", "wind: »{direction: [0, 0, 1]}", &["wind.strength", "missing"]),
+    ("wind of NaN", "wind: {direction: [0, 0, 1], strength: ».NaN}", &["wind.strength", "finite"]),
+    ("plot of nobody", "plot: {particle_id: »2, dof: 0}", &["plot.particle_id", "a particle from 0 to 1"]),
+    ("plot of a fourth dimension", "plot: {particle_id: 0, dof: »3}", &["plot.dof", "0, 1 or 2, found 3"]),
+    ("plot upside down", "plot: {particle_id: 0, dof: 0, y_range: »[1, -1]}", &["plot.y_range", "[lower, upper]"]),
+    ("plot without height", "plot: {particle_id: 0, dof: 0, y_range: »[1, 1]}", &["plot.y_range"]),
+];
+
+/// As they stand.
+#[rustfmt::skip]
+const WHOLES: &[Row] = &[
+    ("empty", "»", &["no scene", "solver", "particles"]),
+    ("only a comment", "»# nothing\n", &["no scene"]),
+    ("null", "»~\n", &["no scene"]),
+    ("missing solver", "# a scene\n»particles: [{pos: [0, 0, 0], mass: 1}]", &["solver", "missing", "add `solver:"]),
+    ("missing particles", "»solver: {type: rk4, timestep: 0.1}", &["particles", "missing"]),
+    ("a list", "»- a\n- b", &["expected a scene", "found a list"]),
+    ("text", "»hello world", &["expected a scene", "found the text \"hello world\""]),
+    ("not YAML", "solver: {type: rk4\nparticles»: []", &["not valid YAML"]),
+    ("a colon in text", "description: one»: two", &["not valid YAML", "needs quotes"]),
+    ("a tab", "solver:\n»\ttype: rk4", &["not valid YAML", "spaces, not with tabs"]),
+    ("control character", "name: a»\u{1}b", &["U+0001"]),
+    ("second BOM", "name: »\u{feff}b", &["U+FEFF"]),
+    ("second document", "solver: {type: rk4, timestep: 0.1}\nparticles: [{pos: [0, 0, 0], mass: 1}]\n---\n»solver: {}", &["second YAML document", "one scene"]),
+    ("rubbish after the document", "solver: {type: rk4, timestep: 0.1}\nparticles: [{pos: [0, 0, 0], mass: 1}]\n»}", &["not valid YAML"]),
+    ("alias bomb", "»a: &a [x, x]\nb: &b [*a, *a]\nc: &c [*b, *b]\n", &["unknown key `a`"]),
+    ("alias to itself", "particles: »&p [*p, *p]", &["found a list"]),
+    ("CRLF", "name: a\r\n»colour: red\r\n", &["unknown key `colour`"]),
+    ("past an umlaut", "{name: äöü, »colour: red}", &["unknown key `colour`"]),
+];
+
+fn refused(text: &str) -> SceneError {
+    match parse(text) {
+        Err(error) => error,
+        Ok(scene) => panic!("accepted: {scene:?}\n{text}"),
+    }
+}
+
+/// Line and column of the mark, from 1, and the text without it.
+fn unmark(text: &str) -> (u32, u32, String) {
+    let at = text.find('»').expect("a mark");
+    let line = text[..at].matches('\n').count() + 1;
+    let column = text[..at].rsplit('\n').next().unwrap().chars().count() + 1;
+    (line as u32, column as u32, text.replace('»', ""))
+}
+
+fn judge(rows: &[Row], prepare: impl Fn(&str) -> String) {
+    for (title, marked, expected) in rows {
+        let (line, column, text) = unmark(marked);
+        let error = refused(&prepare(&text));
+        let shown = error.to_string();
+        let place = (error.line, error.column);
+        assert_eq!(place, (Some(line), Some(column)), "{title}\n{shown}");
+        let start = format!("scenes/test.yml:{line}:{column}: ");
+        assert!(
+            shown.starts_with(&start),
+            "{title}: should begin with {start}\n{shown}"
+        );
+        for part in *expected {
+            assert!(
+                shown.contains(part),
+                "{title}: should say {part:?}\n{shown}"
+            );
+        }
+        let source = text.split('\n').nth(line as usize - 1).unwrap().trim();
+        let source = source.replace(char::is_control, "\u{fffd}");
+        assert!(
+            shown.contains(&source),
+            "{title}: should show {source:?}\n{shown}"
+        );
+    }
+}
+
+#[test]
+fn bad_parts_are_refused_at_their_place() {
+    judge(PARTS, complete);
+}
+
+#[test]
+fn bad_files_are_refused_at_their_place() {
+    judge(WHOLES, str::to_owned);
+}
+
+#[test]
+fn a_caret_stands_under_the_value() {
+    let error = refused(&complete(
+        "springs:\n  - {particle_ids: [0, 1], stiffness: -5}",
+    ));
+    let expected = "\
+scenes/test.yml:2:39: springs[0].stiffness: expected a number of at least 0 (N/m), found -5
+  |
+2 |   - {particle_ids: [0, 1], stiffness: -5}
+  |                                       ^^";
+    assert_eq!(error.to_string(), expected);
+}
+
+#[test]
+fn long_lines_are_cut_around_the_place() {
+    let text = format!(
+        "particles: [{}{{pos: [0, 0, 0], mass: -1}}]",
+        "{pos: [0, 0, 0], mass: 1}, ".repeat(5000)
+    );
+    let error = refused(&complete(&text));
+    assert_eq!(error.column, Some(135_036));
+    let shown = error.to_string();
+    assert!(shown.contains("mass: -1}"), "{shown}");
+    assert!(shown.len() < 500, "{shown}");
+}
+
+#[test]
+fn bytes_that_are_not_utf8_have_a_place() {
+    let error = scene::parse(b"name: a\nup: \xff", "x.yml", METHODS).unwrap_err();
+    assert_eq!((error.line, error.column), (Some(2), Some(5)));
+    assert!(error.to_string().contains("UTF-8"), "{error}");
+}
+
+/// Attacks answer within a second; the machine may be slow and the build unoptimised, so ten.
+#[test]
+fn hostile_files_are_refused_soon() {
+    const DEEP: usize = 100_000;
+    let attacks = [
+        "{a: ".repeat(DEEP),
+        "[".repeat(DEEP),
+        "- ".repeat(DEEP),
+        "? ".repeat(DEEP),
+        ": ".repeat(DEEP),
+        "!a ".repeat(DEEP),
+        format!("name: {}", "{a: ".repeat(DEEP)),
+        format!("description: |\n  \"\nname: {}", "{a: ".repeat(DEEP)),
+        format!("# [\nname: \"[\" # [\n{}", "[".repeat(DEEP)),
+        (0..500).map(|i| format!("{}a:\n", " ".repeat(i))).collect(),
+        format!(
+            "particles:\n- &p {{pos: [0, 0, 0], mass: 1}}\n{}",
+            "- *p\n".repeat(20_000)
+        ),
+        format!(
+            "name: &n \"{}\"\nparticles: [{}]",
+            "x".repeat(DEEP),
+            "*n, ".repeat(10_000)
+        ),
+    ];
+    for attack in attacks {
+        let start = Instant::now();
+        let error = refused(&attack);
+        assert!(
+            start.elapsed() < Duration::from_secs(10),
+            "{:?}: {error}",
+            start.elapsed()
+        );
+        assert!(error.to_string().len() < 1000, "{error}");
+    }
+}
+
+#[test]
+fn files_that_cannot_be_read_say_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |name: &str| scene::read(&folder.path().join(name), METHODS).unwrap_err();
+    assert!(read("").to_string().contains("this is a directory"));
+    assert!(
+        read("nowhere.yml")
+            .to_string()
+            .contains("nowhere.yml: there is no such file")
+    );
+
+    let big = std::fs::File::create(folder.path().join("big.yml")).unwrap();
+    big.set_len(limits::FILE_BYTES as u64 + 1).unwrap();
+    let error = read("big.yml");
+    assert!(error.to_string().contains("at most 64 MiB"), "{error}");
+    assert_eq!((error.line, error.column), (None, None));
+}

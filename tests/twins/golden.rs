@@ -1,0 +1,156 @@
+//! Numbers measured of rapier itself, and closed forms of the schemes it runs.
+
+use super::{apart, build, mutated, ours, scenes, theirs};
+use springcheck::engines::{Engine, find, rapier::Settings, rapier_with};
+use springcheck::scene::Scene;
+use springcheck::system::{ParticleSystem, System};
+
+fn energy(scene: &Scene, engine: &dyn Engine) -> f64 {
+    let (system, s) = (ParticleSystem::new(scene), engine.state());
+    system.kinetic(&s.v) + system.potential(s.t, &s.x)
+}
+
+/// E/E0 of an undamped oscillator under rapier's defaults with `n` substeps.
+fn energy_ratio(scene: &Scene, dt: f64, n: u32, steps: u32) -> f64 {
+    let settings = Settings {
+        iterations: n,
+        ..Settings::DEFAULT
+    };
+    let mut engine = build(&rapier_with(settings), scene, dt);
+    let start = energy(scene, &*engine);
+    for _ in 0..steps {
+        engine.step().expect("a step");
+    }
+    energy(scene, &*engine) / start
+}
+
+/// (1 + h² k/m)^-(steps n): implicit Euler's factor, which an undamped spring of rapier's loses
+/// energy by.
+#[test]
+fn an_undamped_spring_loses_energy_as_implicit_euler_does() {
+    let scene = scenes::oscillator(20.0, 0.2, 0.3, 0.0, 1.0 / 60.0);
+    let dt = 1.0 / 60.0;
+    for (n, published) in [(1, 0.037_333), (4, 0.434_912), (8, 0.659_300)] {
+        let measured = energy_ratio(&scene, dt, n, 120);
+        let h = dt / f64::from(n);
+        let law = (1.0 + h * h * 20.0 / 0.2).powi(-120 * n as i32);
+        // Six digits were published.
+        assert!((measured - published).abs() < 5e-7, "n = {n}: {measured}");
+        // 120 n substeps of a few roundings in energy: 4 eps each.
+        let rounding = 4.0 * f64::EPSILON * 120.0 * f64::from(n);
+        assert!((measured / law - 1.0).abs() < rounding, "n = {n}");
+        // One substep more or one step fewer is another number.
+        assert!((energy_ratio(&scene, dt, n + 1, 120) - published).abs() > 1e-2);
+        assert!((energy_ratio(&scene, dt, n, 119) - published).abs() > 5e-4);
+    }
+}
+
+/// k = 50, m = 1, displaced by 0.5 for 5 s: largest distance from A cos(w t), and what is left of
+/// the energy.
+#[test]
+fn the_classic_oscillator_under_rapiers_defaults() {
+    for (dt, error, left) in [(1.0 / 60.0, 2.0e-1, 0.353), (1e-3, 1.5e-2, 0.939)] {
+        let scene = scenes::oscillator(50.0, 1.0, 0.5, 0.0, dt);
+        let mut engine = theirs(&scene, "rapier", dt);
+        let mut worst = 0.0_f64;
+        let steps = (5.0 / dt).round() as u32;
+        for step in 1..=steps {
+            engine.step().expect("a step");
+            let truth = 0.5 * (50_f64.sqrt() * f64::from(step) * dt).cos();
+            worst = worst.max((engine.state().x[3] - truth).abs());
+        }
+        let ratio = energy_ratio(&scene, dt, 4, steps);
+        // Published to two and three digits.
+        assert!((worst / error - 1.0).abs() < 0.03, "dt = {dt}: {worst}");
+        assert!((ratio - left).abs() < 6e-4, "dt = {dt}: {ratio}");
+    }
+}
+
+/// Symplectic Euler at h = dt / n falls g h² N (N + 1) / 2 in N substeps from rest.
+#[test]
+fn free_fall_travels_what_symplectic_euler_does() {
+    let (dt, steps) = (0.01, 100);
+    for n in [1, 3, 4, 8] {
+        let scene = scenes::course(0);
+        let settings = Settings {
+            iterations: n,
+            ..Settings::DEFAULT
+        };
+        let mut engine = build(&rapier_with(settings), &scene, dt);
+        let h = dt / f64::from(n);
+        let mut twin = ours(&scene, "symplectic_euler", h);
+        let many = f64::from(steps * n);
+        // Bit for bit at this mass: m g / m happens to round back to g, and the rest is the same
+        // operations.
+        assert_eq!(apart(&mut *engine, &mut *twin, n, steps), 0.0, "n = {n}");
+
+        let fallen = 3.0 - engine.state().x[2];
+        let law = |many: f64| 9.81 * h * h * many * (many + 1.0) / 2.0;
+        // Every substep rounds v and x: eps N at worst.
+        assert!((fallen / law(many) - 1.0).abs() < f64::EPSILON * many);
+        // Explicit Euler falls one substep's worth less, and one step of dt is not n of dt / n.
+        assert!((fallen / law(many - 1.0) - 1.0).abs() > 1.0 / many);
+        let mut coarse = ours(&scene, "symplectic_euler", dt);
+        let mut engine = build(&rapier_with(settings), &scene, dt);
+        assert!(n == 1 || apart(&mut *engine, &mut *coarse, 1, steps) > 1e-3);
+    }
+}
+
+/// Along the scene's own axis, and signed.
+#[test]
+fn gravity_acts_along_up() {
+    use springcheck::scene::Axis;
+    for up in [Axis::X, Axis::Y, Axis::Z] {
+        let scene = mutated(&scenes::course(0), |s| s.up = up);
+        let mut engine = theirs(&scene, "rapier", 0.01);
+        engine.step().expect("a step");
+        let v = &engine.state().v;
+        assert!((v[up.index()] + 0.0981).abs() < 1e-15);
+        assert_eq!(v.iter().filter(|v| **v == 0.0).count(), 2);
+    }
+}
+
+/// The same scene and step, the same bits: nothing in a world depends on another run.
+#[test]
+fn reruns_are_bitwise_equal() {
+    for scene in [scenes::course(4), scenes::course(6), scenes::isotropic()] {
+        for id in ["rapier", "rapier-forces"] {
+            let (mut a, mut b) = (theirs(&scene, id, 5e-4), theirs(&scene, id, 5e-4));
+            assert_eq!(apart(&mut *a, &mut *b, 1, 200), 0.0, "{id}, {}", scene.name);
+            assert_eq!(a.state(), b.state());
+        }
+    }
+}
+
+/// Unconverged sweeps depend on the order of the springs in the file; converged ones do not, and
+/// which end is named first never matters.
+#[test]
+fn the_order_of_springs_matters_until_the_sweeps_converge() {
+    let scene = scenes::course(4);
+    let difference = |id, mutate: fn(&mut Scene)| {
+        let other = mutated(&scene, mutate);
+        let (mut a, mut b) = (theirs(&scene, id, 0.01), theirs(&other, id, 0.01));
+        apart(&mut *a, &mut *b, 1, 100)
+    };
+    // Measured 6.7e-6 and 2.8e-15: 400 substeps at eps and a little growth.
+    assert!(difference("rapier", |s| s.springs.reverse()) > 1e-6);
+    assert!(difference("rapier-converged", |s| s.springs.reverse()) < 2e-14);
+    let swap: fn(&mut Scene) = |s| s.springs.iter_mut().for_each(|s| s.ends.reverse());
+    assert_eq!(difference("rapier", swap), 0.0);
+}
+
+/// Rows are named once, and what they say of themselves is what they do.
+#[test]
+fn the_registry_is_consistent() {
+    let ids = springcheck::engines::ids();
+    assert_eq!(ids, ["rapier", "rapier-forces", "rapier-converged"]);
+    let defaults: Vec<_> = ids
+        .iter()
+        .map(|id| find(id).map(|row| row.default))
+        .collect();
+    assert_eq!(defaults, [Some(true), Some(true), Some(false)]);
+    assert_eq!(find("rapier").map(|row| row.substeps()), Some(4));
+    assert_eq!(find("rapier-forces").map(|row| row.substeps()), Some(1));
+    let custom = rapier_with(Settings::CONVERGED);
+    assert_eq!(custom.id, "rapier(iterations=4,pgs=64,stabilization=0)");
+}
