@@ -154,6 +154,9 @@ pub struct Energy {
     /// Half the peak-to-peak of what the trend leaves, in units of S.
     pub fluctuation: Option<f64>,
     pub class: Option<EnergyClass>,
+    /// Kinetic energy at the end, joules; shown, not part of the JSON.
+    #[serde(skip)]
+    pub kinetic_final_j: Option<f64>,
     /// Potential energy by effect at the end, joules; shown, not part of the JSON.
     #[serde(skip)]
     pub potential_final_j: BTreeMap<&'static str, f64>,

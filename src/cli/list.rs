@@ -21,14 +21,15 @@ enum What {
 
 /// Prints a registry.
 pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
-    let table = match args.what {
-        What::Integrators => of_integrators(),
+    let text = match args.what {
+        What::Integrators => format!("{}\n{}", of_integrators(), sources()),
         What::Effects => {
             let rows = effects::REGISTRY.iter();
             table(
                 &["effect", "what", "formula"],
                 rows.map(|row| vec![row.id.into(), row.summary.into(), row.source.into()]),
             )
+            .to_string()
         }
         What::Engines => {
             let rows = engines::REGISTRY.iter();
@@ -36,15 +37,16 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
                 &["engine", "what"],
                 rows.map(|row| vec![row.id.to_string(), row.summary.into()]),
             )
+            .to_string()
         }
     };
-    super::print(&format!("{table}\n"))?;
+    super::print(&format!("{text}\n"))?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn of_integrators() -> Table {
     table(
-        &["integrator", "order", "geometry", "forces/step", "stable", "energy per step", "source"],
+        &["integrator", "order", "geometry", "forces a step", "stable, z = hω", "energy a step"],
         integrators::REGISTRY.iter().map(|method| {
             vec![
                 method.id.into(),
@@ -52,22 +54,27 @@ fn of_integrators() -> Table {
                 geometry(method),
                 match method.evaluations {
                     PerStep::Exactly(n) => n.to_string(),
-                    PerStep::PerIteration => "1 an iteration".into(),
+                    PerStep::PerIteration => "1 a solve".into(),
                 },
                 match method.oscillator.stable {
                     Stable::Never => "never".into(),
                     Stable::Below(z) => format!("z < {z:.4}"),
-                    Stable::Always => "linear: always".into(),
+                    Stable::Always => "linear springs".into(),
                 },
                 match method.oscillator.energy {
                     EnergyLaw::Factor { formula, .. } => format!("times {formula}"),
                     EnergyLaw::Band { formula, .. } => format!("within {formula}"),
                     EnergyLaw::Bounded => "bounded".into(),
                 },
-                method.source.into(),
             ]
         }),
     )
+}
+
+/// Where each method is from and what it is not.
+fn sources() -> String {
+    let line = |method: &Method| format!("\n{}: {}\n  not {}", method.id, method.source, method.not);
+    integrators::REGISTRY.iter().map(line).collect()
 }
 
 fn order(method: &Method) -> String {
@@ -92,7 +99,7 @@ fn geometry(method: &Method) -> String {
 fn table(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {
     let mut table = Table::new();
     table
-        .load_style(presets::UTF8_HORIZONTAL_ONLY)
+        .load_style(presets::NOTHING)
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_width(100)
         .set_header(header.to_vec());

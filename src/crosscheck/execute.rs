@@ -81,8 +81,17 @@ fn one(case: &Case, dim: usize, limits: &Limits, host: &dyn Host) -> Result<Run,
     let tick = |taken| host.progress(taken);
     let mut recorder = Recorder::new(steps, dim, timestep);
     let start = Instant::now();
-    let ended = simulate(engine.as_mut(), steps, limits, &mut recorder, &tick);
+    let coarse = limits.now_and_then();
+    let mut ended = simulate(engine.as_mut(), steps, &coarse, &mut recorder, &tick);
     let first = start.elapsed().as_secs_f64();
+    if ended != Ended::Completed
+        && let Ok(again) = (case.build)()
+    {
+        // It ended about here; the same bits once more, looked at in every step, say where.
+        engine = again;
+        recorder = Recorder::new(steps, dim, timestep);
+        ended = simulate(engine.as_mut(), steps, limits, &mut recorder, &|_| {});
+    }
     if let Some(mut saver) = host.saver(&case.label)? {
         save(case, limits, saver.as_mut());
         saver.finish()?;
@@ -120,10 +129,11 @@ fn time(case: &Case, limits: &Limits, first: f64) -> WallTime {
             break;
         };
         let start = Instant::now();
+        let coarse = limits.now_and_then();
         simulate(
             engine.as_mut(),
             case.label.steps,
-            limits,
+            &coarse,
             &mut Nobody,
             &|_| {},
         );

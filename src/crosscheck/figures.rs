@@ -2,6 +2,7 @@
 
 use super::execute::Run;
 use super::plan::Plan;
+use crate::engines::Ended;
 use crate::measure::EnergySeries;
 use crate::outcome::{Curves, Figures, PlotAxis};
 use crate::scene::Scene;
@@ -17,7 +18,7 @@ pub(super) fn figures(
     scale: Option<f64>,
 ) -> Figures {
     let scene = plan.scene;
-    let plane = plane(scene);
+    let plane = plane(scene, runs);
     let drawn = drawn(scene);
     let mut curves = Vec::new();
     for (outcome, (run, energy)) in runs.iter().zip(energies).enumerate() {
@@ -65,24 +66,48 @@ fn path(run: &Trajectory, particle: usize, plane: [usize; 2], len: usize) -> Vec
     (0..len).map(point).collect()
 }
 
-/// `up` vertically; horizontally the wider of the other two axes, in positions and velocities.
-fn plane(scene: &Scene) -> [usize; 2] {
+/// Beside motion this much wider, an axis shows nothing.
+const FLAT: f64 = 0.02;
+
+/// The two coordinates that show the motion: `up` vertically where anything happens along it, and
+/// the wider of the other two; without `up`, those two.
+fn plane(scene: &Scene, runs: &[Run]) -> [usize; 2] {
+    let extents = [0, 1, 2].map(|axis| extent(scene, runs, axis));
     let up = scene.up.index();
-    let extent = |axis: usize| {
-        let along = scene.particles.iter().map(|p| p.position[axis]);
-        let (lo, hi) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
+    let [first, second] = match up {
+        0 => [1, 2],
+        1 => [0, 2],
+        _ => [0, 1],
+    };
+    if extents[up] < FLAT * extents[first].min(extents[second]) {
+        [first, second]
+    } else if extents[second] > extents[first] {
+        [second, up]
+    } else {
+        [first, up]
+    }
+}
+
+/// How wide the scene's start and the first completed run are along an axis, m.
+fn extent(scene: &Scene, runs: &[Run], axis: usize) -> f64 {
+    let calm = runs.iter().find_map(|run| match run {
+        Run::Ran {
+            ended: Ended::Completed,
+            trajectory,
+            ..
+        } => Some(trajectory),
+        _ => None,
+    });
+    let start = scene.particles.iter().map(|p| p.position[axis]);
+    let moved = calm.into_iter().flat_map(|run| {
+        (0..run.len()).flat_map(move |k| run.x(k)[axis..].iter().step_by(3).copied())
+    });
+    let (lo, hi) = start
+        .chain(moved)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
             (lo.min(x), hi.max(x))
         });
-        let speed = scene.particles.iter().map(|p| p.velocity[axis].abs());
-        (hi - lo) + speed.fold(0.0, f64::max) * scene.duration
-    };
-    let others: Vec<usize> = (0..3).filter(|&axis| axis != up).collect();
-    let wider = if extent(others[1]) > extent(others[0]) {
-        others[1]
-    } else {
-        others[0]
-    };
-    [wider, up]
+    hi - lo
 }
 
 /// Free particles, evenly chosen when there are many.

@@ -28,10 +28,7 @@ impl Plan<'_> {
     /// Only when a trajectory file could not be written; whatever an engine does is an outcome.
     pub fn execute(&self, host: &dyn Host) -> Result<Report, SaveError> {
         let scale = measure::energy_scale(self.scene, &self.system);
-        let limits = Limits {
-            system: self.system.clone(),
-            scale,
-        };
+        let limits = Limits::new(self.system.clone(), scale);
         let (runs, proofs) = rayon::join(
             || execute::all(&self.cases, self.scene, &limits, host),
             || ledger::twin_proof(self.scene),

@@ -63,7 +63,7 @@ fn one(
             outcome.deviation_m = deviations(plan, runs, index);
             outcome.work = Work {
                 steps: *steps,
-                force_evaluations: counts.force_evaluations,
+                force_evaluations: counts.all_force_passes(),
                 linear_solves: counts.linear_solves,
                 wall_s: Some(wall.clone()),
             };

@@ -40,6 +40,15 @@ pub struct Counts {
     pub linear_solves: Option<u64>,
 }
 
+impl Counts {
+    /// What a run's forces cost: full evaluations and passes over damping alone, which cost about
+    /// as much where there is damping at all.
+    pub fn all_force_passes(&self) -> Option<u64> {
+        self.force_evaluations
+            .map(|full| full + self.damping_evaluations.unwrap_or(0))
+    }
+}
+
 /// Why an engine cannot run a scene. An answer, not a fault.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{reason}")]

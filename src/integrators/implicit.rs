@@ -54,8 +54,7 @@ const KEEPS: EnergyLaw = EnergyLaw::Factor {
 };
 
 pub(super) const IMPLICIT_EULER: Method = Method {
-    source: "Hairer, Wanner, Solving ODEs II, IV.3; Hirota et al. and Martin et al. 2011 for the \
-             variational view",
+    source: "Hairer, Wanner, Solving ODEs II, IV.3",
     not: "linearized_implicit, which stops after one Newton step",
     ..implicit("implicit_euler", "implicit Euler", 1, DISSIPATES)
 };

@@ -2,7 +2,7 @@
 
 use super::trend::trend;
 use crate::outcome::{Energy, EnergyClass};
-use crate::system::{ParticleSystem, System};
+use crate::system::{ParticleSystem, System, Work};
 use crate::trajectory::Trajectory;
 use std::collections::BTreeMap;
 
@@ -15,9 +15,9 @@ pub struct EnergySeries {
     pub balance: Vec<f64>,
     initial: f64,
     last: f64,
+    kinetic_last: f64,
     potential_last: BTreeMap<&'static str, f64>,
-    dissipated: f64,
-    injected: f64,
+    work: Work,
     /// Steps taken up to the last instant, and the largest term ever summed: what rounding grows with.
     steps: u64,
     largest_term: f64,
@@ -31,22 +31,21 @@ impl EnergySeries {
             balance: Vec::with_capacity(run.len()),
             initial: 0.0,
             last: 0.0,
+            kinetic_last: 0.0,
             potential_last: BTreeMap::new(),
-            dissipated: 0.0,
-            injected: 0.0,
+            work: Work::default(),
             steps: 0,
             largest_term: 0.0,
         };
+        let mut last = None;
         for k in 0..run.len() {
             let (t, x) = (run.time(k), run.x(k));
             let mut energy = system.kinetic(run.v(k));
             let mut largest = energy;
-            let mut potential = BTreeMap::new();
-            for (row, effect) in system.effects() {
+            for (_, effect) in system.effects() {
                 let u = effect.potential(t, x);
                 energy += u;
                 largest = largest.max(u.abs());
-                potential.insert(row.id, u);
             }
             let work = run.work(k);
             let balance = energy + work.dissipated - work.injected;
@@ -59,17 +58,22 @@ impl EnergySeries {
             series.t.push(t);
             series.balance.push(balance);
             series.last = energy;
-            series.potential_last = potential;
-            series.dissipated = work.dissipated;
-            series.injected = work.injected;
-            series.steps = run.step(k);
             series.largest_term = series
                 .largest_term
                 .max(largest)
                 .max(work.dissipated.abs())
                 .max(work.injected.abs());
+            last = Some(k);
         }
-        (!series.t.is_empty()).then_some(series)
+        let last = last?;
+        series.steps = run.step(last);
+        series.work = run.work(last);
+        series.kinetic_last = system.kinetic(run.v(last));
+        for (row, effect) in system.effects() {
+            let u = effect.potential(run.time(last), run.x(last));
+            series.potential_last.insert(row.id, u);
+        }
+        Some(series)
     }
 
     /// Balance minus its initial value at every instant, in units of `scale` (1 for joules).
@@ -104,8 +108,9 @@ pub fn judge(series: &EnergySeries, scale: Option<f64>, diverged: bool) -> Energ
         } else {
             trend.class
         }),
+        kinetic_final_j: Some(series.kinetic_last),
         potential_final_j: series.potential_last.clone(),
-        dissipated_j: Some(series.dissipated),
-        injected_j: Some(series.injected),
+        dissipated_j: Some(series.work.dissipated),
+        injected_j: Some(series.work.injected),
     }
 }

@@ -1,5 +1,7 @@
 //! The report as GitHub shows it.
 
+mod ledger;
+
 use super::notes::{notes, references, several_timesteps};
 use super::svg::FIGURES;
 use super::verdict::verdict;
@@ -36,7 +38,8 @@ pub fn render(report: &Report) -> String {
     text += &outcomes(report);
     text += &remarks(report);
     text += &checks(&report.checks);
-    text += &effects(report);
+    text += &ledger::energies(report);
+    text += &ledger::effects(report);
     text + LEGEND
 }
 
@@ -185,29 +188,6 @@ fn checks(checks: &[Check]) -> String {
         "message",
     ];
     format!("## Checks\n\n{}", table(&header, &rows))
-}
-
-/// The ledger: what ran, how often, at what cost.
-fn effects(report: &Report) -> String {
-    if report.scene.effects.is_empty() {
-        return String::new();
-    }
-    let rows: Vec<Vec<String>> = report
-        .scene
-        .effects
-        .iter()
-        .map(|effect| {
-            let cost = effect.nanoseconds.map(|ns| words::seconds(ns * 1e-9));
-            vec![
-                escape(effect.id),
-                effect.members.to_string(),
-                words::count(effect.evaluations),
-                cost.unwrap_or(NOTHING.into()),
-            ]
-        })
-        .collect();
-    let header = ["effect", "acts on", "evaluations", "time each"];
-    format!("## Effects that ran\n\n{}", table(&header, &rows))
 }
 
 fn table(header: &[&str], rows: &[Vec<String>]) -> String {

@@ -12,8 +12,6 @@ pub type Effects = Vec<(&'static EffectRow, Box<dyn Effect>)>;
 #[derive(Clone)]
 pub struct ParticleSystem {
     inverse_mass: Arc<[f64]>,
-    /// Of each coordinate, kg; 0 for a fixed one, which carries no kinetic energy.
-    mass: Arc<[f64]>,
     effects: Arc<Effects>,
     damped: bool,
     driven: bool,
@@ -27,11 +25,6 @@ impl ParticleSystem {
             .iter()
             .flat_map(|p| [if p.fixed { 0.0 } else { 1.0 / p.mass }; 3])
             .collect();
-        let mass = scene
-            .particles
-            .iter()
-            .flat_map(|p| [if p.fixed { 0.0 } else { p.mass }; 3])
-            .collect();
         let effects: Effects = effects::REGISTRY
             .iter()
             .filter_map(|row| (row.build)(scene).map(|effect| (row, effect)))
@@ -40,7 +33,6 @@ impl ParticleSystem {
             damped: effects.iter().any(|(_, e)| e.is_damped()),
             driven: effects.iter().any(|(_, e)| e.is_driven()),
             inverse_mass,
-            mass,
             effects: Arc::new(effects),
         }
     }
@@ -122,21 +114,6 @@ impl System for ParticleSystem {
 
     fn potential(&self, t: f64, x: &[f64]) -> f64 {
         self.effects.iter().map(|(_, e)| e.potential(t, x)).sum()
-    }
-
-    fn kinetic(&self, v: &[f64]) -> f64 {
-        // Eight running sums: looked at every step, one long chain of additions would cost more
-        // than a spring.
-        let mut sums = [0.0; 8];
-        let (v_blocks, m_blocks) = (v.chunks_exact(8), self.mass.chunks_exact(8));
-        let tail = v_blocks.remainder().iter().zip(m_blocks.remainder());
-        let rest: f64 = tail.map(|(v, m)| m * v * v).sum();
-        for (v, m) in v_blocks.zip(m_blocks) {
-            for lane in 0..8 {
-                sums[lane] += m[lane] * v[lane] * v[lane];
-            }
-        }
-        0.5 * (sums.iter().sum::<f64>() + rest)
     }
 
     fn jacobian(

@@ -103,19 +103,23 @@ pub struct Recorder {
 impl Recorder {
     /// For `steps` steps of a system of `dim` coordinates.
     pub fn new(steps: u64, dim: usize, timestep: f64) -> Self {
+        let stride = stride(steps, dim / 3);
+        let instants = (steps / stride + 2) as usize;
+        // Without thinning, an instant's successor is the next instant.
+        let successors = if stride > 1 { instants } else { 0 };
         Self {
-            stride: stride(steps, dim / 3),
+            stride,
             last: steps,
             trajectory: Trajectory {
                 timestep,
                 dim,
-                steps: Vec::new(),
-                x: Vec::new(),
-                v: Vec::new(),
-                work: Vec::new(),
-                next_steps: Vec::new(),
-                next_x: Vec::new(),
-                next_v: Vec::new(),
+                steps: Vec::with_capacity(instants),
+                x: Vec::with_capacity(instants * dim),
+                v: Vec::with_capacity(instants * dim),
+                work: Vec::with_capacity(instants),
+                next_steps: Vec::with_capacity(successors),
+                next_x: Vec::with_capacity(successors * dim),
+                next_v: Vec::with_capacity(successors * dim),
             },
         }
     }

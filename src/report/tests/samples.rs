@@ -71,6 +71,7 @@ fn judged(run: &Run) -> Energy {
         drift_per_s_ci: Some([last, last]),
         fluctuation: Some(1e-3),
         class: Some(class),
+        kinetic_final_j: Some(1.0),
         potential_final_j: BTreeMap::from([("springs", 3.0)]),
         dissipated_j: Some(0.0),
         injected_j: Some(0.0),
