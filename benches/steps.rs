@@ -27,9 +27,10 @@ fn one_spring() -> Scene {
 
 /// A chain of 20 links hanging sideways.
 fn chain() -> Scene {
-    let mut yaml = "solver: {type: symplectic_euler, timestep: 0.0005}\nduration: 500\nparticles:\n\
+    let mut yaml =
+        "solver: {type: symplectic_euler, timestep: 0.0005}\nduration: 500\nparticles:\n\
                     - {pos: [0, 0, 4], fixed: true}\n"
-        .to_owned();
+            .to_owned();
     for i in 1..=20 {
         let _ = writeln!(yaml, "- {{pos: [{}, 0, 4], mass: 0.1}}", 0.1 * f64::from(i));
     }

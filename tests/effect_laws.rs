@@ -67,9 +67,21 @@ fn effect_law(effect: &dyn Effect, x: &[f64], v: &[f64]) -> Result<(), String> {
         let [low, high] = [-STEP, STEP].map(|by| effect.potential(0.0, &bumped(x, at, by)));
         let slope = (high - low) / (2.0 * STEP);
         if effect.is_driven() {
-            close("a driven effect has no potential", slope, 0.0, scale, TOLERANCE)?;
+            close(
+                "a driven effect has no potential",
+                slope,
+                0.0,
+                scale,
+                TOLERANCE,
+            )?;
         } else {
-            close("force against -dU/dx", at_rest[at], -slope, scale, TOLERANCE)?;
+            close(
+                "force against -dU/dx",
+                at_rest[at],
+                -slope,
+                scale,
+                TOLERANCE,
+            )?;
         }
     }
 
@@ -83,20 +95,38 @@ fn effect_law(effect: &dyn Effect, x: &[f64], v: &[f64]) -> Result<(), String> {
     for at in 0..n {
         let part = moving[at] - at_rest[at];
         close("add_damping", damping[at], part, scale, rounding)?;
-        close("linear in v", twice[at] - at_rest[at], 2.0 * part, scale, rounding)?;
+        close(
+            "linear in v",
+            twice[at] - at_rest[at],
+            2.0 * part,
+            scale,
+            rounding,
+        )?;
         dissipated -= damping[at] * v[at];
         injected += at_rest[at] * v[at];
     }
     if damping.iter().any(|f| *f != 0.0) && !effect.is_damped() {
         return Err("depends on velocity but says it does not".into());
     }
-    close("dissipated power", power.dissipated, dissipated, scale, rounding)?;
+    close(
+        "dissipated power",
+        power.dissipated,
+        dissipated,
+        scale,
+        rounding,
+    )?;
     if dissipated < 0.0 {
         return Err(format!("damping feeds {dissipated} W"));
     }
     let injected = if effect.is_driven() { injected } else { 0.0 };
     close("injected power", power.injected, injected, scale, rounding)?;
-    close("injected_power", effect.injected_power(0.0, v), injected, scale, rounding)?;
+    close(
+        "injected_power",
+        effect.injected_power(0.0, v),
+        injected,
+        scale,
+        rounding,
+    )?;
 
     // Jacobian blocks.
     let mut jacobian = Jacobian::default();
@@ -117,7 +147,13 @@ fn effect_law(effect: &dyn Effect, x: &[f64], v: &[f64]) -> Result<(), String> {
             for row in 0..n {
                 let slope = (ends[1][row] - ends[0][row]) / (2.0 * STEP);
                 let what = if by_position { "df/dx" } else { "df/dv" };
-                close(what, dense[row * n + column], slope, 10.0 * scale, TOLERANCE)?;
+                close(
+                    what,
+                    dense[row * n + column],
+                    slope,
+                    10.0 * scale,
+                    TOLERANCE,
+                )?;
             }
         }
     }
@@ -161,7 +197,11 @@ impl Effect for Faulty {
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
         let mut own = vec![0.0; x.len()];
         let mut power = self.0.add_force(t, x, v, &mut own);
-        let sign = if self.1 == Fault::ForceSign { -1.0 } else { 1.0 };
+        let sign = if self.1 == Fault::ForceSign {
+            -1.0
+        } else {
+            1.0
+        };
         for (f, own) in f.iter_mut().zip(&own) {
             *f += sign * own;
         }
@@ -171,14 +211,22 @@ impl Effect for Faulty {
         power
     }
     fn potential(&self, t: f64, x: &[f64]) -> f64 {
-        let scale = if self.1 == Fault::PotentialScale { 2.0 } else { 1.0 };
+        let scale = if self.1 == Fault::PotentialScale {
+            2.0
+        } else {
+            1.0
+        };
         scale * self.0.potential(t, x)
     }
     fn is_damped(&self) -> bool {
         self.1 != Fault::ForgetsItIsDamped && self.0.is_damped()
     }
     fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
-        let sign = if self.1 == Fault::DampingSign { -1.0 } else { 1.0 };
+        let sign = if self.1 == Fault::DampingSign {
+            -1.0
+        } else {
+            1.0
+        };
         let w: Vec<f64> = w.iter().map(|w| sign * w).collect();
         self.0.add_damping(x, &w, f);
     }
@@ -207,7 +255,10 @@ impl Effect for Faulty {
 fn the_effect_law_kills_mutants() {
     let scene = everything(DampingModel::Axial);
     let row = |id: &str| -> &EffectRow {
-        effects::REGISTRY.iter().find(|row| row.id == id).expect("a row")
+        effects::REGISTRY
+            .iter()
+            .find(|row| row.id == id)
+            .expect("a row")
     };
     let (x, v) = sample(&scene, &mut Random(3));
     for fault in [
@@ -220,7 +271,10 @@ fn the_effect_law_kills_mutants() {
         Fault::ForgetsItIsDamped,
     ] {
         let springs = (row("springs").build)(&scene).expect("springs");
-        assert!(effect_law(&Faulty(springs, fault), &x, &v).is_err(), "{fault:?}");
+        assert!(
+            effect_law(&Faulty(springs, fault), &x, &v).is_err(),
+            "{fault:?}"
+        );
     }
 }
 
@@ -228,7 +282,11 @@ fn the_effect_law_kills_mutants() {
 fn only_what_the_scene_calls_for_is_built() {
     let mut scene = everything(DampingModel::Axial);
     let ids = |scene: &Scene| -> Vec<&str> {
-        ParticleSystem::new(scene).effects().iter().map(|(row, _)| row.id).collect()
+        ParticleSystem::new(scene)
+            .effects()
+            .iter()
+            .map(|(row, _)| row.id)
+            .collect()
     };
     assert_eq!(ids(&scene).len(), effects::REGISTRY.len());
     scene.solver.gravity = 0.0;
@@ -246,7 +304,10 @@ fn only_what_the_scene_calls_for_is_built() {
 fn momentum_is_kept_exactly_where_an_effect_says_so() {
     let scene = everything(DampingModel::Axial);
     let isotropic = everything(DampingModel::Isotropic);
-    for (scene, row) in [&scene, &isotropic].into_iter().flat_map(|s| effects::REGISTRY.iter().map(move |r| (s, r))) {
+    for (scene, row) in [&scene, &isotropic]
+        .into_iter()
+        .flat_map(|s| effects::REGISTRY.iter().map(move |r| (s, r)))
+    {
         let effect = (row.build)(scene).expect("built");
         let (x, v) = sample(scene, &mut Random(11));
         let (f, _) = force(effect.as_ref(), &x, &v);
@@ -261,7 +322,12 @@ fn momentum_is_kept_exactly_where_an_effect_says_so() {
         let norm = |u: [f64; 3]| u.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
         // Sums of a dozen forces up to 1e2 cancel to their last bits.
         assert_eq!(norm(total) < 1e-13, effect.keeps_momentum(), "{}", row.id);
-        assert_eq!(norm(torque) < 1e-13, effect.keeps_angular_momentum(), "{}", row.id);
+        assert_eq!(
+            norm(torque) < 1e-13,
+            effect.keeps_angular_momentum(),
+            "{}",
+            row.id
+        );
     }
 }
 
@@ -280,7 +346,10 @@ fn coincident_ends_have_no_force_and_no_nan() {
         scene.gravitational.truncate(1);
         scene.particles[2].position = scene.particles[1].position;
         let start = ParticleSystem::initial_state(&scene);
-        for row in effects::REGISTRY.iter().filter(|row| ["springs", "gravitational"].contains(&row.id)) {
+        for row in effects::REGISTRY
+            .iter()
+            .filter(|row| ["springs", "gravitational"].contains(&row.id))
+        {
             let effect = (row.build)(&scene).expect("built");
             let (at_rest, _) = force(effect.as_ref(), &start.x, &vec![0.0; start.x.len()]);
             assert!(at_rest.iter().all(|f| *f == 0.0), "{}: {at_rest:?}", row.id);

@@ -12,7 +12,13 @@ const HORIZON: f64 = 1.0;
 
 fn at_horizon(scene: &Scene, build: Build, steps: usize) -> State {
     let (system, mut state) = built(scene);
-    advance(build().as_mut(), &system, HORIZON / steps as f64, steps, &mut state);
+    advance(
+        build().as_mut(),
+        &system,
+        HORIZON / steps as f64,
+        steps,
+        &mut state,
+    );
     state
 }
 
@@ -32,15 +38,33 @@ fn scenes() -> [(&'static str, bool, Scene); 4] {
     let mut dragged = swinging_triangle(0.4, DampingModel::Axial);
     dragged.particles[2].drag = 0.5;
     [
-        ("undamped", false, swinging_triangle(0.0, DampingModel::Axial)),
-        ("axial dampers", true, swinging_triangle(0.8, DampingModel::Axial)),
-        ("isotropic dampers", true, swinging_triangle(0.8, DampingModel::Isotropic)),
+        (
+            "undamped",
+            false,
+            swinging_triangle(0.0, DampingModel::Axial),
+        ),
+        (
+            "axial dampers",
+            true,
+            swinging_triangle(0.8, DampingModel::Axial),
+        ),
+        (
+            "isotropic dampers",
+            true,
+            swinging_triangle(0.8, DampingModel::Isotropic),
+        ),
         ("dampers and drag", true, dragged),
     ]
 }
 
 /// The observed order between two steps, halved, on one scene.
-fn order_law(row: &Method, damped: bool, scene: &Scene, truth: &State, build: Build) -> Result<(), String> {
+fn order_law(
+    row: &Method,
+    damped: bool,
+    scene: &Scene,
+    truth: &State,
+    build: Build,
+) -> Result<(), String> {
     let stated = f64::from(if damped { row.order_damped } else { row.order });
     // Higher orders reach rounding early, first orders become asymptotic late.
     let steps = if stated > 2.0 { 200 } else { 1600 };
@@ -71,7 +95,11 @@ fn every_method_has_its_order_with_and_without_damping() {
 #[test]
 fn the_order_law_kills_mutants() {
     let cases: [(&str, usize, Step); 6] = [
-        ("midpoint", 0, mutants::midpoint_drifting_with_the_end_velocity),
+        (
+            "midpoint",
+            0,
+            mutants::midpoint_drifting_with_the_end_velocity,
+        ),
         ("rk4", 0, mutants::rk4_with_a_wrong_weight),
         ("rk4", 0, mutants::rk4_with_swapped_weights),
         ("yoshida4", 0, mutants::yoshida_with_swapped_coefficients),
@@ -95,7 +123,13 @@ fn balance_law(row: &Method, scene: &Scene, build: Build) -> Result<(), String> 
         };
         let (start, mut integrator) = (balance(&state), build());
         let off = (0..10).map(|_| {
-            advance(integrator.as_mut(), &system, HORIZON / steps as f64, steps / 10, &mut state);
+            advance(
+                integrator.as_mut(),
+                &system,
+                HORIZON / steps as f64,
+                steps / 10,
+                &mut state,
+            );
             (balance(&state) - start).abs()
         });
         let off = off.fold(0.0, f64::max);
@@ -107,7 +141,10 @@ fn balance_law(row: &Method, scene: &Scene, build: Build) -> Result<(), String> 
     let observed = (coarse / fine).log2();
     // Energy may converge faster than position, never slower.
     if observed.is_nan() || observed < f64::from(row.order_damped) - 0.15 {
-        return Err(format!("{}: balance of order {observed:.2} ({coarse:.1e}, {fine:.1e})", row.id));
+        return Err(format!(
+            "{}: balance of order {observed:.2} ({coarse:.1e}, {fine:.1e})",
+            row.id
+        ));
     }
     Ok(())
 }
@@ -134,9 +171,15 @@ fn the_balance_law_kills_work_of_first_order() {
     /// A second-order step whose work is taken at its start.
     struct EarlyWork(Box<dyn springcheck::integrators::Integrator>);
     impl springcheck::integrators::Integrator for EarlyWork {
-        fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
+        fn step(
+            &mut self,
+            system: &dyn System,
+            h: f64,
+            state: &mut State,
+        ) -> Result<(), StepError> {
             let mut work = state.work;
-            let power = system.acceleration(state.t, &state.x, &state.v, &mut vec![0.0; system.dim()]);
+            let power =
+                system.acceleration(state.t, &state.x, &state.v, &mut vec![0.0; system.dim()]);
             work.advance(power, h);
             self.0.step(system, h, state)?;
             state.work = work;
@@ -151,10 +194,16 @@ fn the_balance_law_kills_work_of_first_order() {
 /// form Ω = [[0, M], [-M, 0]], scaled by the masses.
 fn symplectic_defect(scene: &Scene, build: Build, h: f64) -> f64 {
     let (system, start) = built(scene);
-    let free: Vec<usize> = (0..system.dim()).filter(|&i| system.inverse_mass()[i] > 0.0).collect();
+    let free: Vec<usize> = (0..system.dim())
+        .filter(|&i| system.inverse_mass()[i] > 0.0)
+        .collect();
     let n = free.len();
     let coordinate = |state: &mut State, at: usize, by: f64| {
-        if at < n { state.x[free[at]] += by } else { state.v[free[at - n]] += by }
+        if at < n {
+            state.x[free[at]] += by
+        } else {
+            state.v[free[at - n]] += by
+        }
     };
     let delta = 1e-5;
     let columns: Vec<Vec<f64>> = (0..2 * n)
@@ -168,17 +217,28 @@ fn symplectic_defect(scene: &Scene, build: Build, h: f64) -> f64 {
             let slope = |get: fn(&State) -> &Vec<f64>, i: usize| {
                 (get(&ends[1])[free[i]] - get(&ends[0])[free[i]]) / (2.0 * delta)
             };
-            (0..n).map(|i| slope(|s| &s.x, i)).chain((0..n).map(|i| slope(|s| &s.v, i))).collect()
+            (0..n)
+                .map(|i| slope(|s| &s.x, i))
+                .chain((0..n).map(|i| slope(|s| &s.v, i)))
+                .collect()
         })
         .collect();
     let mass = |i: usize| 1.0 / system.inverse_mass()[free[i]];
     let form = |a: &[f64], b: &[f64]| -> f64 {
-        (0..n).map(|i| mass(i) * (a[i] * b[n + i] - a[n + i] * b[i])).sum()
+        (0..n)
+            .map(|i| mass(i) * (a[i] * b[n + i] - a[n + i] * b[i]))
+            .sum()
     };
     let mut defect = 0.0_f64;
     for i in 0..2 * n {
         for j in 0..2 * n {
-            let wanted = if j == i + n { mass(i) } else if i == j + n { -mass(j) } else { 0.0 };
+            let wanted = if j == i + n {
+                mass(i)
+            } else if i == j + n {
+                -mass(j)
+            } else {
+                0.0
+            };
             defect = defect.max((form(&columns[i], &columns[j]) - wanted).abs());
         }
     }
@@ -189,11 +249,26 @@ fn symplectic_defect(scene: &Scene, build: Build, h: f64) -> f64 {
 const LARGE_STEP: f64 = 0.05;
 
 fn symplectic_law(row: &Method, build: Build) -> Result<(), String> {
-    let defect = symplectic_defect(&swinging_triangle(0.0, DampingModel::Axial), build, LARGE_STEP);
+    let defect = symplectic_defect(
+        &swinging_triangle(0.0, DampingModel::Axial),
+        build,
+        LARGE_STEP,
+    );
     // Central differences with 1e-5 leave about 1e-10 of truncation and 1e-11 of rounding; what is
     // not symplectic is off by 1e-4 and more at this step.
-    let holds = if row.symplectic { defect < 1e-8 } else { defect > 1e-5 };
-    if holds { Ok(()) } else { Err(format!("{}: symplectic {}, defect {defect:.1e}", row.id, row.symplectic)) }
+    let holds = if row.symplectic {
+        defect < 1e-8
+    } else {
+        defect > 1e-5
+    };
+    if holds {
+        Ok(())
+    } else {
+        Err(format!(
+            "{}: symplectic {}, defect {defect:.1e}",
+            row.id, row.symplectic
+        ))
+    }
 }
 
 #[test]
@@ -219,8 +294,19 @@ fn reversal_law(row: &Method, build: Build) -> Result<(), String> {
     }
     let off = distance(&state.x, &start.x).max(distance(&state.v, &start.v));
     // Twenty steps of rounding, a hundred last bits of values around 10; Newton to 1e-12 of a step.
-    let holds = if row.reversible { off < 3e-11 } else { off > 1e-5 };
-    if holds { Ok(()) } else { Err(format!("{}: reversible {}, off {off:.1e}", row.id, row.reversible)) }
+    let holds = if row.reversible {
+        off < 3e-11
+    } else {
+        off > 1e-5
+    };
+    if holds {
+        Ok(())
+    } else {
+        Err(format!(
+            "{}: reversible {}, off {off:.1e}",
+            row.id, row.reversible
+        ))
+    }
 }
 
 #[test]
@@ -247,7 +333,14 @@ fn cost_law(row: &Method, build: Build) -> Result<(), String> {
         // One at the start of each iteration and one to see that the last has converged.
         PerStep::PerIteration => forces >= solves + 100 && forces <= solves + 200 && solves >= 100,
     };
-    if holds { Ok(()) } else { Err(format!("{}: {forces} forces, {solves} solves in 100 steps", row.id)) }
+    if holds {
+        Ok(())
+    } else {
+        Err(format!(
+            "{}: {forces} forces, {solves} solves in 100 steps",
+            row.id
+        ))
+    }
 }
 
 #[test]
@@ -256,7 +349,13 @@ fn every_method_costs_what_its_row_says() {
         cost_law(row, &own(row)).unwrap();
     }
     // Two evaluations where the row says one: nothing kept between steps.
-    assert!(cost_law(method("velocity_verlet"), &mutant(mutants::verlet_with_explicit_damping)).is_err());
+    assert!(
+        cost_law(
+            method("velocity_verlet"),
+            &mutant(mutants::verlet_with_explicit_damping)
+        )
+        .is_err()
+    );
 }
 
 /// Total momentum and angular momentum.
@@ -285,7 +384,14 @@ fn momentum_law(row: &Method, model: DampingModel, build: Build) -> Result<(), S
     let holds = linear < TOL && (!keeps_angular || angular < TOL);
     // Isotropic dampers brake rotation: nothing may claim to keep it.
     let loses = model == DampingModel::Axial || angular > 1e-3;
-    if holds && loses { Ok(()) } else { Err(format!("{}: linear {linear:.1e}, angular {angular:.1e}", row.id)) }
+    if holds && loses {
+        Ok(())
+    } else {
+        Err(format!(
+            "{}: linear {linear:.1e}, angular {angular:.1e}",
+            row.id
+        ))
+    }
 }
 
 #[test]

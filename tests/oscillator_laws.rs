@@ -9,7 +9,6 @@ use springcheck::system::State;
 
 const W: f64 = 7.0;
 
-
 /// z = h w values inside every explicit limit but the smallest one's.
 const STEPS: [f64; 5] = [0.01, 0.1, 0.5, 1.0, 1.5];
 
@@ -49,11 +48,17 @@ fn energy_law(row: &Method, build: Build) -> Result<(), String> {
                 // 20,000 steps of rounding: a random walk of eps, to eight standard deviations.
                 let rounding = 8.0 * f64::EPSILON * 20_000_f64.sqrt();
                 if least < lo - rounding || most > hi + rounding {
-                    return Err(format!("{}: z = {z}: [{least}, {most}] leaves [{lo}, {hi}]", row.id));
+                    return Err(format!(
+                        "{}: z = {z}: [{least}, {most}] leaves [{lo}, {hi}]",
+                        row.id
+                    ));
                 }
                 // The orbit fills the band: a law three times too wide would be no law.
                 if (hi - lo) > 3.0 * (most - least) {
-                    return Err(format!("{}: z = {z}: [{least}, {most}] in [{lo}, {hi}]", row.id));
+                    return Err(format!(
+                        "{}: z = {z}: [{least}, {most}] in [{lo}, {hi}]",
+                        row.id
+                    ));
                 }
             }
             EnergyLaw::Bounded => {
@@ -86,9 +91,18 @@ fn every_method_obeys_its_energy_law() {
 #[test]
 fn the_energy_law_kills_mutants() {
     let cases: [(&str, Step); 9] = [
-        ("explicit_euler", mutants::euler_drifting_with_the_new_velocity),
-        ("symplectic_euler", mutants::euler_drifting_with_the_old_velocity),
-        ("symplectic_euler", mutants::symplectic_euler_at_half_the_step),
+        (
+            "explicit_euler",
+            mutants::euler_drifting_with_the_new_velocity,
+        ),
+        (
+            "symplectic_euler",
+            mutants::euler_drifting_with_the_old_velocity,
+        ),
+        (
+            "symplectic_euler",
+            mutants::symplectic_euler_at_half_the_step,
+        ),
         ("midpoint", mutants::midpoint_drifting_with_the_end_velocity),
         ("velocity_verlet", mutants::verlet_with_a_stale_force),
         ("rk4", mutants::rk4_with_a_wrong_weight),
@@ -162,8 +176,14 @@ fn the_limit_law_kills_mutants() {
         ("velocity_verlet", mutants::verlet_with_a_stale_force),
         ("rk4", mutants::rk4_with_swapped_weights),
         ("yoshida4", mutants::rk4_with_a_wrong_weight),
-        ("explicit_euler", mutants::euler_drifting_with_the_new_velocity),
-        ("implicit_euler", mutants::euler_drifting_with_the_old_velocity),
+        (
+            "explicit_euler",
+            mutants::euler_drifting_with_the_new_velocity,
+        ),
+        (
+            "implicit_euler",
+            mutants::euler_drifting_with_the_old_velocity,
+        ),
     ] {
         assert!(limit_law(method(id), &mutant(step)).is_err(), "{id}");
     }
@@ -171,18 +191,54 @@ fn the_limit_law_kills_mutants() {
 
 /// Published limits with damping ratio ζ; None is no limit.
 const DAMPED: [(&str, [Option<f64>; 4]); 9] = [
-    ("explicit_euler", [Some(0.2), Some(1.0), Some(2.0), Some(0.535_898)]),
-    ("midpoint", [Some(1.049_755), Some(2.0), Some(2.0), Some(0.535_898)]),
-    ("heun", [Some(1.049_755), Some(2.0), Some(2.0), Some(0.535_898)]),
-    ("ralston", [Some(1.049_755), Some(2.0), Some(2.0), Some(0.535_898)]),
-    ("rk4", [Some(2.950_853), Some(2.622_542), Some(2.785_294), Some(0.746_317)]),
-    ("symplectic_euler", [Some(1.809_975), Some(1.236_068), Some(0.828_427), Some(0.472_136)]),
+    (
+        "explicit_euler",
+        [Some(0.2), Some(1.0), Some(2.0), Some(0.535_898)],
+    ),
+    (
+        "midpoint",
+        [Some(1.049_755), Some(2.0), Some(2.0), Some(0.535_898)],
+    ),
+    (
+        "heun",
+        [Some(1.049_755), Some(2.0), Some(2.0), Some(0.535_898)],
+    ),
+    (
+        "ralston",
+        [Some(1.049_755), Some(2.0), Some(2.0), Some(0.535_898)],
+    ),
+    (
+        "rk4",
+        [
+            Some(2.950_853),
+            Some(2.622_542),
+            Some(2.785_294),
+            Some(0.746_317),
+        ],
+    ),
+    (
+        "symplectic_euler",
+        [
+            Some(1.809_975),
+            Some(1.236_068),
+            Some(0.828_427),
+            Some(0.472_136),
+        ],
+    ),
     (
         "symplectic_euler_drift_first",
-        [Some(1.809_975), Some(1.236_068), Some(0.828_427), Some(0.472_136)],
+        [
+            Some(1.809_975),
+            Some(1.236_068),
+            Some(0.828_427),
+            Some(0.472_136),
+        ],
     ),
     // With the exact flow the kick saturates at x / (2 ζ w), so overdamped the limit is 4 ζ.
-    ("velocity_verlet", [Some(2.013_432), Some(2.399_357), Some(4.002_670), Some(8.0)]),
+    (
+        "velocity_verlet",
+        [Some(2.013_432), Some(2.399_357), Some(4.002_670), Some(8.0)],
+    ),
     ("implicit_euler", [None; 4]),
 ];
 
@@ -195,7 +251,9 @@ fn damped_limit_law(id: &str, limits: [Option<f64>; 4], build: Build) -> Result<
             _ => false,
         };
         if !holds {
-            return Err(format!("{id}, ζ = {zeta}: stated {limit:?}, measured {found:?}"));
+            return Err(format!(
+                "{id}, ζ = {zeta}: stated {limit:?}, measured {found:?}"
+            ));
         }
     }
     Ok(())

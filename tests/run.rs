@@ -38,7 +38,13 @@ fn set<'a>(keys: &[&'a str]) -> BTreeSet<&'a str> {
 fn files(folder: &Path) -> BTreeSet<String> {
     let entries = std::fs::read_dir(folder).expect("a folder");
     entries
-        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
         .collect()
 }
 
@@ -51,7 +57,14 @@ fn a_run_prints_a_table_and_writes_a_report() {
     for line in table.lines() {
         assert!(line.chars().count() <= 100, "{line}");
     }
-    for id in ["symplectic_euler", "explicit_euler", "rapier", "rapier-forces", "gravity", "twin-joints"] {
+    for id in [
+        "symplectic_euler",
+        "explicit_euler",
+        "rapier",
+        "rapier-forces",
+        "gravity",
+        "twin-joints",
+    ] {
         assert!(table.contains(id), "{id} in\n{table}");
     }
     assert!(!table.contains('\u{1b}'), "colour in a pipe");
@@ -60,7 +73,13 @@ fn a_run_prints_a_table_and_writes_a_report() {
     assert!(tail[1].starts_with("report: ") && tail[1].ends_with("report.md"));
     assert!(tail[2].contains("twin proof"), "{}", tail[2]);
     let place = folder.path().join("pa1/scene01");
-    let expected = ["energy.svg", "plot.svg", "report.json", "report.md", "trajectories.svg"];
+    let expected = [
+        "energy.svg",
+        "plot.svg",
+        "report.json",
+        "report.md",
+        "trajectories.svg",
+    ];
     assert_eq!(files(&place), expected.map(String::from).into());
     for name in files(&place) {
         let text = std::fs::read_to_string(place.join(&name)).expect("text");
@@ -71,13 +90,28 @@ fn a_run_prints_a_table_and_writes_a_report() {
 #[test]
 fn the_json_has_exactly_the_contracts_keys() {
     let report = json(&["run", SCENE, "--format", "json"]);
-    assert_eq!(keys(&report), set(&["schema_version", "scene", "truth", "outcomes", "checks"]));
+    assert_eq!(
+        keys(&report),
+        set(&["schema_version", "scene", "truth", "outcomes", "checks"])
+    );
     assert_eq!(report["schema_version"], 1);
     assert_eq!(
         keys(&report["scene"]),
-        set(&["name", "file", "particles", "springs", "effects", "timestep", "duration", "energy_scale_j"])
+        set(&[
+            "name",
+            "file",
+            "particles",
+            "springs",
+            "effects",
+            "timestep",
+            "duration",
+            "energy_scale_j"
+        ])
     );
-    assert_eq!(keys(&report["scene"]["effects"][0]), set(&["id", "members", "evaluations"]));
+    assert_eq!(
+        keys(&report["scene"]["effects"][0]),
+        set(&["id", "members", "evaluations"])
+    );
     assert_eq!(
         keys(&report["truth"]),
         set(&["kind", "method", "error_bound_m", "horizon_s", "reason"])
@@ -87,23 +121,42 @@ fn the_json_has_exactly_the_contracts_keys() {
         assert_eq!(
             keys(outcome),
             set(&[
-                "engine", "kind", "timestep", "substep", "status", "stopped_at_s", "reason",
-                "position_error_m", "velocity_error_m_s", "deviation_m", "energy", "momentum",
-                "work", "identified",
+                "engine",
+                "kind",
+                "timestep",
+                "substep",
+                "status",
+                "stopped_at_s",
+                "reason",
+                "position_error_m",
+                "velocity_error_m_s",
+                "deviation_m",
+                "energy",
+                "momentum",
+                "work",
+                "identified",
             ])
         );
         assert_eq!(
             keys(&outcome["energy"]),
             set(&[
-                "initial_j", "final_j", "relative_error_max", "drift_per_s", "drift_per_s_ci",
-                "fluctuation", "class",
+                "initial_j",
+                "final_j",
+                "relative_error_max",
+                "drift_per_s",
+                "drift_per_s_ci",
+                "fluctuation",
+                "class",
             ])
         );
         assert_eq!(
             keys(&outcome["work"]),
             set(&["steps", "force_evaluations", "linear_solves", "wall_s"])
         );
-        assert_eq!(keys(&outcome["work"]["wall_s"]), set(&["min", "median", "mad"]));
+        assert_eq!(
+            keys(&outcome["work"]["wall_s"]),
+            set(&["min", "median", "mad"])
+        );
         for deviation in outcome["deviation_m"].as_object().expect("a map").values() {
             assert_eq!(keys(deviation), set(&["final", "max", "first_exceeds_s"]));
         }
@@ -111,7 +164,15 @@ fn the_json_has_exactly_the_contracts_keys() {
     for check in report["checks"].as_array().expect("checks") {
         assert_eq!(
             keys(check),
-            set(&["id", "subject", "status", "measured", "bound", "derivation", "message"])
+            set(&[
+                "id",
+                "subject",
+                "status",
+                "measured",
+                "bound",
+                "derivation",
+                "message"
+            ])
         );
         assert_eq!(check["status"], "pass");
     }
@@ -129,8 +190,14 @@ fn the_default_engines_come_in_the_contracts_order() {
     assert_eq!(
         engines,
         [
-            "explicit_euler", "symplectic_euler", "midpoint", "velocity_verlet", "rk4",
-            "implicit_euler", "rapier", "rapier-forces",
+            "explicit_euler",
+            "symplectic_euler",
+            "midpoint",
+            "velocity_verlet",
+            "rk4",
+            "implicit_euler",
+            "rapier",
+            "rapier-forces",
         ]
     );
     // A kept force is kept: one evaluation a step, and one to start.
@@ -141,9 +208,17 @@ fn the_default_engines_come_in_the_contracts_order() {
     assert!((ratio / 1.005_f64.powi(500) - 1.0).abs() < 1e-12, "{ratio}");
     assert_eq!(energy["class"], "growing");
     assert_eq!(report["outcomes"][1]["energy"]["class"], "bounded");
-    let report = json(&["run", "scenes/oscillator/oscillator.yml", "--format", "json"]);
+    let report = json(&[
+        "run",
+        "scenes/oscillator/oscillator.yml",
+        "--format",
+        "json",
+    ]);
     let rapier = &report["outcomes"][6];
-    assert_eq!((&rapier["engine"], &rapier["energy"]["class"]), (&"rapier".into(), &"dissipating".into()));
+    assert_eq!(
+        (&rapier["engine"], &rapier["energy"]["class"]),
+        (&"rapier".into(), &"dissipating".into())
+    );
 }
 
 /// The report without what may vary.
@@ -158,8 +233,20 @@ fn without_times(mut report: Value) -> Value {
 fn two_runs_and_any_number_of_threads_give_the_same_bits() {
     let run = |threads: &str| {
         let output = springcheck()
-            .args(["run", "scenes/pa1/scene03.yml", "--integrators", "all", "--duration", "0.5"])
-            .args(["--engines", "rapier,rapier-forces,rapier-converged", "--format", "json"])
+            .args([
+                "run",
+                "scenes/pa1/scene03.yml",
+                "--integrators",
+                "all",
+                "--duration",
+                "0.5",
+            ])
+            .args([
+                "--engines",
+                "rapier,rapier-forces,rapier-converged",
+                "--format",
+                "json",
+            ])
             .env("RAYON_NUM_THREADS", threads)
             .output()
             .expect("it runs");
@@ -175,13 +262,25 @@ fn every_pa1_scene_runs_with_every_integrator_and_engine() {
     for number in 0..7 {
         let scene = format!("scenes/pa1/scene0{number}.yml");
         let report = json(&[
-            "run", &scene, "--integrators", "all", "--duration", "0.1", "--format", "json",
-            "--engines", "rapier,rapier-forces,rapier-converged",
+            "run",
+            &scene,
+            "--integrators",
+            "all",
+            "--duration",
+            "0.1",
+            "--format",
+            "json",
+            "--engines",
+            "rapier,rapier-forces,rapier-converged",
         ]);
         let outcomes = report["outcomes"].as_array().expect("outcomes");
         assert_eq!(outcomes.len(), springcheck::integrators::REGISTRY.len() + 3);
         for outcome in outcomes {
-            assert_eq!(outcome["status"], "completed", "{scene} {}", outcome["engine"]);
+            assert_eq!(
+                outcome["status"], "completed",
+                "{scene} {}",
+                outcome["engine"]
+            );
         }
         for check in report["checks"].as_array().expect("checks") {
             assert_eq!(check["status"], "pass", "{scene} {check}");
@@ -191,31 +290,67 @@ fn every_pa1_scene_runs_with_every_integrator_and_engine() {
 
 #[test]
 fn several_timesteps_and_several_scenes() {
-    let args = ["run", SCENE, "--timestep", ".01,.05,.15", "--integrators", "rk4,midpoint"];
+    let args = [
+        "run",
+        SCENE,
+        "--timestep",
+        ".01,.05,.15",
+        "--integrators",
+        "rk4,midpoint",
+    ];
     let report = json(&[&args[..], &["--format", "json", "--engines", "none"]].concat());
     let found: Vec<(String, f64)> = report["outcomes"]
         .as_array()
         .expect("outcomes")
         .iter()
-        .map(|o| (o["engine"].as_str().unwrap().to_owned(), o["timestep"].as_f64().unwrap()))
+        .map(|o| {
+            (
+                o["engine"].as_str().unwrap().to_owned(),
+                o["timestep"].as_f64().unwrap(),
+            )
+        })
         .collect();
     let wanted = ["rk4", "midpoint"].map(|id| [0.01, 0.05, 0.15].map(|h| (id.to_owned(), h)));
     assert_eq!(found, wanted.concat());
-    let both = json(&["run", SCENE, "scenes/pa1/scene00.yml", "--format", "json", "--duration", "0.1"]);
+    let both = json(&[
+        "run",
+        SCENE,
+        "scenes/pa1/scene00.yml",
+        "--format",
+        "json",
+        "--duration",
+        "0.1",
+    ]);
     assert_eq!(both.as_array().map(Vec::len), Some(2));
 }
 
 #[test]
 fn a_custom_rapier_row_converges_to_implicit_euler() {
     let report = json(&[
-        "run", "scenes/oscillator/oscillator.yml", "--format", "json", "--integrators", "implicit_euler",
-        "--engines", "none", "--rapier", "iterations=1,pgs=1", "--rapier", "dt=0.005,iterations=2",
+        "run",
+        "scenes/oscillator/oscillator.yml",
+        "--format",
+        "json",
+        "--integrators",
+        "implicit_euler",
+        "--engines",
+        "none",
+        "--rapier",
+        "iterations=1,pgs=1",
+        "--rapier",
+        "dt=0.005,iterations=2",
     ]);
     let outcomes = report["outcomes"].as_array().expect("outcomes");
     let energy = |at: usize| outcomes[at]["energy"]["final_j"].as_f64().expect("J");
     // One substep of rapier is one step of implicit Euler, to 13 digits over 500 steps.
-    let own = outcomes.iter().position(|o| o["engine"] == "implicit_euler").expect("there");
-    let row = outcomes.iter().position(|o| o["kind"] == "rapier").expect("there");
+    let own = outcomes
+        .iter()
+        .position(|o| o["engine"] == "implicit_euler")
+        .expect("there");
+    let row = outcomes
+        .iter()
+        .position(|o| o["kind"] == "rapier")
+        .expect("there");
     assert!((energy(own) / energy(row) - 1.0).abs() < 1e-11);
     assert_eq!(outcomes[row + 1]["substep"], 0.0025);
 }
@@ -256,7 +391,8 @@ fn usage_and_scene_errors_exit_with_2_and_write_nothing() {
 
 /// One array of an NPZ: its shape and values.
 fn array(path: &Path, name: &str) -> (Vec<u64>, Vec<f64>) {
-    let mut archive = zip::ZipArchive::new(std::fs::File::open(path).expect("a file")).expect("zip");
+    let mut archive =
+        zip::ZipArchive::new(std::fs::File::open(path).expect("a file")).expect("zip");
     let file = npyz::NpyFile::new(archive.by_name(name).expect("an array")).expect("npy");
     (file.shape().to_vec(), file.into_vec().expect("doubles"))
 }
@@ -266,13 +402,23 @@ fn saved_trajectories_hold_every_step_and_agree_to_the_last_bit() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().to_str().expect("UTF-8");
     for format in ["csv", "npz"] {
-        let args = ["run", SCENE, "--output", out, "--duration", "1.5", "--engines", "rapier"];
+        let args = [
+            "run",
+            SCENE,
+            "--output",
+            out,
+            "--duration",
+            "1.5",
+            "--engines",
+            "rapier",
+        ];
         let (code, ..) = output(&[&args[..], &["--integrators", "rk4", "--save", format]].concat());
         assert_eq!(code, 0);
     }
     let place = folder.path().join("pa1/scene01");
     for engine in ["rk4", "rapier"] {
-        let file = |extension: &str| -> PathBuf { place.join(format!("{engine}@0.0005.{extension}")) };
+        let file =
+            |extension: &str| -> PathBuf { place.join(format!("{engine}@0.0005.{extension}")) };
         let (shape, x) = array(&file("npz"), "x.npy");
         assert_eq!(shape, [3001, 2, 3]);
         let (_, v) = array(&file("npz"), "v.npy");
@@ -282,7 +428,10 @@ fn saved_trajectories_hold_every_step_and_agree_to_the_last_bit() {
         assert_eq!(lines.next(), Some("t,id,x,y,z,vx,vy,vz"));
         let mut rows = 0;
         for (row, line) in lines.enumerate() {
-            let numbers: Vec<f64> = line.split(',').map(|n| n.parse().expect("a number")).collect();
+            let numbers: Vec<f64> = line
+                .split(',')
+                .map(|n| n.parse().expect("a number"))
+                .collect();
             assert_eq!(numbers[0].to_bits(), t[row / 2].to_bits());
             assert_eq!(numbers[1], (row % 2) as f64);
             for a in 0..3 {
@@ -301,8 +450,20 @@ fn a_saved_run_can_be_thinned_and_keeps_its_end() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().to_str().expect("UTF-8");
     let (code, ..) = output(&[
-        "run", SCENE, "--output", out, "--duration", "0.05", "--engines", "none", "--integrators",
-        "rk4", "--save", "npz", "--every", "7",
+        "run",
+        SCENE,
+        "--output",
+        out,
+        "--duration",
+        "0.05",
+        "--engines",
+        "none",
+        "--integrators",
+        "rk4",
+        "--save",
+        "npz",
+        "--every",
+        "7",
     ]);
     assert_eq!(code, 0);
     let (_, t) = array(&folder.path().join("pa1/scene01/rk4@0.0005.npz"), "t.npy");
@@ -322,7 +483,11 @@ fn a_reader_that_leaves_is_no_error() {
         .expect("it starts");
     drop(child.stdout.take());
     let output = child.wait_with_output().expect("it ends");
-    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     assert_eq!(output.status.code(), Some(0));
 }
 
@@ -330,8 +495,17 @@ fn a_reader_that_leaves_is_no_error() {
 fn lists_show_every_row() {
     let rows: [(&str, Vec<&str>); 3] = [
         ("integrators", springcheck::integrators::ids()),
-        ("effects", springcheck::effects::REGISTRY.iter().map(|row| row.id).collect()),
-        ("engines", vec!["rapier", "rapier-forces", "rapier-converged"]),
+        (
+            "effects",
+            springcheck::effects::REGISTRY
+                .iter()
+                .map(|row| row.id)
+                .collect(),
+        ),
+        (
+            "engines",
+            vec!["rapier", "rapier-forces", "rapier-converged"],
+        ),
     ];
     for (what, ids) in rows {
         let (code, out, _) = output(&["list", what]);

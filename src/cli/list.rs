@@ -22,7 +22,7 @@ enum What {
 /// Prints a registry.
 pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
     let text = match args.what {
-        What::Integrators => format!("{}\n{}", of_integrators(), sources()),
+        What::Integrators => format!("{}\n\n{}", of_integrators(), sources()),
         What::Effects => {
             let rows = effects::REGISTRY.iter();
             table(
@@ -46,7 +46,14 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
 
 fn of_integrators() -> Table {
     table(
-        &["integrator", "order", "geometry", "forces a step", "stable, z = hω", "energy a step"],
+        &[
+            "integrator",
+            "order",
+            "geometry",
+            "forces a step",
+            "stable, z = hω",
+            "energy a step",
+        ],
         integrators::REGISTRY.iter().map(|method| {
             vec![
                 method.id.into(),
@@ -72,9 +79,13 @@ fn of_integrators() -> Table {
 }
 
 /// Where each method is from and what it is not.
-fn sources() -> String {
-    let line = |method: &Method| format!("\n{}: {}\n  not {}", method.id, method.source, method.not);
-    integrators::REGISTRY.iter().map(line).collect()
+fn sources() -> Table {
+    table(
+        &["integrator", "from", "not to be confused with"],
+        integrators::REGISTRY
+            .iter()
+            .map(|method| vec![method.id.into(), method.source.into(), method.not.into()]),
+    )
 }
 
 fn order(method: &Method) -> String {

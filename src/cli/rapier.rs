@@ -37,10 +37,9 @@ impl FromStr for Custom {
                 "dt" => {
                     let seconds = value.parse::<f64>();
                     let seconds = seconds.ok().filter(|s| s.is_finite() && *s > 0.0);
-                    custom.timestep =
-                        Some(seconds.ok_or_else(|| {
-                            format!("dt: expected positive seconds, found `{value}`")
-                        })?);
+                    custom.timestep = Some(seconds.ok_or_else(|| {
+                        format!("dt: expected positive seconds, found `{value}`")
+                    })?);
                 }
                 "iterations" => custom.settings.iterations = count(1)?,
                 "pgs" => custom.settings.pgs = count(1)?,

@@ -92,7 +92,7 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     for (scene, path) in scenes.iter().zip(&args.scenes) {
         let report = one(args, quiet, scene, path)?;
         if args.format == Format::Human {
-            let several = reports.is_empty().then_some("").unwrap_or("\n");
+            let several = if reports.is_empty() { "" } else { "\n" };
             super::print(&format!("{several}{}", human(args, path, &report)))?;
         }
         reports.push(report);
@@ -119,12 +119,7 @@ fn read(args: &Args, path: &std::path::Path) -> anyhow::Result<Scene> {
     Ok(scene)
 }
 
-fn one(
-    args: &Args,
-    quiet: bool,
-    scene: &Scene,
-    path: &std::path::Path,
-) -> anyhow::Result<Report> {
+fn one(args: &Args, quiet: bool, scene: &Scene, path: &std::path::Path) -> anyhow::Result<Report> {
     let plan = Plan::new(scene, &choice(args, scene)?);
     let estimates = plan.estimate();
     let expected = expected(&estimates);
@@ -193,7 +188,9 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
         })?;
         choice.engines = rows.into_iter().map(ChosenEngine::from).collect();
     }
-    choice.engines.extend(args.rapier.iter().map(Custom::chosen));
+    choice
+        .engines
+        .extend(args.rapier.iter().map(Custom::chosen));
     if !args.timestep.is_empty() {
         choice.timesteps.clear();
         for &timestep in &args.timestep {

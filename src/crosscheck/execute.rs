@@ -45,13 +45,17 @@ impl Host for Quiet {
 /// What one case left.
 pub(super) enum Run {
     Unsupported(Unsupported),
-    Ran {
-        ended: Ended,
-        steps: u64,
-        trajectory: Trajectory,
-        counts: Counts,
-        wall: WallTime,
-    },
+    Ran(Box<Ran>),
+}
+
+/// A case that ran, to its end or not.
+pub(super) struct Ran {
+    pub ended: Ended,
+    /// Steps taken.
+    pub steps: u64,
+    pub trajectory: Trajectory,
+    pub counts: Counts,
+    pub wall: WallTime,
 }
 
 pub(super) fn all(
@@ -101,13 +105,13 @@ fn one(case: &Case, dim: usize, limits: &Limits, host: &dyn Host) -> Result<Run,
         Ended::Diverged { step, .. } | Ended::Failed { step, .. } => *step,
     };
     host.progress(steps.saturating_sub(taken));
-    Ok(Run::Ran {
+    Ok(Run::Ran(Box::new(Ran {
         steps: taken,
         trajectory: recorder.finish(),
         counts: engine.counts(),
         wall: time(case, limits, first),
         ended,
-    })
+    })))
 }
 
 /// The same run once more, to the file: bits are the same, and the timed run writes nothing.

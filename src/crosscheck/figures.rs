@@ -22,9 +22,10 @@ pub(super) fn figures(
     let drawn = drawn(scene);
     let mut curves = Vec::new();
     for (outcome, (run, energy)) in runs.iter().zip(energies).enumerate() {
-        let (Run::Ran { trajectory, .. }, Some(energy)) = (run, energy) else {
+        let (Run::Ran(ran), Some(energy)) = (run, energy) else {
             continue;
         };
+        let trajectory = &ran.trajectory;
         // Both skip what is not finite, so the shorter of the two is what both have.
         let len = energy.t.len().min(trajectory.len());
         curves.push(Curves {
@@ -91,11 +92,7 @@ fn plane(scene: &Scene, runs: &[Run]) -> [usize; 2] {
 /// How wide the scene's start and the first completed run are along an axis, m.
 fn extent(scene: &Scene, runs: &[Run], axis: usize) -> f64 {
     let calm = runs.iter().find_map(|run| match run {
-        Run::Ran {
-            ended: Ended::Completed,
-            trajectory,
-            ..
-        } => Some(trajectory),
+        Run::Ran(ran) if ran.ended == Ended::Completed => Some(&ran.trajectory),
         _ => None,
     });
     let start = scene.particles.iter().map(|p| p.position[axis]);

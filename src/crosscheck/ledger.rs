@@ -13,9 +13,9 @@ pub(super) fn scene_facts(plan: &Plan, runs: &[Run], scale: Option<f64>) -> Scen
     let scene = plan.scene;
     let (mut forces, mut damping) = (0, 0);
     for (case, run) in plan.cases.iter().zip(runs) {
-        if let (Some(_), Run::Ran { counts, .. }) = (case.method, run) {
-            forces += counts.force_evaluations.unwrap_or(0);
-            damping += counts.damping_evaluations.unwrap_or(0);
+        if let (Some(_), Run::Ran(ran)) = (case.method, run) {
+            forces += ran.counts.force_evaluations.unwrap_or(0);
+            damping += ran.counts.damping_evaluations.unwrap_or(0);
         }
     }
     let start = ParticleSystem::initial_state(scene);

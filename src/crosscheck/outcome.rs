@@ -35,14 +35,8 @@ fn one(
             outcome.status = Status::Unsupported;
             outcome.reason = Some(unsupported.reason.clone());
         }
-        Run::Ran {
-            ended,
-            steps,
-            trajectory,
-            counts,
-            wall,
-        } => {
-            (outcome.status, outcome.reason) = match ended {
+        Run::Ran(ran) => {
+            (outcome.status, outcome.reason) = match &ran.ended {
                 Ended::Completed => (Status::Completed, None),
                 Ended::Diverged { step, reason } => {
                     (Status::Diverged, Some(format!("at step {step}: {reason}")))
@@ -52,20 +46,20 @@ fn one(
                 }
             };
             if outcome.status != Status::Completed {
-                outcome.stopped_at_s = Some(*steps as f64 * case.label.timestep);
+                outcome.stopped_at_s = Some(ran.steps as f64 * case.label.timestep);
             }
-            series = EnergySeries::new(&plan.system, trajectory);
+            series = EnergySeries::new(&plan.system, &ran.trajectory);
             let diverged = outcome.status == Status::Diverged;
             outcome.energy = series
                 .as_ref()
                 .map(|series| measure::judge(series, scale, diverged));
-            outcome.momentum = measure::momentum(plan.scene, &plan.system, trajectory);
+            outcome.momentum = measure::momentum(plan.scene, &plan.system, &ran.trajectory);
             outcome.deviation_m = deviations(plan, runs, index);
             outcome.work = Work {
-                steps: *steps,
-                force_evaluations: counts.all_force_passes(),
-                linear_solves: counts.linear_solves,
-                wall_s: Some(wall.clone()),
+                steps: ran.steps,
+                force_evaluations: ran.counts.all_force_passes(),
+                linear_solves: ran.counts.linear_solves,
+                wall_s: Some(ran.wall.clone()),
             };
         }
     }
@@ -105,7 +99,7 @@ fn deviations(
     index: usize,
 ) -> BTreeMap<String, crate::outcome::Deviation> {
     let own = &plan.cases[index].label;
-    let Run::Ran { trajectory, .. } = &runs[index] else {
+    let Run::Ran(ours) = &runs[index] else {
         return BTreeMap::new();
     };
     let tolerance = TOLERANCE * plan.scene.size();
@@ -117,14 +111,10 @@ fn deviations(
             *at != index && case.reference && case.label.timestep == own.timestep
         })
         .filter_map(|(_, (case, run))| {
-            let Run::Ran {
-                trajectory: reference,
-                ..
-            } = run
-            else {
+            let Run::Ran(reference) = run else {
                 return None;
             };
-            let deviation = measure::deviation(trajectory, reference, tolerance)?;
+            let deviation = measure::deviation(&ours.trajectory, &reference.trajectory, tolerance)?;
             Some((case.label.engine.clone(), deviation))
         })
         .collect()

@@ -51,7 +51,9 @@ impl Choice {
         Self {
             methods: with_own_first(
                 scene,
-                DEFAULT_METHODS.iter().filter_map(|id| integrators::find(id)),
+                DEFAULT_METHODS
+                    .iter()
+                    .filter_map(|id| integrators::find(id)),
             ),
             engines: engines::REGISTRY
                 .iter()

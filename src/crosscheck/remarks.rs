@@ -44,17 +44,21 @@ fn why_unstable(method: &'static Method) -> String {
 
 /// Why a completed run's energy did what it did, where that is not simply right.
 fn explain(plan: &Plan, case: &Case, class: EnergyClass) -> Option<String> {
-    match (case.method, class) {
-        (_, EnergyClass::Bounded) => None,
-        (Some(method), _) => by_law(method, class, plan.system.is_damped()),
-        (None, EnergyClass::Dissipating | EnergyClass::Drifting) if has_joints(plan, case) => {
-            Some(format!(
-                "rapier's spring joint is linearly implicit Euler at h = dt/{}, which loses energy \
-                 by design: distance from it is no error of yours",
-                case.substeps
-            ))
+    if class == EnergyClass::Bounded {
+        return None;
+    }
+    let scene = plan.scene;
+    match case.method {
+        Some(method) if scene.springs.is_empty() && scene.gravitational.is_empty() => {
+            under_constant_force(method, class)
         }
-        (None, _) => None,
+        Some(method) => by_law(method, class, plan.system.is_damped()),
+        None if has_joints(plan, case) && class != EnergyClass::Growing => Some(format!(
+            "rapier's spring joint is linearly implicit Euler at h = dt/{}, which loses energy by \
+             design: distance from it is no error of yours",
+            case.substeps
+        )),
+        None => None,
     }
 }
 
@@ -65,26 +69,49 @@ fn has_joints(plan: &Plan, case: &Case) -> bool {
         && !plan.scene.springs.is_empty()
 }
 
-/// The method's energy law in words.
-fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
-    let moves = match class {
+fn moves(class: EnergyClass) -> &'static str {
+    match class {
         EnergyClass::Growing => "gains energy",
         EnergyClass::Dissipating => "loses energy",
         EnergyClass::Drifting | EnergyClass::Bounded => "drifts in energy",
-    };
-    let undamped = if damped { "undamped " } else { "" };
-    match method.oscillator.energy {
-        // The law is why, unless it says that nothing happens.
-        EnergyLaw::Factor { formula, .. } if formula != "1" => Some(format!(
-            "{moves} as its law says: on an {undamped}oscillator by {formula} a step, z = hω"
-        )),
-        _ if damped => Some(format!(
-            "{moves} against the balance E + dissipated - injected: its work integrals are of \
-             order {}, a smaller step closes it",
-            method.order_damped
-        )),
-        _ => Some(format!(
-            "{moves}: it keeps energy bounded only while every mode is well inside its limit"
-        )),
     }
+}
+
+/// No oscillator, no law of one: under a constant acceleration a the error is that of the drift.
+fn under_constant_force(method: &Method, class: EnergyClass) -> Option<String> {
+    (method.order == 1).then(|| {
+        format!(
+            "{}: under a constant acceleration a its position is off by a h t/2, which grows for \
+             as long as the fall lasts",
+            moves(class)
+        )
+    })
+}
+
+/// The method's energy law in words, where it is the cause.
+fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
+    let moves = moves(class);
+    if let EnergyLaw::Factor { factor, formula } = method.oscillator.energy {
+        let grows = factor(0.1) > 1.0;
+        let agrees = match class {
+            EnergyClass::Growing => grows,
+            EnergyClass::Dissipating => factor(0.1) < 1.0,
+            EnergyClass::Drifting | EnergyClass::Bounded => factor(0.1) != 1.0,
+        };
+        if agrees {
+            let undamped = if damped { "undamped " } else { "" };
+            return Some(format!(
+                "{moves} as its law says: on an {undamped}oscillator by {formula} a step, z = hω"
+            ));
+        }
+    }
+    Some(if damped {
+        format!(
+            "{moves} against the balance E + dissipated - injected, which closes to order {} only: \
+             take a smaller step",
+            method.order_damped
+        )
+    } else {
+        format!("{moves}: its law holds only while every mode is well inside the limit")
+    })
 }

@@ -118,10 +118,15 @@ fn sum_of_squares(v: &[f64]) -> f64 {
 
 /// The particle with the largest speed.
 fn fastest(v: &[f64]) -> usize {
-    let speeds = v.chunks_exact(3).map(|v| v.iter().map(|c| c * c).sum::<f64>());
+    let speeds = v
+        .chunks_exact(3)
+        .map(|v| v.iter().map(|c| c * c).sum::<f64>());
     speeds
         .enumerate()
-        .fold((0, 0.0), |best, (i, s)| if s > best.1 { (i, s) } else { best })
+        .fold(
+            (0, 0.0),
+            |best, (i, s)| if s > best.1 { (i, s) } else { best },
+        )
         .0
 }
 

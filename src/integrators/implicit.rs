@@ -20,12 +20,7 @@ pub enum Scheme {
     Trapezoidal,
 }
 
-const fn implicit(
-    id: &'static str,
-    name: &'static str,
-    order: u32,
-    energy: EnergyLaw,
-) -> Method {
+const fn implicit(id: &'static str, name: &'static str, order: u32, energy: EnergyLaw) -> Method {
     Method {
         id,
         name,
@@ -176,9 +171,9 @@ impl Integrator for Implicit {
                 work.advance(end, h);
             }
             Scheme::LinearizedEuler(linearization) => {
-                let power =
-                    self.newton
-                        .single(system, t, h, linearization, state, &mut self.u)?;
+                let power = self
+                    .newton
+                    .single(system, t, h, linearization, state, &mut self.u)?;
                 state.v.copy_from_slice(&self.u);
                 axpy(&mut state.x, h, &self.u);
                 work.advance(power, h);

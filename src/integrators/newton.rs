@@ -129,13 +129,7 @@ impl Newton {
         // Forces that depend on time are met at the end of the step, as in implicit Euler.
         let power = system.acceleration(t + h, &state.x, &state.v, &mut self.a);
         self.jacobian.clear();
-        system.jacobian(
-            t + h,
-            &state.x,
-            &state.v,
-            linearization,
-            &mut self.jacobian,
-        );
+        system.jacobian(t + h, &state.x, &state.v, linearization, &mut self.jacobian);
         for i in 0..n {
             let w = inverse_mass[i];
             self.residual[i] = if w > 0.0 { h * self.a[i] / w } else { 0.0 };

@@ -153,7 +153,7 @@ pub(super) const YOSHIDA4: Method = Method {
 // Omelyan, Mryglod, Folk 2002, their position-extended Forest-Ruth-like solution.
 const XI: f64 = 0.178_617_895_844_809_1;
 const LAMBDA: f64 = -0.212_341_831_062_605_4;
-const CHI: f64 = -0.066_264_582_669_818_49;
+const CHI: f64 = -0.066_264_582_669_818_5;
 
 pub(super) const PEFRL: Method = Method {
     source: "Omelyan, Mryglod, Folk 2002, Comput. Phys. Commun. 146, 188",
@@ -174,14 +174,7 @@ pub(super) const PEFRL: Method = Method {
             DampingTreatment::ExactFlow,
         ))
     },
-    ..symplectic(
-        "pefrl",
-        "PEFRL",
-        4,
-        4,
-        2.989_450,
-        EnergyLaw::Bounded,
-    )
+    ..symplectic("pefrl", "PEFRL", 4, 4, 2.989_450, EnergyLaw::Bounded)
 };
 
 /// The stepper all compositions of kicks and drifts share.

@@ -50,7 +50,7 @@ impl VelocityFlow {
         }
         system.damping(t, &state.x, &state.v, &mut self.r);
         axpy(&mut self.r, 1.0, a0);
-        if !self.taylor(system, t, h, &state.x) {
+        if !self.taylor(system, t, h, &state.x, largest(&state.v)) {
             self.lanczos(system, t, h, &state.x);
         }
         // The displacement ∫ v, then the work of a0 along it; what it exceeds the gain in kinetic
@@ -74,8 +74,9 @@ impl VelocityFlow {
         }
     }
 
-    /// Sums (hG)^k r / (k+1)! and / (k+2)!; false if that does not converge fast.
-    fn taylor(&mut self, system: &dyn System, t: f64, h: f64, x: &[f64]) -> bool {
+    /// Sums (hG)^k r / (k+1)! and / (k+2)! until a term is below the last bit of what it is added
+    /// to, velocities of size `speed`; false if that takes long.
+    fn taylor(&mut self, system: &dyn System, t: f64, h: f64, x: &[f64], speed: f64) -> bool {
         self.term.copy_from_slice(&self.r);
         self.phi1.copy_from_slice(&self.r);
         for (phi2, r) in self.phi2.iter_mut().zip(&self.r) {
@@ -94,7 +95,7 @@ impl VelocityFlow {
             axpy(&mut self.phi1, weight1, &self.term);
             axpy(&mut self.phi2, weight2, &self.term);
             let size = largest(&self.term) * weight1;
-            if size <= 0.25 * f64::EPSILON * largest(&self.phi1) {
+            if size <= 0.25 * f64::EPSILON * largest(&self.phi1).max(speed / h.abs()) {
                 return true;
             }
             if !size.is_finite() || (k == 1 && size > 0.5 * largest(&self.r)) {
@@ -136,7 +137,8 @@ impl VelocityFlow {
                 break;
             }
             betas.push(beta);
-            self.basis.push(self.next.iter().map(|r| r / beta).collect());
+            self.basis
+                .push(self.next.iter().map(|r| r / beta).collect());
         }
         let m = alphas.len();
         let mut tridiagonal = DMatrix::zeros(m, m);
@@ -171,13 +173,10 @@ fn phi2(z: f64) -> f64 {
     if z.abs() > 0.5 {
         return (z.exp_m1() - z) / z / z;
     }
-    // The closed form cancels here; 16 terms reach rounding for |z| <= 1/2.
-    let mut sum = 0.0;
-    for k in (2..18).rev() {
-        sum = (sum * z + 1.0) / k as f64;
-    }
-    // Horner above ends one division early: 1/2 + z/6 + z²/24 + ...
-    sum
+    // The closed form cancels here; 16 terms of 1/2 + z/6 + z²/24 + ... reach rounding.
+    (2..18)
+        .rev()
+        .fold(0.0, |sum, k| (sum * z + 1.0) / f64::from(k))
 }
 
 fn largest(u: &[f64]) -> f64 {

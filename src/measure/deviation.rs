@@ -40,9 +40,8 @@ pub fn deviation(ours: &Trajectory, reference: &Trajectory, tolerance: f64) -> O
 
 /// Largest distance between the same particle of two states, m.
 fn farthest(a: &[f64], b: &[f64]) -> f64 {
-    let square = |(a, b): (&[f64], &[f64])| -> f64 {
-        a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
-    };
+    let square =
+        |(a, b): (&[f64], &[f64])| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum() };
     a.chunks_exact(3)
         .zip(b.chunks_exact(3))
         .map(square)

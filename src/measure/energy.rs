@@ -82,10 +82,10 @@ impl EnergySeries {
         self.balance.iter().map(|b| (b - start) / scale).collect()
     }
 
-    /// What rounding alone may do to the balance: a random walk of last bits of the largest term,
-    /// to eight standard deviations.
+    /// What rounding alone may do to the balance: half a last bit of the largest term each way a
+    /// step. Mostly it is a random walk, but a constant such as 1/6 rounds the same way every time.
     fn floor(&self) -> f64 {
-        8.0 * f64::EPSILON * self.largest_term * (self.steps.max(1) as f64).sqrt()
+        f64::EPSILON * self.largest_term * self.steps.max(8) as f64
     }
 }
 
@@ -94,7 +94,10 @@ impl EnergySeries {
 pub fn judge(series: &EnergySeries, scale: Option<f64>, diverged: bool) -> Energy {
     let trend = trend(&series.t, &series.balance, series.floor());
     let in_scale = |joules: f64| scale.map(|s| joules / s).filter(|r| r.is_finite());
-    let worst = series.error(1.0).into_iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+    let worst = series
+        .error(1.0)
+        .into_iter()
+        .fold(0.0, |m: f64, e| m.max(e.abs()));
     let interval = [in_scale(trend.interval[0]), in_scale(trend.interval[1])];
     Energy {
         initial_j: Some(series.initial),

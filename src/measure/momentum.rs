@@ -46,5 +46,8 @@ fn totals(scene: &Scene, run: &Trajectory, k: usize) -> ([f64; 3], [f64; 3]) {
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum::<f64>().sqrt()
+    (0..3)
+        .map(|i| (a[i] - b[i]) * (a[i] - b[i]))
+        .sum::<f64>()
+        .sqrt()
 }

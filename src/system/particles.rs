@@ -109,7 +109,10 @@ impl System for ParticleSystem {
     }
 
     fn injected_power(&self, t: f64, _x: &[f64], v: &[f64]) -> f64 {
-        self.effects.iter().map(|(_, e)| e.injected_power(t, v)).sum()
+        self.effects
+            .iter()
+            .map(|(_, e)| e.injected_power(t, v))
+            .sum()
     }
 
     fn potential(&self, t: f64, x: &[f64]) -> f64 {

@@ -26,13 +26,7 @@ pub struct NpzWriter<S: Scratch> {
 impl<S: Scratch> NpzWriter<S> {
     /// Every `every`-th of `steps` steps of `particles` particles, and the last.
     /// The scratch streams are empty.
-    pub fn new(
-        scratch: [S; 2],
-        particles: usize,
-        steps: u64,
-        every: u64,
-        timestep: f64,
-    ) -> Self {
+    pub fn new(scratch: [S; 2], particles: usize, steps: u64, every: u64, timestep: f64) -> Self {
         let [x, v] = scratch.map(BufWriter::new);
         Self {
             x,
@@ -57,7 +51,11 @@ impl<S: Scratch> NpzWriter<S> {
         let rows = self.rows;
         let (every, last_step, timestep) = (self.selection.every, self.last_step, self.timestep);
         let time = |row| {
-            let step = if row + 1 < rows { row * every } else { last_step };
+            let step = if row + 1 < rows {
+                row * every
+            } else {
+                last_step
+            };
             Ok(step as f64 * timestep)
         };
         let shape = [rows, self.particles as u64, 3];
@@ -76,7 +74,11 @@ impl<S: Scratch> NpzWriter<S> {
             scratch.seek(SeekFrom::Start(0))?;
             archive.start_file(name, options)?;
             let count = rows * self.particles as u64 * 3;
-            write_array(&mut archive, &shape, doubles(BufReader::new(scratch), count))?;
+            write_array(
+                &mut archive,
+                &shape,
+                doubles(BufReader::new(scratch), count),
+            )?;
         }
         Ok(archive.finish()?)
     }
@@ -122,7 +124,8 @@ impl<S: Scratch> Observer for NpzWriter<S> {
         if self.failed.is_none() {
             self.rows += 1;
             self.last_step = step;
-            let written = append(&mut self.x, &state.x).and_then(|()| append(&mut self.v, &state.v));
+            let written =
+                append(&mut self.x, &state.x).and_then(|()| append(&mut self.v, &state.v));
             self.failed = written.err();
         }
     }

@@ -201,10 +201,15 @@ pub fn free_triangle(damping: f64, model: DampingModel) -> Scene {
 
 /// The system and start of a scene.
 pub fn built(scene: &Scene) -> (ParticleSystem, State) {
-    (ParticleSystem::new(scene), ParticleSystem::initial_state(scene))
+    (
+        ParticleSystem::new(scene),
+        ParticleSystem::initial_state(scene),
+    )
 }
 
 /// Largest difference between two vectors.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()))
+    a.iter()
+        .zip(b)
+        .fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()))
 }

@@ -49,7 +49,9 @@ pub fn fixed(position: [f64; 3]) -> Particle {
 
 /// A shipped scene.
 fn shipped(path: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(path);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenes")
+        .join(path);
     scene::read(&path, &integrators::ids()).expect("a valid scene")
 }
 
@@ -60,13 +62,24 @@ pub fn course(number: usize) -> Scene {
 
 /// Every file of a folder of scenes, by name.
 fn folder(name: &str) -> Vec<Scene> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenes")
+        .join(name);
     let entries = std::fs::read_dir(path).expect("a folder");
     let mut files: Vec<_> = entries
-        .map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8"))
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .into_string()
+                .expect("UTF-8")
+        })
         .collect();
     files.sort();
-    files.iter().map(|file| shipped(&format!("{name}/{file}"))).collect()
+    files
+        .iter()
+        .map(|file| shipped(&format!("{name}/{file}")))
+        .collect()
 }
 
 /// One mass on one spring along x, without gravity; displaced by `amplitude`.
