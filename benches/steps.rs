@@ -73,7 +73,8 @@ fn recording(c: &mut Criterion) {
     let scene = chain();
     let system = ParticleSystem::new(&scene);
     let scale = measure::energy_scale(&scene, &system);
-    let limits = Limits::new(system.clone(), scale).now_and_then();
+    let limits =
+        Limits::new(system.clone(), measure::divergence_limit(&scene, scale)).now_and_then();
     let steps = scene.steps(scene.solver.timestep);
     let mut group = c.benchmark_group("chain of 20, 1,000,000 steps");
     group.sample_size(10);

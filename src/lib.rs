@@ -1,4 +1,39 @@
-//! Cross-checks particle-spring integrators against rapier.
+//! `springcheck` holds hand-written particle-spring integrators against rapier and the laws of
+//! mechanics: who gains energy, who loses it, who is where, and at what cost.
+//!
+//! Data flows one way, and the modules are its stages in order:
+//!
+//! ```text
+//! scene file -> Scene -> System (flat vectors, effects) -> Engine (integrator | rapier)
+//!            -> Trajectory -> measures -> Report -> terminal, Markdown, JSON, SVG
+//! ```
+//!
+//! - [`scene`] reads a YAML file, strictly; [`effects`] builds only the forces it calls for;
+//! - [`system`] is what an integrator sees: vectors, accelerations, Jacobians, no particles;
+//! - [`integrators`] are rows of facts over three steppers: tableau, splitting, Newton;
+//! - [`engines`] run an integrator, or rapier worlds built from the same scene;
+//! - [`trajectory`] keeps a bounded record of a run, or all of it in a file;
+//! - [`measure`] turns records into energy verdicts, deviations, and the twin proof;
+//! - [`crosscheck`] runs everything side by side and fills a [`Report`](outcome::Report);
+//! - [`report`] writes it down.
+//!
+//! ```
+//! use springcheck::crosscheck::{Choice, Plan, Quiet};
+//! use springcheck::{integrators, outcome::EnergyClass, scene};
+//!
+//! let yaml = b"solver: {type: explicit_euler, timestep: 0.01, gravity: 0}
+//! particles:
+//! - {pos: [0, 0, 0], fixed: true}
+//! - {pos: [0.5, 0, 0], mass: 1}
+//! springs: [{particle_ids: [0, 1], stiffness: 50, rest_length: 0}]
+//! ";
+//! let scene = scene::parse(yaml, "oscillator.yml", &integrators::ids())?;
+//! let plan = Plan::new(&scene, &Choice::default_for(&scene));
+//! let report = plan.execute(&Quiet)?;
+//! let energy = report.outcomes[0].energy.as_ref().expect("it ran");
+//! assert_eq!(energy.class, Some(EnergyClass::Growing));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod crosscheck;
 pub mod effects;

@@ -9,7 +9,7 @@ use clap::ValueEnum;
 use springcheck::crosscheck::{Choice, ChosenEngine, Estimate, Plan};
 use springcheck::engines;
 use springcheck::integrators;
-use springcheck::outcome::{CheckStatus, Report};
+use springcheck::outcome::{CheckStatus, Figures, Report};
 use springcheck::report;
 use springcheck::scene::{self, Scene};
 use std::io::Write;
@@ -88,6 +88,7 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         .iter()
         .map(|path| read(args, path))
         .collect::<anyhow::Result<Vec<_>>>()?;
+    distinct(args)?;
     let mut reports = Vec::new();
     for (scene, path) in scenes.iter().zip(&args.scenes) {
         let report = one(args, quiet, scene, path)?;
@@ -98,6 +99,12 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         reports.push(report);
     }
     if args.format != Format::Human {
+        if args.output.is_none() {
+            // No files, so no links to them.
+            for report in &mut reports {
+                report.figures = Figures::default();
+            }
+        }
         let format = report::format(args.format.id()).context("a format without a row")?;
         super::print(&(format.render)(&reports))?;
     }
@@ -112,9 +119,16 @@ fn read(args: &Args, path: &std::path::Path) -> anyhow::Result<Scene> {
         scene.duration = duration;
     }
     let custom = args.rapier.iter().filter_map(|c| c.timestep.as_ref());
-    let all = args.timestep.iter().chain(custom);
-    for &timestep in all.chain([&scene.solver.timestep]) {
-        scene::check_times(timestep, scene.duration)?;
+    let own = [scene.solver.timestep];
+    // A flag replaces the file's timestep, which then need not fit.
+    let common = if args.timestep.is_empty() {
+        &own[..]
+    } else {
+        &args.timestep
+    };
+    for &timestep in common.iter().chain(custom) {
+        scene::check_times(timestep, scene.duration)
+            .with_context(|| format!("{}: timestep {timestep}", path.display()))?;
     }
     Ok(scene)
 }
@@ -144,6 +158,26 @@ fn one(args: &Args, quiet: bool, scene: &Scene, path: &std::path::Path) -> anyho
         place.write(&report)?;
     }
     Ok(report)
+}
+
+/// Two scenes must not write into one folder.
+fn distinct(args: &Args) -> anyhow::Result<()> {
+    for (at, path) in args.scenes.iter().enumerate() {
+        let Some(own) = place(args, path) else {
+            return Ok(());
+        };
+        let same =
+            |other: &&PathBuf| place(args, other).is_some_and(|p| p.folder() == own.folder());
+        if let Some(other) = args.scenes[..at].iter().find(same) {
+            bail!(
+                "{} and {} would both write to {}",
+                other.display(),
+                path.display(),
+                own.folder().display()
+            );
+        }
+    }
+    Ok(())
 }
 
 /// Reports are files only where somebody asked for them or looks at the table.

@@ -74,10 +74,26 @@ pub(super) fn twin_proof(scene: &Scene) -> Vec<Check> {
                 twin::Status::Inconclusive => CheckStatus::Inconclusive,
                 twin::Status::Skip => CheckStatus::Skip,
             },
-            measured: proof.measured,
-            bound: Some(proof.bound),
+            measured: proof.measured.filter(|m| m.is_finite()),
+            bound: Some(proof.bound).filter(|b| b.is_finite()),
             derivation: proof.derivation,
             message: proof.message,
         })
         .collect()
+}
+
+/// Says why errors have no relative size in a scene without an energy scale.
+pub(super) fn no_scale(scale: Option<f64>) -> Option<Check> {
+    scale.is_none().then(|| Check {
+        id: "energy-scale".to_owned(),
+        subject: "scene".to_owned(),
+        status: CheckStatus::Skip,
+        measured: None,
+        bound: None,
+        derivation: "S = K(0) + U_elastic(0), else the sum of m |g| L".to_owned(),
+        message:
+            "everything starts at rest and unstretched, without weight or without size: energy \
+                  errors have no relative size here"
+                .to_owned(),
+    })
 }

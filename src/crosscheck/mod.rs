@@ -28,7 +28,8 @@ impl Plan<'_> {
     /// Only when a trajectory file could not be written; whatever an engine does is an outcome.
     pub fn execute(&self, host: &dyn Host) -> Result<Report, SaveError> {
         let scale = measure::energy_scale(self.scene, &self.system);
-        let limits = Limits::new(self.system.clone(), scale);
+        let limit = measure::divergence_limit(self.scene, scale);
+        let limits = Limits::new(self.system.clone(), limit);
         let (runs, proofs) = rayon::join(
             || execute::all(&self.cases, self.scene, &limits, host),
             || ledger::twin_proof(self.scene),
@@ -47,7 +48,7 @@ impl Plan<'_> {
             },
             figures: figures::figures(self, &runs, &series, scale),
             outcomes,
-            checks: proofs,
+            checks: proofs.into_iter().chain(ledger::no_scale(scale)).collect(),
         })
     }
 }

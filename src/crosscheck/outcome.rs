@@ -38,9 +38,10 @@ fn one(
         Run::Ran(ran) => {
             (outcome.status, outcome.reason) = match &ran.ended {
                 Ended::Completed => (Status::Completed, None),
-                Ended::Diverged { step, reason } => {
-                    (Status::Diverged, Some(format!("at step {step}: {reason}")))
-                }
+                Ended::Diverged { step, reason } => (
+                    Status::Diverged,
+                    Some(format!("in step {}: {reason}", step - 1)),
+                ),
                 Ended::Failed { step, error } => {
                     (Status::Failed, Some(format!("in step {step}: {error}")))
                 }
@@ -102,7 +103,7 @@ fn deviations(
     let Run::Ran(ours) = &runs[index] else {
         return BTreeMap::new();
     };
-    let tolerance = TOLERANCE * plan.scene.size();
+    let size = plan.scene.size();
     plan.cases
         .iter()
         .zip(runs)
@@ -114,6 +115,13 @@ fn deviations(
             let Run::Ran(reference) = run else {
                 return None;
             };
+            // A lone particle has no size but the way it goes.
+            let size = if size > 0.0 {
+                size
+            } else {
+                measure::reach(&reference.trajectory)
+            };
+            let tolerance = TOLERANCE * size;
             let deviation = measure::deviation(&ours.trajectory, &reference.trajectory, tolerance)?;
             Some((case.label.engine.clone(), deviation))
         })

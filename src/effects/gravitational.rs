@@ -45,6 +45,7 @@ impl Gravitational {
             .gravitational
             .iter()
             .filter(|pair| pair.g != 0.0)
+            .filter(|pair| !pair.ends.iter().all(|&end| scene.particles[end].fixed))
             .map(|pair| Pair {
                 ends: pair.ends,
                 strength: pair.g

@@ -57,6 +57,8 @@ impl Springs {
         let springs: Vec<_> = scene
             .springs
             .iter()
+            // Between two fixed particles a spring moves nothing, and what is fixed has no energy.
+            .filter(|s| !s.ends.iter().all(|&end| scene.particles[end].fixed))
             .map(|s| Spring {
                 ends: s.ends.map(|end| end as u32),
                 stiffness: s.stiffness,

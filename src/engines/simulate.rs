@@ -18,11 +18,12 @@ pub trait Observer {
     }
 }
 
-/// When a run counts as diverged: non-finite, or K + U_elastic beyond 1e12 S.
+/// When a run counts as diverged: non-finite, or K + U_elastic beyond a limit.
 #[derive(Clone)]
 pub struct Limits {
     system: ParticleSystem,
-    scale: Option<f64>,
+    /// Joules.
+    limit: Option<f64>,
     /// Largest mass, kg.
     heaviest: f64,
     /// Steps from one look to the next.
@@ -45,20 +46,19 @@ pub enum Ended {
     },
 }
 
-/// Diverged beyond this multiple of S.
-const DIVERGED: f64 = 1e12;
-/// The elastic energy is looked at only when the kinetic energy has passed this multiple of S: in
-/// an exploding run it passes first unless one step alone grows the energy a millionfold.
-const SUSPECT: f64 = 1e6;
+/// The elastic energy is looked at only when the kinetic energy has passed this share of the limit:
+/// in an exploding run it passes first unless one step alone grows the energy a millionfold.
+const SUSPECT: f64 = 1e-6;
 
 impl Limits {
-    /// `scale` is the energy scale S, J; None leaves only the finiteness test.
-    pub fn new(system: ParticleSystem, scale: Option<f64>) -> Self {
+    /// `limit` in joules, as [`divergence_limit`](crate::measure::divergence_limit) gives it; None
+    /// leaves only the finiteness test.
+    pub fn new(system: ParticleSystem, limit: Option<f64>) -> Self {
         let inverse = system.inverse_mass().iter().filter(|w| **w > 0.0);
         let heaviest = inverse.fold(0.0, |m: f64, w| m.max(1.0 / w));
         Self {
             system,
-            scale,
+            limit,
             heaviest,
             every: 1,
         }
@@ -77,8 +77,8 @@ impl Limits {
     fn exceeded(&self, state: &State) -> Option<String> {
         // The squared speeds bound K from above at half its cost.
         let kinetic = 0.5 * self.heaviest * sum_of_squares(&state.v);
-        let calm = match self.scale {
-            Some(scale) => kinetic <= SUSPECT * scale,
+        let calm = match self.limit {
+            Some(limit) => kinetic <= SUSPECT * limit,
             None => kinetic.is_finite(),
         };
         // NaN is not calm.
@@ -95,8 +95,7 @@ impl Limits {
         if !energy.is_finite() {
             return Some("the energy is no longer finite".to_owned());
         }
-        let scale = self.scale?;
-        (energy > DIVERGED * scale).then(|| {
+        (energy > self.limit?).then(|| {
             let fastest = fastest(&state.v);
             format!("its energy passed 1e12 times the scene's scale, fastest at particle {fastest}")
         })

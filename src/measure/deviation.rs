@@ -3,7 +3,8 @@
 use crate::outcome::Deviation;
 use crate::trajectory::Trajectory;
 
-/// The distance at which `first_exceeds_s` is read, as a share of the scene's size.
+/// The distance at which `first_exceeds_s` is read, as a share of the scene's size, or of the way
+/// gone where the scene has no size.
 pub const TOLERANCE: f64 = 0.01;
 
 /// Largest distance over the particles between two runs of the same scene and timestep, over the
@@ -36,6 +37,13 @@ pub fn deviation(ours: &Trajectory, reference: &Trajectory, tolerance: f64) -> O
         }
     }
     result.filter(|d| d.max.is_finite())
+}
+
+/// How far any particle gets from where it started, m, over the recorded instants.
+pub fn reach(run: &Trajectory) -> f64 {
+    (0..run.len())
+        .map(|k| farthest(run.x(k), run.x(0)))
+        .fold(0.0, f64::max)
 }
 
 /// Largest distance between the same particle of two states, m.

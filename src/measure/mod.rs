@@ -7,8 +7,8 @@ mod scale;
 mod trend;
 pub mod twin;
 
-pub use deviation::{TOLERANCE, deviation};
+pub use deviation::{TOLERANCE, deviation, reach};
 pub use energy::{EnergySeries, judge};
 pub use momentum::momentum;
-pub use scale::energy_scale;
+pub use scale::{divergence_limit, energy_scale};
 pub use trend::{Trend, trend};

@@ -1,6 +1,6 @@
 //! The energy scale S that errors are relative to.
 
-use crate::scene::Scene;
+use crate::scene::{Particle, Scene, Spring};
 use crate::system::{ParticleSystem, System};
 
 /// S in joules: K(0) + U_elastic(0); if that is 0, the sum over free particles of m |g| L, with L
@@ -25,9 +25,23 @@ pub fn energy_scale(scene: &Scene, system: &ParticleSystem) -> Option<f64> {
     (scale > 0.0).then_some(scale)
 }
 
+/// The energy K + U_elastic beyond which a run counts as diverged, joules: 1e12 `scale`, and never
+/// less than a thousand times what a free fall for the whole duration gains, which is motion however
+/// small the scale. None without either.
+pub fn divergence_limit(scene: &Scene, scale: Option<f64>) -> Option<f64> {
+    let wind = scene.wind.as_ref().map_or(0.0, |wind| wind.strength.abs());
+    let fall = |p: &Particle| {
+        let speed = (scene.solver.gravity.abs() + wind / p.mass) * scene.duration;
+        0.5 * p.mass * speed * speed
+    };
+    let free = scene.particles.iter().filter(|p| !p.fixed);
+    let limit = (1e12 * scale.unwrap_or(0.0)).max(1e3 * free.map(fall).sum::<f64>());
+    (limit > 0.0 && limit.is_finite()).then_some(limit)
+}
+
 /// Elastic energy of all springs when each is off its rest length by a few last bits.
 fn elastic_rounding(scene: &Scene) -> f64 {
-    let off = |s: &crate::scene::Spring| {
+    let off = |s: &Spring| {
         let stretch = 8.0 * f64::EPSILON * s.rest_length;
         0.5 * s.stiffness * stretch * stretch
     };

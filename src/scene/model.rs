@@ -1,5 +1,7 @@
 //! The scene as the file states it, checked and complete: every default resolved, every id valid.
 
+use parry3d::bounding_volume::Aabb;
+use parry3d::math::Vector;
 use serde::Serialize;
 
 /// A checked scene. Particle ids are indices into `particles`.
@@ -123,23 +125,14 @@ impl Scene {
     /// The scene's size L in metres: the diagonal of the box around all initial positions plus the
     /// longest rest length. The length scale of energies and tolerances; 0 for a lone particle.
     pub fn size(&self) -> f64 {
-        let mut diagonal = 0.0;
-        for axis in 0..3 {
-            let (lo, hi) = self
-                .particles
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| {
-                    (lo.min(p.position[axis]), hi.max(p.position[axis]))
-                });
-            if hi > lo {
-                diagonal += (hi - lo) * (hi - lo);
-            }
-        }
-        let longest = self
-            .springs
-            .iter()
-            .fold(0.0_f64, |l, s| l.max(s.rest_length));
-        f64::sqrt(diagonal) + longest
+        let corners = self.particles.iter().map(|p| Vector::from(p.position));
+        let diagonal = if self.particles.is_empty() {
+            0.0
+        } else {
+            Aabb::from_points(corners).extents().length()
+        };
+        let rest_lengths = self.springs.iter().map(|s| s.rest_length);
+        diagonal + rest_lengths.fold(0.0, f64::max)
     }
 }
 

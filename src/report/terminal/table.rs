@@ -214,9 +214,10 @@ fn legend(report: &Report, left_out: &[String]) -> String {
         Some(scale) => format!("over S = {} J", words::short(scale)),
         None => "(this scene has no scale)".into(),
     };
-    let mut text = format!(
-        "▸ own integrator | energy: largest error {scale} | m from: largest distance of a particle"
-    );
+    let mut text = format!("▸ own integrator | energy: largest error {scale}");
+    if report.outcomes.iter().any(|o| !o.deviation_m.is_empty()) {
+        text += " | m from: largest distance of a particle";
+    }
     let at_floor = |o: &Outcome| error(report, o) == "floor";
     if report.outcomes.iter().any(at_floor) {
         text += " | floor: below ten times the truth's own error";
