@@ -58,8 +58,7 @@ impl Place {
 
     /// Writes the report in every file format, and its figures.
     pub fn write(&self, report: &Report) -> anyhow::Result<()> {
-        for id in ["markdown", "json"] {
-            let format = report::format(id).context("a format without a row")?;
+        for format in report::FORMATS.iter().filter(|format| format.file) {
             let name = format!("report.{}", format.extension);
             let text = (format.render)(std::slice::from_ref(report));
             self.put(&name, text.as_bytes())?;

@@ -5,7 +5,7 @@ use super::progress::Progress;
 use super::rapier::Custom;
 use super::save::{FileKind, Files};
 use anyhow::{Context, bail};
-use clap::ValueEnum;
+use clap::builder::PossibleValuesParser;
 use springcheck::crosscheck::{Choice, ChosenEngine, Estimate, Plan};
 use springcheck::engines;
 use springcheck::integrators;
@@ -44,8 +44,8 @@ pub struct Args {
     duration: Option<f64>,
 
     /// What goes to stdout.
-    #[arg(long, value_enum, default_value_t = Format::Human)]
-    format: Format,
+    #[arg(long, default_value = HUMAN, value_parser = formats())]
+    format: String,
 
     /// Where reports go [default: reports; with a --format other than human, nowhere].
     #[arg(long, value_name = "DIR")]
@@ -60,21 +60,11 @@ pub struct Args {
     every: u64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    Human,
-    Json,
-    Markdown,
-}
+/// The format whose texts are tables for people, with files beside them.
+const HUMAN: &str = "human";
 
-impl Format {
-    fn id(self) -> &'static str {
-        match self {
-            Format::Human => "human",
-            Format::Json => "json",
-            Format::Markdown => "markdown",
-        }
-    }
+fn formats() -> PossibleValuesParser {
+    PossibleValuesParser::new(report::FORMATS.iter().map(|format| format.id))
 }
 
 /// Work expected to take longer than this is announced, seconds.
@@ -92,20 +82,20 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let mut reports = Vec::new();
     for (scene, path) in scenes.iter().zip(&args.scenes) {
         let report = one(args, quiet, scene, path)?;
-        if args.format == Format::Human {
+        if args.format == HUMAN {
             let several = if reports.is_empty() { "" } else { "\n" };
             super::print(&format!("{several}{}", human(args, path, &report)))?;
         }
         reports.push(report);
     }
-    if args.format != Format::Human {
+    if args.format != HUMAN {
         if args.output.is_none() {
             // No files, so no links to them.
             for report in &mut reports {
                 report.figures = Figures::default();
             }
         }
-        let format = report::format(args.format.id()).context("a format without a row")?;
+        let format = report::format(&args.format).context("a format without a row")?;
         super::print(&(format.render)(&reports))?;
     }
     let failed = |report: &Report| report.checks.iter().any(|c| c.status == CheckStatus::Fail);
@@ -182,10 +172,10 @@ fn distinct(args: &Args) -> anyhow::Result<()> {
 
 /// Reports are files only where somebody asked for them or looks at the table.
 fn place(args: &Args, scene: &std::path::Path) -> Option<Place> {
-    match (&args.output, args.format) {
-        (Some(output), _) => Some(Place::new(output, scene)),
-        (None, Format::Human) => Some(Place::new("reports".as_ref(), scene)),
-        (None, _) => None,
+    match &args.output {
+        Some(output) => Some(Place::new(output, scene)),
+        None if args.format == HUMAN => Some(Place::new("reports".as_ref(), scene)),
+        None => None,
     }
 }
 

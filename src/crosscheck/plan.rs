@@ -88,6 +88,8 @@ pub struct Case<'a> {
     pub substeps: u32,
     /// The row, for one of our integrators.
     pub method: Option<&'static Method>,
+    /// Why it loses energy by design, if it does.
+    pub dissipates: Option<String>,
     /// Others report their distance from it.
     pub reference: bool,
     /// A fresh engine at the scene's start.
@@ -171,6 +173,7 @@ fn integrator_case<'a>(
         kind: Kind::Integrator,
         substeps: 1,
         method: Some(method),
+        dissipates: None,
         reference: false,
         build: Box::new(move || {
             let engine = IntegratorEngine::new(scene, system.clone(), method, &settings, timestep);
@@ -188,9 +191,12 @@ fn engine_case<'a>(
     let (row, system) = (row.clone(), system.clone());
     Case {
         label: label(scene, &row.id, timestep),
-        kind: Kind::Rapier,
+        kind: row.kind,
         substeps: row.substeps(),
         method: None,
+        dissipates: row
+            .dissipates
+            .map(|why| why.replace("{n}", &row.substeps().to_string())),
         reference: row.reference,
         build: Box::new(move || row.build(scene, system.clone(), timestep)),
     }

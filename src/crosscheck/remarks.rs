@@ -1,9 +1,8 @@
 //! One plain sentence for each row that needs one.
 
 use super::plan::{Case, Plan};
-use crate::engines;
 use crate::integrators::{EnergyLaw, Method, Stable};
-use crate::outcome::{EnergyClass, Kind, Outcome, Status};
+use crate::outcome::{EnergyClass, Outcome, Status};
 use crate::system::System;
 
 pub(super) fn remarks(plan: &Plan, case: &Case, outcome: &Outcome) -> Vec<String> {
@@ -47,26 +46,17 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass) -> Option<String> {
     if class == EnergyClass::Bounded {
         return None;
     }
-    let scene = plan.scene;
+    let effects = plan.system.effects();
     match case.method {
-        Some(method) if scene.springs.is_empty() && scene.gravitational.is_empty() => {
+        Some(method) if effects.iter().all(|(row, _)| row.constant) => {
             under_constant_force(method, class)
         }
         Some(method) => by_law(method, class, plan.system.is_damped()),
-        None if has_joints(plan, case) && class != EnergyClass::Growing => Some(format!(
-            "rapier's spring joint is linearly implicit Euler at h = dt/{}, which loses energy by \
-             design: distance from it is no error of yours",
-            case.substeps
-        )),
+        None if class != EnergyClass::Growing && effects.iter().any(|(row, _)| row.elastic) => {
+            case.dissipates.clone()
+        }
         None => None,
     }
-}
-
-/// Whether the case is rapier moving springs by its own joints.
-fn has_joints(plan: &Plan, case: &Case) -> bool {
-    case.kind == Kind::Rapier
-        && case.label.engine != engines::rapier::FORCES_ID
-        && !plan.scene.springs.is_empty()
 }
 
 fn moves(class: EnergyClass) -> &'static str {

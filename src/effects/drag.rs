@@ -9,6 +9,7 @@ pub(super) const ROW: EffectRow = EffectRow {
     summary: "linear drag on particles with a `drag` coefficient",
     source: "f = -b v (Stokes), dissipates b v²",
     elastic: false,
+    constant: false,
     build: |scene| Drag::new(scene).map(boxed),
 };
 

@@ -10,6 +10,7 @@ pub(super) const ROW: EffectRow = EffectRow {
     summary: "attraction G m1 m2 / r² between two particles",
     source: "Newton; U = -G m1 m2 / r; no softening, zero force at coincidence",
     elastic: false,
+    constant: false,
     build: |scene| Gravitational::new(scene).map(boxed),
 };
 

@@ -9,6 +9,7 @@ pub(super) const ROW: EffectRow = EffectRow {
     summary: "uniform gravity on every free particle, along `up`",
     source: "f = m g, U = -m g x_up; zero at the origin",
     elastic: false,
+    constant: true,
     build: |scene| Gravity::new(scene).map(boxed),
 };
 

@@ -81,6 +81,8 @@ pub struct EffectRow {
     pub source: &'static str,
     /// Its potential counts as U_elastic in the energy scale.
     pub elastic: bool,
+    /// Its force depends on neither position nor velocity.
+    pub constant: bool,
     /// None when the scene does not ask for it.
     pub build: fn(&Scene) -> Option<Box<dyn Effect>>,
 }

@@ -10,6 +10,7 @@ pub(super) const ROW: EffectRow = EffectRow {
     summary: "linear springs with axial or isotropic dampers",
     source: "f = k (l - L) n + c (v·n) n (axial) or c v (isotropic); U = k (l - L)² / 2",
     elastic: true,
+    constant: false,
     build: |scene| Springs::new(scene).map(boxed),
 };
 

@@ -9,6 +9,7 @@ pub(super) const ROW: EffectRow = EffectRow {
     summary: "a constant force in newtons on every free particle",
     source: "f = strength * direction; its work is counted as injected, it has no potential here",
     elastic: false,
+    constant: true,
     build: |scene| Wind::new(scene).map(boxed),
 };
 

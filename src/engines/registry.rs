@@ -3,6 +3,7 @@
 
 use super::rapier::{self, Settings};
 use super::{Engine, Unsupported};
+use crate::outcome::Kind;
 use crate::scene::Scene;
 use crate::system::ParticleSystem;
 use std::borrow::Cow;
@@ -13,6 +14,10 @@ pub struct EngineRow {
     /// The id reports and the command line use.
     pub id: Cow<'static, str>,
     pub summary: &'static str,
+    pub kind: Kind,
+    /// Why a run loses energy by this engine's design, `{n}` standing for its substeps; None where
+    /// it should not.
+    pub dissipates: Option<&'static str>,
     /// What its solver is told.
     pub settings: Settings,
     /// Runs unless the command line says otherwise.

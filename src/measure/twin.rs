@@ -75,8 +75,7 @@ pub fn prove_pair(ours: &Scene, theirs: &Scene, timestep: f64) -> Vec<Proof> {
     };
     let mut proofs = vec![pair.forces(), pair.joints()];
     let system = ParticleSystem::new(&pair.ours);
-    let falls = |id| id == "gravity" || id == "wind";
-    if system.effects().iter().all(|(row, _)| falls(row.id)) {
+    if system.effects().iter().all(|(row, _)| row.constant) {
         proofs.push(pair.fall());
     }
     proofs

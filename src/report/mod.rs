@@ -23,6 +23,8 @@ pub struct Format {
     pub id: &'static str,
     /// Of the file it goes to, without the dot.
     pub extension: &'static str,
+    /// Written beside the scene's figures in every run that writes files.
+    pub file: bool,
     /// One text for all the reports of a run.
     pub render: fn(&[Report]) -> String,
 }
@@ -32,16 +34,19 @@ pub const FORMATS: &[Format] = &[
     Format {
         id: "human",
         extension: "txt",
+        file: false,
         render: |reports| joined(reports, terminal::render),
     },
     Format {
         id: "json",
         extension: "json",
+        file: true,
         render: json::render_all,
     },
     Format {
         id: "markdown",
         extension: "md",
+        file: true,
         render: |reports| joined(reports, markdown::render),
     },
 ];

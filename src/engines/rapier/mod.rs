@@ -19,12 +19,18 @@ pub use joints::RapierEngine;
 pub use settings::Settings;
 
 use super::{Engine, EngineRow};
+use crate::outcome::Kind;
 use std::borrow::Cow;
 
 /// rapier as it ships.
 pub(super) const RAPIER: EngineRow = EngineRow {
     id: Cow::Borrowed("rapier"),
     summary: "rapier at its defaults: spring joints, 4 substeps, one sweep each",
+    kind: Kind::Rapier,
+    dissipates: Some(
+        "rapier's spring joint is linearly implicit Euler at h = dt/{n}, which loses energy by \
+         design: distance from it is no error of yours",
+    ),
     settings: Settings::DEFAULT,
     default: true,
     reference: true,
@@ -43,13 +49,11 @@ pub(super) const CONVERGED: EngineRow = EngineRow {
     ..RAPIER
 };
 
-/// The id of the engine that has no joints.
-pub const FORCES_ID: &str = "rapier-forces";
-
 /// rapier's bodies under our forces.
 pub(super) const FORCES: EngineRow = EngineRow {
-    id: Cow::Borrowed(FORCES_ID),
+    id: Cow::Borrowed("rapier-forces"),
     summary: "rapier's bodies under this program's forces: symplectic Euler",
+    dissipates: None,
     settings: Settings::FORCES,
     construct: |scene, system, timestep, _| {
         let engine = RapierForces::new(scene, system, timestep)?;
