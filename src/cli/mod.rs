@@ -1,5 +1,6 @@
 //! Verbs, one file each: the only place that touches files, the terminal and exit codes.
 
+mod host;
 mod list;
 mod output;
 mod progress;

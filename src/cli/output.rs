@@ -1,12 +1,8 @@
 //! Where reports go, and how they get there whole.
 
-use super::progress::Progress;
-use super::save::Files;
 use anyhow::Context;
-use springcheck::crosscheck::{Host, Label, Saver};
 use springcheck::outcome::Report;
 use springcheck::report;
-use springcheck::trajectory::SaveError;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
@@ -92,24 +88,4 @@ pub fn temporary(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     builder.prefix(".springcheck-").tempfile_in(folder)
-}
-
-/// Progress and files as the library sees them.
-pub fn host<'a>(progress: &'a Progress, files: Option<&'a Files>) -> impl Host + 'a {
-    Terminal { progress, files }
-}
-
-struct Terminal<'a> {
-    progress: &'a Progress,
-    files: Option<&'a Files>,
-}
-
-impl Host for Terminal<'_> {
-    fn saver(&self, case: &Label) -> Result<Option<Box<dyn Saver>>, SaveError> {
-        self.files.map(|files| files.saver(case)).transpose()
-    }
-
-    fn progress(&self, steps: u64) {
-        self.progress.advance(steps);
-    }
 }

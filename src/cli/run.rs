@@ -1,6 +1,7 @@
 //! `springcheck run SCENE...`
 
-use super::output::{self, Place};
+use super::host::host;
+use super::output::Place;
 use super::progress::Progress;
 use super::rapier::Custom;
 use super::save::{FileKind, Files};
@@ -142,7 +143,7 @@ fn one(args: &Args, quiet: bool, scene: &Scene, path: &std::path::Path) -> anyho
     };
     let steps = plan.cases.iter().map(|case| case.label.steps).sum();
     let progress = Progress::new(steps, expected, quiet);
-    let report = plan.execute(&output::host(&progress, files.as_ref()))?;
+    let report = plan.execute(&host(&progress, files.as_ref()))?;
     progress.finish();
     if let Some(place) = &place {
         place.write(&report)?;
