@@ -146,7 +146,7 @@ fn limit_law(row: &Method, build: Build) -> Result<(), String> {
         (Stable::Below(limit), Some(z)) => (z - limit).abs() < 1e-6,
         // |R| - 1 is z²/2 or z⁴/8 on the imaginary axis: beyond 1e-12 from the third cell on.
         (Stable::Never, Some(z)) => z < 0.01,
-        (Stable::Always, None) => true,
+        (Stable::Always | Stable::AlwaysAlong { .. }, None) => true,
         _ => false,
     };
     if holds {

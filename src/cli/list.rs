@@ -61,12 +61,13 @@ fn of_integrators() -> Table {
                 geometry(method),
                 match method.evaluations {
                     PerStep::Exactly(n) => n.to_string(),
-                    PerStep::PerIteration => "1 a solve".into(),
+                    PerStep::PerIteration { plus } => format!("solves + {plus}"),
                 },
                 match method.oscillator.stable {
                     Stable::Never => "never".into(),
                     Stable::Below(z) => format!("z < {z:.4}"),
                     Stable::Always => "linear springs".into(),
+                    Stable::AlwaysAlong { across } => format!("along; across z < {across}"),
                 },
                 match method.oscillator.energy {
                     EnergyLaw::Factor { formula, .. } => format!("times {formula}"),

@@ -61,7 +61,8 @@ impl Custom {
         let mut row = engines::rapier_with(self.settings);
         row.reference = false;
         if let Some(dt) = self.timestep {
-            row.id = format!("rapier(dt={dt},{})", self.settings).into();
+            let changes = self.settings.changes();
+            row.id = format!("rapier(dt={dt},{changes})").into();
         }
         ChosenEngine {
             row,

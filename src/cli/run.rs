@@ -184,16 +184,56 @@ fn place(args: &Args, scene: &std::path::Path) -> Option<Place> {
 fn human(args: &Args, path: &std::path::Path, report: &Report) -> String {
     let table = report::terminal::render(report);
     let written = place(args, path).map_or_else(String::new, |place| {
-        format!("report: {}\n", place.report().display())
+        let file = place.report().display().to_string();
+        format!("report: {}\n", file.replace(char::is_control, "?"))
     });
-    let next = if args.timestep.len() > 1 {
-        format!("springcheck run {} --integrators all", path.display())
-    } else {
-        let h = report.scene.timestep;
-        let steps = [2.0 * h, h, 0.5 * h].map(|h| h.to_string()).join(",");
-        format!("springcheck run {} --timestep {steps}", path.display())
-    };
+    let next = next(args, path, report)
+        .filter(|next| next.chars().count() + "next: ".len() <= report::terminal::WIDTH)
+        .unwrap_or_else(|| "springcheck run --help".to_owned());
     format!("{table}{written}next: {next}\n")
+}
+
+/// A command worth trying next: other steps, or other integrators; None where the path cannot be
+/// written down.
+fn next(args: &Args, path: &std::path::Path, report: &Report) -> Option<String> {
+    let path = quoted(path)?;
+    if args.timestep.len() > 1 {
+        return Some(format!("springcheck run {path} --integrators all"));
+    }
+    let h = args
+        .timestep
+        .first()
+        .copied()
+        .unwrap_or(report.scene.timestep);
+    // Six digits are enough for a suggestion.
+    let steps: Vec<String> = [2.0 * h, h, 0.5 * h]
+        .iter()
+        .filter_map(|h| format!("{h:.5e}").parse::<f64>().ok())
+        .filter(|h| *h <= report.scene.duration)
+        .map(|h| h.to_string())
+        .collect();
+    Some(format!(
+        "springcheck run {path} --timestep {}",
+        steps.join(",")
+    ))
+}
+
+/// The path as a POSIX shell takes it for one word; None with what a terminal cannot show.
+fn quoted(path: &std::path::Path) -> Option<String> {
+    let text = path
+        .to_str()
+        .filter(|text| !text.contains(char::is_control))?;
+    let text = if text.starts_with('-') {
+        format!("./{text}")
+    } else {
+        text.to_owned()
+    };
+    let plain = |c: char| c.is_alphanumeric() || "/._-+,:@%".contains(c);
+    if text.chars().all(plain) {
+        Some(text)
+    } else {
+        Some(format!("'{}'", text.replace('\'', "'\\''")))
+    }
 }
 
 fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {

@@ -26,19 +26,18 @@ pub(super) fn figures(
             continue;
         };
         let trajectory = &ran.trajectory;
-        // Both skip what is not finite, so the shorter of the two is what both have.
-        let len = energy.t.len().min(trajectory.len());
+        let instants = &energy.instants;
         curves.push(Curves {
             outcome,
-            t: energy.t[..len].to_vec(),
-            energy: energy.error(scale.unwrap_or(1.0))[..len].to_vec(),
+            t: energy.t.clone(),
+            energy: energy.error(scale.unwrap_or(1.0)),
             plot: scene.plot.as_ref().map_or_else(Vec::new, |plot| {
                 let at = 3 * plot.particle + plot.dof;
-                (0..len).map(|k| trajectory.x(k)[at]).collect()
+                instants.iter().map(|&k| trajectory.x(k)[at]).collect()
             }),
             paths: drawn
                 .iter()
-                .map(|&particle| path(trajectory, particle, plane, len))
+                .map(|&particle| path(trajectory, particle, plane, instants))
                 .collect(),
         });
     }
@@ -62,9 +61,9 @@ pub(super) fn figures(
     }
 }
 
-fn path(run: &Trajectory, particle: usize, plane: [usize; 2], len: usize) -> Vec<[f64; 2]> {
-    let point = |k| plane.map(|axis| run.x(k)[3 * particle + axis]);
-    (0..len).map(point).collect()
+fn path(run: &Trajectory, particle: usize, plane: [usize; 2], instants: &[usize]) -> Vec<[f64; 2]> {
+    let point = |&k: &usize| plane.map(|axis| run.x(k)[3 * particle + axis]);
+    instants.iter().map(point).collect()
 }
 
 /// Beside motion this much wider, an axis shows nothing.

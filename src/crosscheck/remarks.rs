@@ -15,7 +15,10 @@ pub(super) fn remarks(plan: &Plan, case: &Case, outcome: &Outcome) -> Vec<String
         Status::Diverged => {
             let cause = outcome.reason.as_deref().unwrap_or_default();
             let time = outcome.stopped_at_s.unwrap_or(0.0);
-            let why = case.method.map_or_else(String::new, why_unstable);
+            let damped = plan.system.is_damped();
+            let why = case
+                .method
+                .map_or_else(String::new, |m| why_unstable(m, damped));
             remarks.push(format!("diverged at t = {time:.4} s, {cause}{why}"));
         }
         Status::Completed => {
@@ -26,7 +29,11 @@ pub(super) fn remarks(plan: &Plan, case: &Case, outcome: &Outcome) -> Vec<String
 }
 
 /// What the method's own facts say of a divergence.
-fn why_unstable(method: &'static Method) -> String {
+fn why_unstable(method: &Method, damped: bool) -> String {
+    if damped && method.oscillator.stable != Stable::Always {
+        return "; stiff springs and strong dampers each limit the step: take a smaller one"
+            .to_owned();
+    }
     match method.oscillator.stable {
         Stable::Never => {
             "; it is stable on no undamped spring, whatever the step: a smaller one only delays it"
@@ -35,6 +42,10 @@ fn why_unstable(method: &'static Method) -> String {
         Stable::Below(limit) => {
             format!("; stable while h ω < {limit:.4} for the stiffest mode: take a smaller step")
         }
+        Stable::AlwaysAlong { across } => format!(
+            "; it leaves out the stiffness of turning springs: motion across them is stable while \
+             h ω < {across}"
+        ),
         Stable::Always => "; it is always stable on linear springs, but this scene is not linear \
                            at this step"
             .to_owned(),
@@ -47,23 +58,27 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass) -> Option<String> {
         return None;
     }
     let effects = plan.system.effects();
+    let has_springs = effects.iter().any(|(row, _)| row.elastic);
     match case.method {
         Some(method) if effects.iter().all(|(row, _)| row.constant) => {
             under_constant_force(method, class)
         }
-        Some(method) => by_law(method, class, plan.system.is_damped()),
-        None if class != EnergyClass::Growing && effects.iter().any(|(row, _)| row.elastic) => {
-            case.dissipates.clone()
+        Some(method) => {
+            let law = by_law(method, class).filter(|_| has_springs);
+            let damped = plan.system.is_damped();
+            law.map(|law| format!("{law}{}", if damped { " without damping" } else { "" }))
+                .or_else(|| damped.then(|| by_balance(method, class)))
         }
+        None if class != EnergyClass::Growing && has_springs => case.dissipates.clone(),
         None => None,
     }
 }
 
 fn moves(class: EnergyClass) -> &'static str {
     match class {
-        EnergyClass::Growing => "gains energy",
-        EnergyClass::Dissipating => "loses energy",
-        EnergyClass::Drifting | EnergyClass::Bounded => "drifts in energy",
+        EnergyClass::Growing => "energy grows",
+        EnergyClass::Dissipating => "energy falls",
+        EnergyClass::Drifting | EnergyClass::Bounded => "energy drifts",
     }
 }
 
@@ -78,30 +93,36 @@ fn under_constant_force(method: &Method, class: EnergyClass) -> Option<String> {
     })
 }
 
-/// The method's energy law in words, where it is the cause.
-fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
+/// What the method does to an oscillator, where that is the cause.
+fn by_law(method: &Method, class: EnergyClass) -> Option<String> {
     let moves = moves(class);
-    if let EnergyLaw::Factor { factor, formula } = method.oscillator.energy {
-        let grows = factor(0.1) > 1.0;
-        let agrees = match class {
-            EnergyClass::Growing => grows,
-            EnergyClass::Dissipating => factor(0.1) < 1.0,
-            EnergyClass::Drifting | EnergyClass::Bounded => factor(0.1) != 1.0,
-        };
-        if agrees {
-            let undamped = if damped { "undamped " } else { "" };
-            return Some(format!(
-                "{moves} as its law says: on an {undamped}oscillator by {formula} a step, z = hω"
-            ));
+    match (method.oscillator.energy, method.oscillator.stable) {
+        (EnergyLaw::Factor { factor, formula }, _) => {
+            // At small steps: there the formula's sign is its leading term's.
+            let law = factor(0.1) - 1.0;
+            let agrees = match class {
+                EnergyClass::Growing => law > 0.0,
+                EnergyClass::Dissipating => law < 0.0,
+                EnergyClass::Drifting | EnergyClass::Bounded => law != 0.0,
+            };
+            agrees.then(|| {
+                format!("{moves} as its law says: by {formula} a step, z = hω, on an oscillator")
+            })
         }
+        (_, Stable::Below(limit)) => Some(format!(
+            "{moves}: bounded for good on an oscillator while h ω < {limit:.4}, but over less than a \
+             period its swing looks like a trend"
+        )),
+        _ => None,
     }
-    Some(if damped {
-        format!(
-            "{moves} against the balance E + dissipated - injected, which closes to order {} only: \
-             take a smaller step",
-            method.order_damped
-        )
-    } else {
-        format!("{moves}: its law holds only while every mode is well inside the limit")
-    })
+}
+
+/// Where the balance does not close.
+fn by_balance(method: &Method, class: EnergyClass) -> String {
+    format!(
+        "{} against the balance E + dissipated - injected, which closes to order {} only: take a \
+         smaller step",
+        moves(class),
+        method.order_damped
+    )
 }

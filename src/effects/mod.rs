@@ -1,8 +1,10 @@
 //! What acts on particles: one file an effect, one row in [`REGISTRY`].
 //!
 //! An effect is built only when the scene calls for it; an absent effect is not in the list and
-//! costs nothing. Contact, rods and strain limits will act between or inside steps and are not
-//! forces: they will be a second kind of row, not members of this trait.
+//! costs nothing. Contact, rods and strain limits act between or inside steps and are not
+//! forces: they will be a second kind of row, called by
+//! [`IntegratorEngine`](crate::engines::IntegratorEngine) after its integrator, not members of this
+//! trait.
 
 mod drag;
 mod gravitational;

@@ -49,6 +49,8 @@ impl Engine for IntegratorEngine {
         self.state.t = self.steps as f64 * self.timestep;
         self.integrator
             .step(&self.system, self.timestep, &mut self.state)?;
+        // What acts between steps (contact, rods, strain limits) belongs here, on the new state, and
+        // adds what it takes out to `state.work`.
         self.steps += 1;
         self.state.t = self.steps as f64 * self.timestep;
         Ok(())

@@ -72,10 +72,11 @@ pub fn ids() -> Vec<&'static str> {
     REGISTRY.iter().map(|row| row.id.as_ref()).collect()
 }
 
-/// One more row: rapier with settings of the user's own, named after them.
+/// One more row: rapier with settings of the user's own, named after those that are not its
+/// defaults.
 pub fn rapier_with(settings: Settings) -> EngineRow {
     EngineRow {
-        id: Cow::Owned(format!("rapier({settings})")),
+        id: Cow::Owned(format!("rapier({})", settings.changes())),
         summary: "rapier with settings of your own",
         settings,
         ..rapier::RAPIER

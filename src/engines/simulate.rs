@@ -95,9 +95,10 @@ impl Limits {
         if !energy.is_finite() {
             return Some("the energy is no longer finite".to_owned());
         }
-        (energy > self.limit?).then(|| {
+        let limit = self.limit?;
+        (energy > limit).then(|| {
             let fastest = fastest(&state.v);
-            format!("its energy passed 1e12 times the scene's scale, fastest at particle {fastest}")
+            format!("its energy passed the limit of {limit:.1e} J, fastest at particle {fastest}")
         })
     }
 }

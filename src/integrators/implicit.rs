@@ -28,7 +28,7 @@ const fn implicit(id: &'static str, name: &'static str, order: u32, energy: Ener
         order_damped: order,
         symplectic: false,
         reversible: order > 1,
-        evaluations: PerStep::PerIteration,
+        evaluations: PerStep::PerIteration { plus: 1 },
         oscillator: Oscillator {
             stable: Stable::Always,
             energy,
@@ -76,21 +76,23 @@ pub(super) const LINEARIZED_IMPLICIT_MATERIAL: Method = Method {
     source: "Baraff & Witkin 1998 with K = k n nᵀ; what rapier's spring joint converges to",
     not: "linearized_implicit: the stiffness of a spring's turning is left out, so transverse \
           motion is only as stable as symplectic Euler's",
-    ..Method {
-        evaluations: PerStep::Exactly(1),
-        build: |settings| {
-            Box::new(Implicit::new(
-                Scheme::LinearizedEuler(Linearization::Material),
-                settings,
-            ))
-        },
-        ..implicit(
-            "linearized_implicit_material",
-            "linearly implicit Euler, K = k n nᵀ",
-            1,
-            DISSIPATES,
-        )
-    }
+    evaluations: PerStep::Exactly(1),
+    oscillator: Oscillator {
+        stable: Stable::AlwaysAlong { across: 2.0 },
+        energy: DISSIPATES,
+    },
+    build: |settings| {
+        Box::new(Implicit::new(
+            Scheme::LinearizedEuler(Linearization::Material),
+            settings,
+        ))
+    },
+    ..implicit(
+        "linearized_implicit_material",
+        "linearly implicit Euler, K = k n nᵀ",
+        1,
+        DISSIPATES,
+    )
 };
 
 pub(super) const IMPLICIT_MIDPOINT: Method = Method {
@@ -102,6 +104,7 @@ pub(super) const IMPLICIT_MIDPOINT: Method = Method {
 };
 
 pub(super) const TRAPEZOIDAL: Method = Method {
+    evaluations: PerStep::PerIteration { plus: 2 },
     source: "Crank & Nicolson 1947; Newmark 1959 with β = 1/4, γ = 1/2",
     not: "heun, its explicit namesake; conjugate to a symplectic method, not one itself",
     build: |settings| Box::new(Implicit::new(Scheme::Trapezoidal, settings)),

@@ -42,8 +42,12 @@ pub enum StepError {
         residual: f64,
         tolerance: f64,
     },
-    #[error("the implicit step's matrix is singular: the stiffness is indefinite at this state")]
+    #[error(
+        "the implicit step's matrix cannot be factorised: the stiffness is indefinite at this state"
+    )]
     Singular,
+    #[error("the damping is too stiff for its exact flow at this step: a smaller timestep helps")]
+    DampingTooStiff,
     #[error("the implicit step left the range of finite numbers")]
     NotFinite,
 }
@@ -84,8 +88,11 @@ impl std::fmt::Debug for Method {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PerStep {
     Exactly(u32),
-    /// One per Newton iteration.
-    PerIteration,
+    /// One for each Newton iteration, and `plus` that do not iterate: one to see that the last
+    /// iteration has converged, and the explicit half of a method that has one.
+    PerIteration {
+        plus: u32,
+    },
 }
 
 /// What a method does to the undamped linear oscillator.
@@ -102,6 +109,11 @@ pub enum Stable {
     Below(f64),
     /// For linear forces; non-linear ones can still break it.
     Always,
+    /// As `Always` for motion along springs; motion across them, whose stiffness the method leaves
+    /// out, is stable below `across` only.
+    AlwaysAlong {
+        across: f64,
+    },
 }
 
 /// What happens to the oscillator's energy, as a function of z = h w.

@@ -5,12 +5,14 @@
 
 mod linear;
 
-use super::{StepError, fit};
+use super::{StepError, axpy, fit};
 use crate::system::{Jacobian, Linearization, Power, State, System};
 use linear::Solver;
 
 /// Quadratic convergence needs four to six; more means it is not converging.
 const MAX_ITERATIONS: u32 = 50;
+/// Roundings that a residual may consist of when it stops shrinking.
+const ROUNDING: f64 = 8.0;
 
 pub(super) struct Newton {
     tolerance: f64,
@@ -46,7 +48,8 @@ impl Newton {
         self.power
     }
 
-    /// Improves `u` until |r| <= tolerance (|M (u - b)| + |γ f|) or until a correction is rounding.
+    /// Improves `u` until |r| <= tolerance (|M (u - b)| + |γ f|), or until it stops shrinking
+    /// within a few roundings of the positions: far from the origin forces are no better.
     pub(super) fn solve(
         &mut self,
         system: &dyn System,
@@ -62,8 +65,7 @@ impl Newton {
         fit(&mut self.residual, n);
         let inverse_mass = system.inverse_mass();
         let mut relative = f64::INFINITY;
-        let mut rounding = false;
-        for _ in 0..MAX_ITERATIONS {
+        for iteration in 0..MAX_ITERATIONS {
             for ((x, y), u) in self.x.iter_mut().zip(y).zip(u.iter()) {
                 *x = y + gamma * u;
             }
@@ -86,29 +88,42 @@ impl Newton {
             if !off.is_finite() || !scale.is_finite() {
                 return Err(StepError::NotFinite);
             }
+            let before = relative;
             relative = if scale > 0.0 { off / scale } else { 0.0 };
-            if relative <= self.tolerance || rounding {
+            // A guess is not a solution, however loose the tolerance.
+            let solved = relative <= self.tolerance && (iteration > 0 || off == 0.0);
+            // Newton squares a small residual until only rounding is left of it.
+            let stalled = relative >= 0.5 * before;
+            if solved || (stalled && off <= ROUNDING * self.rounding(inverse_mass, gamma, b, u)) {
                 return Ok(());
             }
             self.jacobian.clear();
             system.jacobian(t, &self.x, u, Linearization::Exact, &mut self.jacobian);
             self.correct(inverse_mass, gamma)?;
-            let (mut largest, mut ulp) = (0.0_f64, 0.0_f64);
-            for i in 0..n {
-                let du = self.residual[i];
-                u[i] += du;
-                largest = largest.max(du.abs());
-                // The smallest velocity change that still moves a position by its last bit.
-                ulp = ulp.max(f64::EPSILON * (u[i].abs() + self.x[i].abs() / gamma.abs()));
-            }
-            // The correction just made is below what positions resolve: as converged as doubles get.
-            rounding = largest <= 4.0 * ulp;
+            axpy(u, 1.0, &self.residual);
         }
         Err(StepError::NotConverged {
             iterations: MAX_ITERATIONS,
             residual: relative,
             tolerance: self.tolerance,
         })
+    }
+
+    /// What one rounding of positions and velocities does to the residual, in its norm:
+    /// eps (γ |∂f/∂x| |x| + M (|u| + |b|)), with the Jacobian of the last iteration.
+    fn rounding(&self, inverse_mass: &[f64], gamma: f64, b: &[f64], u: &[f64]) -> f64 {
+        let mut size = vec![0.0; u.len()];
+        for &(row, column, value) in &self.jacobian.position {
+            size[row] += gamma * (value * self.x[column]).abs();
+        }
+        let mut squares = 0.0;
+        for (i, &w) in inverse_mass.iter().enumerate() {
+            if w > 0.0 {
+                let size = size[i] + (u[i].abs() + b[i].abs()) / w;
+                squares += size * size;
+            }
+        }
+        f64::EPSILON * squares.sqrt()
     }
 
     /// One Newton step of backward Euler from the state itself:

@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 pub struct EnergySeries {
     /// Seconds.
     pub t: Vec<f64>,
+    /// Which instant of the trajectory each sample is.
+    pub instants: Vec<usize>,
     /// B = E + dissipated - injected; constant in the truth.
     pub balance: Vec<f64>,
     initial: f64,
@@ -28,6 +30,7 @@ impl EnergySeries {
     pub fn new(system: &ParticleSystem, run: &Trajectory) -> Option<Self> {
         let mut series = Self {
             t: Vec::with_capacity(run.len()),
+            instants: Vec::with_capacity(run.len()),
             balance: Vec::with_capacity(run.len()),
             initial: 0.0,
             last: 0.0,
@@ -56,6 +59,7 @@ impl EnergySeries {
                 series.initial = energy;
             }
             series.t.push(t);
+            series.instants.push(k);
             series.balance.push(balance);
             series.last = energy;
             series.largest_term = series
@@ -93,6 +97,8 @@ impl EnergySeries {
 /// A run that `diverged` is growing by definition, however few instants it left.
 pub fn judge(series: &EnergySeries, scale: Option<f64>, diverged: bool) -> Energy {
     let trend = trend(&series.t, &series.balance, series.floor());
+    // One instant has no history: 0 would look like a perfect run.
+    let scale = scale.filter(|_| series.t.len() > 1);
     let in_scale = |joules: f64| scale.map(|s| joules / s).filter(|r| r.is_finite());
     let worst = series
         .error(1.0)

@@ -53,7 +53,7 @@ fn facts(report: &Report) -> String {
         ["particles", &scene.particles.to_string()],
         ["springs", &scene.springs.to_string()],
         ["own integrator", &escape(&scene.own_method)],
-        ["timestep", &format!("{} s", words::short(scene.timestep))],
+        ["timestep", &words::timestep(report)],
         ["duration", &format!("{} s", words::short(scene.duration))],
         ["energy scale S", &scale],
         ["truth", &escape(&words::truth(&report.truth))],

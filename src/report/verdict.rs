@@ -187,7 +187,12 @@ fn twin_proof(checks: &[Check]) -> Option<Clause> {
         (0, 0, _) => Some(vec!["twin proof not made".into()]),
         _ => {
             let counted = format!("{holds} ({passed} of {})", passed + open);
-            Some(vec![counted, holds.into()])
+            let short = if open == 0 {
+                holds.into()
+            } else {
+                counted.clone()
+            };
+            Some(vec![counted, short])
         }
     }
 }

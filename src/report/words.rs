@@ -1,6 +1,6 @@
 //! The words and numbers the human-readable reports share.
 
-use crate::outcome::{Energy, EnergyClass, Outcome, Status, Truth, TruthKind};
+use crate::outcome::{Energy, EnergyClass, Outcome, Report, Status, Truth, TruthKind};
 
 /// What stands where there is nothing to say.
 pub const NOTHING: &str = "-";
@@ -171,4 +171,15 @@ pub fn one_line(text: &str) -> String {
 /// Direction overrides, and the variation selectors that `terminal::paint` uses as marks.
 fn is_invisible(c: char) -> bool {
     matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{e0100}'..='\u{e01ef}')
+}
+
+/// The step outcomes were run at: `0.0005 s`, or `several, the file's 0.0005 s`.
+pub fn timestep(report: &Report) -> String {
+    let own = report.scene.timestep;
+    let mut steps = report.outcomes.iter().map(|o| o.timestep);
+    match steps.next() {
+        None => format!("{} s", short(own)),
+        Some(first) if steps.all(|h| h == first) => format!("{} s", short(first)),
+        Some(_) => format!("several, the file's {} s", short(own)),
+    }
 }

@@ -36,7 +36,7 @@ pub fn check_times(timestep: f64, duration: f64) -> Result<(), TimesError> {
     }
     if duration / timestep > limits::STEPS {
         let message = format!(
-            "expected at most {:e} steps in {duration:?} s, found {timestep:?} s a step",
+            "expected at most {:e} steps in {duration:e} s, found {timestep:e} s a step",
             limits::STEPS
         );
         return refuse(message, "take larger steps or a shorter `duration`");

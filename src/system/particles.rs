@@ -53,7 +53,8 @@ impl ParticleSystem {
         &self.effects
     }
 
-    /// Overwrites `f` with the forces, N, on all particles, fixed ones included.
+    /// Overwrites `f` with the forces, N. On fixed particles they are what effects happen to add,
+    /// such as a spring's pull; they move nothing.
     pub fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
         f.fill(0.0);
         let mut power = Power::default();

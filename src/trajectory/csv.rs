@@ -15,14 +15,14 @@ pub struct CsvWriter<W: Write> {
 }
 
 impl<W: Write> CsvWriter<W> {
-    /// Every `every`-th of `steps` steps, and the last.
+    /// Every `every`-th of `steps` steps (0 counts as 1), and the last.
     pub fn new(out: W, steps: u64, every: u64, timestep: f64) -> Self {
         let mut rows = csv::Writer::from_writer(out);
         let header = ["t", "id", "x", "y", "z", "vx", "vy", "vz"];
         let failed = rows.write_record(header).err();
         Self {
             rows,
-            selection: Selection { every, steps },
+            selection: Selection::new(every, steps),
             timestep,
             failed,
         }

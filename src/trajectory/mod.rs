@@ -11,9 +11,9 @@ pub use record::{Recorder, Trajectory, stride};
 /// A trajectory file could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
-    #[error("could not write the trajectory: {0}")]
+    #[error("could not write the trajectory")]
     Io(#[from] std::io::Error),
-    #[error("could not pack the trajectory: {0}")]
+    #[error("could not pack the trajectory")]
     Zip(#[from] zip::result::ZipError),
 }
 
@@ -25,6 +25,11 @@ struct Selection {
 }
 
 impl Selection {
+    fn new(every: u64, steps: u64) -> Self {
+        let every = every.max(1);
+        Self { every, steps }
+    }
+
     fn next(self, from: u64) -> Option<u64> {
         let due = from.div_ceil(self.every) * self.every;
         (from <= self.steps).then(|| due.min(self.steps))

@@ -24,7 +24,7 @@ pub struct NpzWriter<S: Scratch> {
 }
 
 impl<S: Scratch> NpzWriter<S> {
-    /// Every `every`-th of `steps` steps of `particles` particles, and the last.
+    /// Every `every`-th of `steps` steps (0 counts as 1) of `particles` particles, and the last.
     /// The scratch streams are empty.
     pub fn new(scratch: [S; 2], particles: usize, steps: u64, every: u64, timestep: f64) -> Self {
         let [x, v] = scratch.map(BufWriter::new);
@@ -34,7 +34,7 @@ impl<S: Scratch> NpzWriter<S> {
             rows: 0,
             last_step: 0,
             particles,
-            selection: Selection { every, steps },
+            selection: Selection::new(every, steps),
             timestep,
             failed: None,
         }

@@ -5,7 +5,7 @@ use super::world::World;
 use crate::engines::{Counts, Engine, Unsupported};
 use crate::integrators::StepError;
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, Power, State, System};
+use crate::system::{ParticleSystem, State};
 
 /// A rapier world without joints or gravity that is handed all forces of the scene before each
 /// step, one substep a step: symplectic Euler (kick, drift), the same operations in the same order.
@@ -18,10 +18,8 @@ pub struct RapierForces {
     state: State,
     timestep: f64,
     steps: u64,
-    /// Forces at the state, N, if `fresh`.
+    /// Scratch: forces, N.
     forces: Vec<f64>,
-    fresh: bool,
-    power: Power,
 }
 
 impl RapierForces {
@@ -38,34 +36,20 @@ impl RapierForces {
             state,
             timestep,
             steps: 0,
-            fresh: false,
-            power: Power::default(),
         })
-    }
-
-    fn evaluate(&mut self) {
-        let State { t, x, v, .. } = &self.state;
-        self.power = self.system.forces(*t, x, v, &mut self.forces);
-        self.fresh = true;
     }
 }
 
 impl Engine for RapierForces {
     fn step(&mut self) -> Result<(), StepError> {
-        if !self.fresh {
-            self.evaluate();
-        }
+        let State { t, x, v, .. } = &self.state;
+        let power = self.system.forces(*t, x, v, &mut self.forces);
+        // Where the kick is, as in symplectic Euler, whose work this then is to the last bit.
+        self.state.work.advance(power, self.timestep);
         self.world.set_forces(&self.forces);
         self.world.step(&mut self.state);
         self.steps += 1;
         self.state.t = self.steps as f64 * self.timestep;
-        self.fresh = false;
-        // The trapezoid needs the powers at the end; the forces there are the next step's.
-        if self.system.is_damped() || self.system.is_driven() {
-            self.state.work.advance(self.power, 0.5 * self.timestep);
-            self.evaluate();
-            self.state.work.advance(self.power, 0.5 * self.timestep);
-        }
         Ok(())
     }
 
@@ -73,7 +57,7 @@ impl Engine for RapierForces {
         &self.state
     }
 
-    /// One evaluation a step; an extra one at the end of a run serves the work integral alone.
+    /// One evaluation a step.
     fn counts(&self) -> Counts {
         Counts {
             force_evaluations: Some(self.steps),

@@ -1,7 +1,5 @@
 //! The knobs of rapier's solver that change the answer.
 
-use std::fmt;
-
 /// What rapier's solver is told, beside the timestep.
 ///
 /// rapier's speed cap (400 m/s) and its continuous collision detection are always off here: the
@@ -42,6 +40,26 @@ impl Settings {
         stabilization: 0,
     };
 
+    /// What differs from rapier's defaults, as the command line writes it: `pgs=4,stabilization=0`,
+    /// or `defaults`.
+    pub fn changes(&self) -> String {
+        let usual = Self::DEFAULT;
+        let changes: Vec<String> = [
+            ("iterations", self.iterations, usual.iterations),
+            ("pgs", self.pgs, usual.pgs),
+            ("stabilization", self.stabilization, usual.stabilization),
+        ]
+        .iter()
+        .filter(|(_, own, usual)| own != usual)
+        .map(|(key, own, _)| format!("{key}={own}"))
+        .collect();
+        if changes.is_empty() {
+            "defaults".to_owned()
+        } else {
+            changes.join(",")
+        }
+    }
+
     /// The length of a substep, s, of a step of `timestep` seconds.
     pub fn substep(&self, timestep: f64) -> f64 {
         timestep / f64::from(self.iterations.max(1))
@@ -51,19 +69,5 @@ impl Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self::DEFAULT
-    }
-}
-
-impl fmt::Display for Settings {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            iterations,
-            pgs,
-            stabilization,
-        } = self;
-        write!(
-            f,
-            "iterations={iterations},pgs={pgs},stabilization={stabilization}"
-        )
     }
 }

@@ -58,8 +58,8 @@ impl World {
             } else {
                 if particle.mass <= NEGLIGIBLE || 1.0 / particle.mass <= NEGLIGIBLE {
                     return Err(unsupported(format!(
-                        "particle {i} weighs {} kg; rapier moves only masses between 1e-20 and \
-                         1e20 kg",
+                        "particle {i} weighs {:e} kg; rapier moves only masses of more than 1e-20 \
+                         and less than 1e20 kg",
                         particle.mass
                     )));
                 }

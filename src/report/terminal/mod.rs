@@ -35,11 +35,11 @@ pub fn render(report: &Report) -> String {
 fn scene(report: &Report) -> Vec<String> {
     let scene = &report.scene;
     let facts = format!(
-        "  {}, {}, {} s at h = {} s, {}",
+        "  {}, {}, {} s at h = {}, {}",
         words::plural(scene.particles, "particle"),
         words::plural(scene.springs, "spring"),
         words::short(scene.duration),
-        words::short(scene.timestep),
+        words::timestep(report),
         clip(&words::one_line(&scene.own_method), 28),
     );
     let room = WIDTH.saturating_sub(width(&facts)).max(12);
