@@ -152,5 +152,6 @@ fn the_registry_is_consistent() {
     assert_eq!(find("rapier").map(|row| row.substeps()), Some(4));
     assert_eq!(find("rapier-forces").map(|row| row.substeps()), Some(1));
     let custom = rapier_with(Settings::CONVERGED);
-    assert_eq!(custom.id, "rapier(iterations=4,pgs=64,stabilization=0)");
+    assert_eq!(custom.id, "rapier(pgs=64,stabilization=0)");
+    assert_eq!(rapier_with(Settings::DEFAULT).id, "rapier(defaults)");
 }
