@@ -64,10 +64,9 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass) -> Option<String> {
             under_constant_force(method, class)
         }
         Some(method) => {
-            let law = by_law(method, class).filter(|_| has_springs);
             let damped = plan.system.is_damped();
-            law.map(|law| format!("{law}{}", if damped { " without damping" } else { "" }))
-                .or_else(|| damped.then(|| by_balance(method, class)))
+            let law = by_law(method, class, damped).filter(|_| has_springs);
+            law.or_else(|| damped.then(|| by_balance(method, class)))
         }
         None if class != EnergyClass::Growing && has_springs => case.dissipates.clone(),
         None => None,
@@ -94,7 +93,7 @@ fn under_constant_force(method: &Method, class: EnergyClass) -> Option<String> {
 }
 
 /// What the method does to an oscillator, where that is the cause.
-fn by_law(method: &Method, class: EnergyClass) -> Option<String> {
+fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
     let moves = moves(class);
     match (method.oscillator.energy, method.oscillator.stable) {
         (EnergyLaw::Factor { factor, formula }, _) => {
@@ -105,11 +104,12 @@ fn by_law(method: &Method, class: EnergyClass) -> Option<String> {
                 EnergyClass::Dissipating => law < 0.0,
                 EnergyClass::Drifting | EnergyClass::Bounded => law != 0.0,
             };
+            let undamped = if damped { "undamped " } else { "" };
             agrees.then(|| {
-                format!("{moves} as its law says: by {formula} a step, z = hω, on an oscillator")
+                format!("{moves} as its law says: by {formula} a step, z = hω, on an {undamped}oscillator")
             })
         }
-        (_, Stable::Below(limit)) => Some(format!(
+        (_, Stable::Below(limit)) if !damped => Some(format!(
             "{moves}: bounded for good on an oscillator while h ω < {limit:.4}, but over less than a \
              period its swing looks like a trend"
         )),
