@@ -7,7 +7,7 @@ use springcheck::engines::{IntegratorEngine, Limits, simulate};
 use springcheck::integrators::{self, Settings};
 use springcheck::measure::{self, deviation};
 use springcheck::outcome::{EnergyClass, Outcome, Report, Status};
-use springcheck::scene::{self, DampingModel, Scene};
+use springcheck::scene::{self, DampingModel, Scene, Wind};
 use springcheck::system::ParticleSystem;
 use springcheck::trajectory::{Recorder, Trajectory};
 
@@ -69,6 +69,20 @@ fn the_energy_scale_is_kinetic_plus_elastic_else_weight_times_size_else_none() {
         (weight - 2.0 * 9.81 * 6.0).abs() < 1e-13 * weight,
         "{weight}"
     );
+    // Rest lengths two last bits off the distance leave k d² / 2 of rounding, not energy; a part in
+    // 1e9 is stretch.
+    let mut rounded = read(hanging);
+    let length = rounded.springs[0].rest_length;
+    rounded.springs[0].rest_length = length.next_up().next_up();
+    let found = scale(&rounded).expect("a scale");
+    assert!((found / weight - 1.0).abs() < 1e-14, "{found}");
+    rounded.springs[0].rest_length = length * (1.0 + 1e-9);
+    let found = scale(&rounded).expect("a scale");
+    // k (l d)² / 2 with a difference known to eps / 1e-9 = 2.2e-7: measured 1.7e-7.
+    assert!(
+        (found / (25.0 * (3e-9_f64).powi(2)) - 1.0).abs() < 5e-7,
+        "{found}"
+    );
     // A lone particle at rest has neither energy nor size.
     let lone = "solver: {type: rk4, timestep: 0.01}\nparticles: [{pos: [0, 0, 3], mass: 2}]\n";
     assert_eq!(scale(&read(lone)), None);
@@ -103,13 +117,25 @@ fn a_run_stops_in_the_step_its_energy_passes_a_billion_scales_squared() {
 
 #[test]
 fn a_long_fall_is_no_divergence_however_small_the_scale() {
-    // S = m v² / 2 = 1e-12 J; the fall gains 2.4e3 J.
-    let scene = read(
+    // S = m v² / 2 = 1e-12 J, 1e12 times of which is 1 J; the fall gains 2.4e3 J.
+    let falling = read(
         "solver: {type: rk4, timestep: 0.01}\n\
          particles: [{pos: [0, 0, 3], mass: 2, vel: [1.0e-6, 0, 0]}]\n",
     );
-    for id in integrators::ids() {
-        assert_eq!(outcome(&scene, id).status, Status::Completed, "{id}");
+    // The wind's 20 N do as much without gravity: (20 N * 5 s)² / 2 m = 2.5e3 J.
+    let mut blown = falling.clone();
+    blown.solver.gravity = 0.0;
+    blown.wind = Some(Wind {
+        direction: [1.0, 0.0, 0.0],
+        strength: 20.0,
+    });
+    for scene in [&falling, &blown] {
+        for id in integrators::ids() {
+            let found = outcome(scene, id);
+            assert_eq!(found.status, Status::Completed, "{id}");
+            let energy = found.energy.expect("recorded").kinetic_final_j.expect("J");
+            assert!(energy > 1e3, "{id}: {energy} J would not have been enough");
+        }
     }
 }
 
@@ -129,11 +155,11 @@ fn a_scene_without_a_scale_says_why() {
 fn explicit_euler_multiplies_the_energy_and_the_report_says_so() {
     let found = outcome(&oscillator(0.01, 0.0), "explicit_euler");
     let energy = found.energy.expect("recorded");
-    // 1,000 steps of 1 + z² = 1.005; rounding of 1,000 products.
+    // 1,000 steps of 1 + z² = 1.005: 1,000 eps of rounding are 2.2e-13, measured 1.1e-13.
     let wanted = 1.005_f64.powi(1000) - 1.0;
     let measured = energy.relative_error_max.expect("a scale");
     assert!(
-        (measured / wanted - 1.0).abs() < 1e-12,
+        (measured / wanted - 1.0).abs() < 3e-13,
         "{measured} {wanted}"
     );
     assert_eq!(energy.class, Some(EnergyClass::Growing));
@@ -147,20 +173,37 @@ fn explicit_euler_multiplies_the_energy_and_the_report_says_so() {
     );
 }
 
+/// The bare energy is gone, and the balance is kept to `off` of it.
+fn damped_law(id: &str, off: f64) -> Result<(), String> {
+    // A tenth of critical: the bare energy falls to e^-14 of itself.
+    let found = outcome(&oscillator(0.001, std::f64::consts::SQRT_2), id);
+    let energy = found.energy.as_ref().expect("recorded");
+    let (start, end) = (energy.initial_j.expect("J"), energy.final_j.expect("J"));
+    let balance = (energy.dissipated_j.expect("J") + end - start).abs() / start;
+    let worst = energy.relative_error_max.expect("a scale");
+    // e^-14.1 = 7.2e-7 and the phase: measured 7.8e-7.
+    if end < 2e-6 * start && balance <= worst && worst < off {
+        Ok(())
+    } else {
+        Err(format!("{id}: {end} J, balance {balance:e}, {worst:e}"))
+    }
+}
+
 #[test]
 fn damping_is_judged_by_the_balance_not_by_the_bare_energy() {
-    // A tenth of critical: the bare energy falls to e^-14 of itself.
-    let scene = oscillator(0.001, std::f64::consts::SQRT_2);
-    for id in ["rk4", "velocity_verlet", "pefrl", "implicit_midpoint"] {
-        let found = outcome(&scene, id);
-        let energy = found.energy.as_ref().expect("recorded");
-        let (start, end) = (energy.initial_j.expect("J"), energy.final_j.expect("J"));
-        assert!(end < 1e-5 * start, "{id}: {end}");
-        let lost = energy.dissipated_j.expect("J");
-        // What the method loses, its own stages account for, to h² = (0.007)² / 12 or better.
-        assert!((lost / start - 1.0).abs() < 2e-5, "{id}: {lost}");
-        assert!(energy.relative_error_max.is_some_and(|e| e < 2e-5), "{id}");
+    // What the stages' powers miss of the work: z = 0.007 to the method's order, times small constants;
+    // nothing for implicit midpoint, whose balance is exact on linear forces. Measured 5.3e-11, 1.1e-5,
+    // 5.5e-12 and 3.6e-15.
+    for (id, off) in [
+        ("rk4", 1.5e-10),
+        ("velocity_verlet", 3e-5),
+        ("pefrl", 1.5e-11),
+        ("implicit_midpoint", 1e-14),
+    ] {
+        damped_law(id, off).unwrap();
     }
+    // A method of first order loses what it does not account for.
+    assert!(damped_law("symplectic_euler", 3e-5).is_err());
 }
 
 #[test]
@@ -217,15 +260,15 @@ fn momentum_is_reported_where_the_scene_conserves_it() {
     let momentum = |scene: &Scene| outcome(scene, "velocity_verlet").momentum;
     assert!(momentum(&swinging_triangle(0.0, DampingModel::Axial)).is_none());
     let axial = momentum(&free_triangle(0.5, DampingModel::Axial)).expect("kept");
-    // 100 steps of rounding on sums of order 1.
-    assert!(axial.linear_error_max.is_some_and(|e| e < 1e-14));
-    assert!(axial.angular_error_max.is_some_and(|e| e < 1e-14));
+    // 100 steps of half a last bit on sums of order 1, as a random walk: 1.1e-15, measured 6.2e-16.
+    assert!(axial.linear_error_max.is_some_and(|e| e < 2e-15));
+    assert!(axial.angular_error_max.is_some_and(|e| e < 2e-15));
     let isotropic = momentum(&free_triangle(0.5, DampingModel::Isotropic)).expect("kept");
     assert!(isotropic.linear_error_max.is_some() && isotropic.angular_error_max.is_none());
-    // Explicit Euler breaks angular momentum, and the report shows it.
+    // Explicit Euler breaks angular momentum by 1.33e-2, and the report shows it.
     let euler = outcome(&free_triangle(0.5, DampingModel::Axial), "explicit_euler");
     let broken = euler.momentum.expect("kept by the scene").angular_error_max;
-    assert!(broken.is_some_and(|e| e > 1e-3), "{broken:?}");
+    assert!(broken.is_some_and(|e| e > 5e-3), "{broken:?}");
 }
 
 #[test]

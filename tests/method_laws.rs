@@ -2,7 +2,7 @@
 
 mod common;
 use common::mutants::{self, Step, mutant};
-use common::{Build, advance, built, distance, free_triangle, method, own, swinging_triangle};
+use common::{Build, advance, built, distance, method, own, swinging_triangle};
 use springcheck::integrators::{Method, PerStep, REGISTRY, StepError};
 use springcheck::scene::{DampingModel, Scene};
 use springcheck::system::{Counting, State, System};
@@ -254,12 +254,13 @@ fn symplectic_law(row: &Method, build: Build) -> Result<(), String> {
         build,
         LARGE_STEP,
     );
-    // Central differences with 1e-5 leave about 1e-10 of truncation and 1e-11 of rounding; what is
-    // not symplectic is off by 1e-4 and more at this step.
+    // Central differences with 1e-5 leave eps / 1e-5 = 2e-11 of rounding times velocities and masses
+    // of order 1, and as much truncation: measured 5.9e-11. What is not symplectic is off by 1.4e-4
+    // and more at this step.
     let holds = if row.symplectic {
-        defect < 1e-8
+        defect < 1.5e-10
     } else {
-        defect > 1e-5
+        defect > 5e-5
     };
     if holds {
         Ok(())
@@ -293,11 +294,12 @@ fn reversal_law(row: &Method, build: Build) -> Result<(), String> {
         }
     }
     let off = distance(&state.x, &start.x).max(distance(&state.v, &start.v));
-    // Twenty steps of rounding, a hundred last bits of values around 10; Newton to 1e-12 of a step.
+    // Twenty steps of rounding on values of order 1, half a last bit each: 2e-15, measured 1.8e-15
+    // (Newton's last correction is far below its bound). What is not reversible is off by 8.5e-4.
     let holds = if row.reversible {
-        off < 3e-11
+        off < 5e-15
     } else {
-        off > 1e-5
+        off > 3e-4
     };
     if holds {
         Ok(())
@@ -316,6 +318,10 @@ fn exactly_the_reversible_methods_return() {
     }
     let stale = mutant(mutants::verlet_with_a_stale_force);
     assert!(reversal_law(method("velocity_verlet"), &stale).is_err());
+    // What returns cannot pass for a method that does not.
+    let verlet = own(method("velocity_verlet"));
+    assert!(reversal_law(method("symplectic_euler"), &verlet).is_err());
+    assert!(reversal_law(method("rk4"), &mutant(mutants::frozen)).is_err());
 }
 
 /// Evaluations a step, once running, counted from outside.
@@ -330,8 +336,8 @@ fn cost_law(row: &Method, build: Build) -> Result<(), String> {
     let solves = integrator.linear_solves() - solves;
     let holds = match row.evaluations {
         PerStep::Exactly(n) => forces == 100 * u64::from(n),
-        // One at the start of each iteration and one to see that the last has converged.
-        PerStep::PerIteration { plus } => forces == solves + 100 * u64::from(plus),
+        // A step without an iteration would be a step without motion.
+        PerStep::PerIteration { plus } => forces == solves + 100 * u64::from(plus) && solves >= 100,
     };
     if holds {
         Ok(())
@@ -349,59 +355,12 @@ fn every_method_costs_what_its_row_says() {
         cost_law(row, &own(row)).unwrap();
     }
     // Two evaluations where the row says one: nothing kept between steps.
-    assert!(
-        cost_law(
-            method("velocity_verlet"),
-            &mutant(mutants::verlet_with_explicit_damping)
-        )
-        .is_err()
-    );
-}
-
-/// Total momentum and angular momentum.
-fn momenta(system: &dyn System, s: &State) -> [[f64; 3]; 2] {
-    let mut totals = [[0.0; 3]; 2];
-    for i in (0..system.dim()).step_by(3) {
-        let m = 1.0 / system.inverse_mass()[i];
-        for a in 0..3 {
-            let (b, c) = ((a + 1) % 3, (a + 2) % 3);
-            totals[0][a] += m * s.v[i + a];
-            totals[1][a] += m * (s.x[i + b] * s.v[i + c] - s.x[i + c] * s.v[i + b]);
-        }
-    }
-    totals
-}
-
-fn momentum_law(row: &Method, model: DampingModel, build: Build) -> Result<(), String> {
-    let (system, mut state) = built(&free_triangle(0.8, model));
-    let start = momenta(&system, &state);
-    advance(build().as_mut(), &system, 0.005, 200, &mut state);
-    let end = momenta(&system, &state);
-    let (linear, angular) = (distance(&start[0], &end[0]), distance(&start[1], &end[1]));
-    const TOL: f64 = 2e-11;
-    // 200 steps of rounding on sums of order 1; Newton's 1e-12 of an impulse of order 0.1.
-    let keeps_angular = row.symplectic && model == DampingModel::Axial;
-    let holds = linear < TOL && (!keeps_angular || angular < TOL);
-    // Isotropic dampers brake rotation: nothing may claim to keep it.
-    let loses = model == DampingModel::Axial || angular > 1e-3;
-    if holds && loses {
-        Ok(())
-    } else {
-        Err(format!(
-            "{}: linear {linear:.1e}, angular {angular:.1e}",
-            row.id
-        ))
-    }
-}
-
-#[test]
-fn momentum_is_kept_by_all_and_angular_momentum_by_symplectic_methods() {
-    for model in [DampingModel::Axial, DampingModel::Isotropic] {
-        for row in REGISTRY {
-            momentum_law(row, model, &own(row)).unwrap();
-        }
-    }
-    // Explicit Euler does not keep angular momentum: claimed as Verlet it is caught.
-    let euler = mutant(mutants::euler_drifting_with_the_old_velocity);
-    assert!(momentum_law(method("velocity_verlet"), DampingModel::Axial, &euler).is_err());
+    let forgetful = mutant(mutants::verlet_with_explicit_damping);
+    assert!(cost_law(method("velocity_verlet"), &forgetful).is_err());
+    // One evaluation more than iterations is not two, nor two one; and a step needs an iteration.
+    let implicit = ["implicit_midpoint", "trapezoidal"].map(method);
+    assert!(cost_law(implicit[0], &own(implicit[1])).is_err());
+    assert!(cost_law(implicit[1], &own(implicit[0])).is_err());
+    let euler = mutant(mutants::euler_drifting_with_the_new_velocity);
+    assert!(cost_law(implicit[0], &euler).is_err());
 }

@@ -3,8 +3,11 @@
 
 pub mod mutants;
 
+use springcheck::effects::Effect;
 use springcheck::integrators::{Integrator, Method, REGISTRY, Settings};
-use springcheck::scene::{Axis, DampingModel, Particle, Scene, Solver, Spring};
+use springcheck::scene::{
+    Axis, DampingModel, GravitationalPair, Particle, Scene, Solver, Spring, Wind,
+};
 use springcheck::system::{Jacobian, Linearization, ParticleSystem, Power, State, System};
 
 /// x'' = -w² x - 2 ζ w x', one coordinate, mass 1.
@@ -74,14 +77,18 @@ pub fn advance(
 
 /// The one-step map of a linear one-coordinate system as a 2 x 2 matrix over (x, v/w), row-major.
 pub fn one_step_matrix(build: Build, w: f64, zeta: f64, z: f64) -> [f64; 4] {
-    let system = Oscillator { w, zeta };
+    one_step_matrix_of(build, &Oscillator { w, zeta }, w, z)
+}
+
+/// The same of any linear system of one coordinate.
+pub fn one_step_matrix_of(build: Build, system: &dyn System, w: f64, z: f64) -> [f64; 4] {
     let mut matrix = [0.0; 4];
     for column in 0..2 {
         let mut state = State::new(
             vec![if column == 0 { 1.0 } else { 0.0 }],
             vec![if column == 1 { w } else { 0.0 }],
         );
-        advance(build().as_mut(), &system, z / w, 1, &mut state);
+        advance(build().as_mut(), system, z / w, 1, &mut state);
         matrix[column] = state.x[0];
         matrix[2 + column] = state.v[0] / w;
     }
@@ -212,4 +219,34 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter()
         .zip(b)
         .fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()))
+}
+
+/// A scene that calls for every effect of the registry.
+pub fn everything(model: DampingModel) -> Scene {
+    let mut scene = swinging_triangle(0.7, model);
+    scene.particles[1].drag = 0.3;
+    scene.particles[3].drag = 0.1;
+    scene.wind = Some(Wind {
+        direction: [0.6, 0.0, 0.8],
+        strength: 1.5,
+    });
+    for ends in [[1, 2], [2, 3], [0, 3]] {
+        scene.gravitational.push(GravitationalPair { ends, g: 2.0 });
+    }
+    scene
+}
+
+/// Random positions near the scene's and random velocities of order 1.
+pub fn sample(scene: &Scene, random: &mut Random) -> (Vec<f64>, Vec<f64>) {
+    let start = ParticleSystem::initial_state(scene);
+    let x = start.x.iter().map(|x| x + 0.2 * random.next()).collect();
+    let v = start.x.iter().map(|_| random.next()).collect();
+    (x, v)
+}
+
+/// An effect's force alone, and its powers.
+pub fn force(effect: &dyn Effect, x: &[f64], v: &[f64]) -> (Vec<f64>, Power) {
+    let mut f = vec![0.0; x.len()];
+    let power = effect.add_force(0.0, x, v, &mut f);
+    (f, power)
 }

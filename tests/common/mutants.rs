@@ -126,5 +126,25 @@ pub fn symplectic_euler_at_half_the_step(system: &dyn System, h: f64, s: &mut St
     euler_drifting_with_the_new_velocity(system, 0.5 * h, s);
 }
 
+/// Explicit Euler that leaves the last coordinate's force out: no reaction to someone's action.
+pub fn euler_forgetting_a_reaction(system: &dyn System, h: f64, s: &mut State) {
+    let mut a = acceleration(system, &s.x, &s.v);
+    *a.last_mut().expect("a coordinate") = 0.0;
+    let v = s.v.clone();
+    add(&mut s.v, h, &a);
+    add(&mut s.x, h, &v);
+}
+
+/// Verlet that asks for forces at rest only.
+pub fn verlet_without_damping(system: &dyn System, h: f64, s: &mut State) {
+    let rest = vec![0.0; s.v.len()];
+    let a = acceleration(system, &s.x, &rest);
+    add(&mut s.v, 0.5 * h, &a);
+    let v = s.v.clone();
+    add(&mut s.x, h, &v);
+    let a = acceleration(system, &s.x, &rest);
+    add(&mut s.v, 0.5 * h, &a);
+}
+
 /// Nothing moves.
 pub fn frozen(_: &dyn System, _: f64, _: &mut State) {}

@@ -144,8 +144,8 @@ fn work_is_the_trapezoid_of_the_powers() {
             rectangle += h * before.dissipated;
         }
         let work = engine.state().work;
-        // A hundred additions of positive terms: 100 eps = 2e-14.
-        assert!((work.dissipated / trapezoid - 1.0).abs() < 2e-14, "{id}");
+        // A hundred additions of half a last bit, as a random walk: 5 eps, measured 3.
+        assert!((work.dissipated / trapezoid - 1.0).abs() < 2e-15, "{id}");
         assert!((work.dissipated / rectangle - 1.0).abs() > 1e-5, "{id}");
         assert!(work.injected != 0.0, "{id}");
     }

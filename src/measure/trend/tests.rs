@@ -226,6 +226,10 @@ fn a_trend_shows_under_an_oscillation() {
     let drifting = sum(&random.wave(2_000, 40.0), 0.5, &sampled(2_000, |s| s));
     let fitted = fit(&drifting);
     assert_eq!(fitted.class, Drifting);
+    for share in [0.2, -0.2] {
+        let slight = sum(&random.wave(2_000, 40.0), share, &sampled(2_000, |s| s));
+        assert_eq!(fit(&slight).class, Drifting, "D = {share} f");
+    }
     assert!((fitted.fluctuation - 1.0).abs() < 0.03, "{fitted:?}"); // within D's own error, 1.2/p
     let negligible = sum(&random.wave(2_000, 40.0), 0.05, &sampled(2_000, |s| s));
     assert_eq!(fit(&negligible).class, Bounded);
