@@ -4,6 +4,7 @@
 //! does not converge is an error, never a silent continuation.
 
 mod linear;
+mod sparse;
 
 use super::{StepError, axpy, fit};
 use crate::system::{Jacobian, Linearization, Power, State, System};

@@ -1,11 +1,8 @@
-//! The linear solve inside Newton: dense LU for a few unknowns, sparse LU with a kept pattern for
-//! many. LU, not Cholesky: dampers make the matrix unsymmetric, compressed springs indefinite.
+//! The linear solve inside Newton: a dense LU for a few unknowns, sparse factors for many.
 
 use super::super::StepError;
+use super::sparse::{Entry, Sparse};
 use crate::system::Jacobian;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
-use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
 use nalgebra::{DMatrix, DVector};
 
 /// Below this many free coordinates a dense factorisation is faster (measured: about 60).
@@ -17,21 +14,12 @@ pub(super) struct Solver {
     /// Position of each coordinate among the free ones, or `FIXED`.
     place: Vec<usize>,
     free: Vec<usize>,
-    /// The sparse entries' values, in the order they are emitted.
-    values: Vec<f64>,
+    /// The sparse matrix's entries, in the order they are emitted.
+    matrix: Vec<Entry>,
     sparse: Option<Sparse>,
 }
 
 const FIXED: usize = usize::MAX;
-
-/// The sparse matrix's pattern and its symbolic factor, kept while the pattern stays.
-struct Sparse {
-    /// Emitted entries, repeated places included.
-    entries: usize,
-    pattern: SymbolicSparseColMat<usize>,
-    order: Argsort<usize>,
-    symbolic: SymbolicLu<usize>,
-}
 
 impl Solver {
     pub(super) fn solve(
@@ -95,27 +83,20 @@ impl Solver {
         jacobian: &Jacobian,
         r: &[f64],
     ) -> Result<Vec<f64>, StepError> {
-        let mut values = std::mem::take(&mut self.values);
-        values.clear();
-        self.entries(inverse_mass, gamma, jacobian, |_, _, value| {
-            values.push(value);
+        let mut matrix = std::mem::take(&mut self.matrix);
+        matrix.clear();
+        self.entries(inverse_mass, gamma, jacobian, |row, column, value| {
+            matrix.push((row, column, value));
         });
-        // The pattern is a promise of `System::jacobian`; its length is checked, its places are not.
-        let sparse = match self.sparse.take() {
-            Some(sparse) if sparse.entries == values.len() => sparse,
-            _ => {
-                let mut places = Vec::with_capacity(values.len());
-                self.entries(inverse_mass, gamma, jacobian, |row, col, _| {
-                    places.push(Pair { row, col });
-                });
-                Sparse::new(self.free.len(), &places)?
-            }
+        let mut sparse = match self.sparse.take() {
+            Some(sparse) if sparse.fits(&matrix) => sparse,
+            _ => Sparse::new(self.free.len(), &matrix)?,
         };
-        let mut z = faer::Col::<f64>::from_fn(self.free.len(), |i| r[self.free[i]]);
-        let solved = sparse.solve(&values, &mut z);
+        let right: Vec<f64> = self.free.iter().map(|&at| r[at]).collect();
+        let solved = sparse.solve(&matrix, &right);
         self.sparse = Some(sparse);
-        self.values = values;
-        solved.map(|()| z.iter().copied().collect())
+        self.matrix = matrix;
+        solved
     }
 
     /// Every entry of the matrix as (row, column, value) among the free coordinates, in an order
@@ -141,28 +122,5 @@ impl Solver {
                 }
             }
         }
-    }
-}
-
-impl Sparse {
-    fn new(n: usize, places: &[Pair<usize, usize>]) -> Result<Self, StepError> {
-        let (pattern, order) = SymbolicSparseColMat::try_new_from_indices(n, n, places)
-            .map_err(|_| StepError::Singular)?;
-        let symbolic = SymbolicLu::try_new(pattern.as_ref()).map_err(|_| StepError::Singular)?;
-        Ok(Self {
-            entries: places.len(),
-            pattern,
-            order,
-            symbolic,
-        })
-    }
-
-    fn solve(&self, values: &[f64], z: &mut faer::Col<f64>) -> Result<(), StepError> {
-        let matrix = SparseColMat::new_from_argsort(self.pattern.clone(), &self.order, values)
-            .map_err(|_| StepError::Singular)?;
-        let lu = Lu::try_new_with_symbolic(self.symbolic.clone(), matrix.as_ref())
-            .map_err(|_| StepError::Singular)?;
-        lu.solve_in_place(z.as_mut());
-        Ok(())
     }
 }
