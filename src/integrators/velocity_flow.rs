@@ -162,7 +162,9 @@ impl VelocityFlow {
             // What is left after orthogonalising is rounding: the space is closed.
             let closed = beta <= 1e-13 * image || beta == 0.0;
             if closed || (k + 1) % TRIED == 0 {
-                let small = Small::new(h, &alphas, &betas);
+                let Some(small) = Small::new(h, &alphas, &betas) else {
+                    return false;
+                };
                 let (c1, c2) = small.actions();
                 // What the next vector would add, by the last component (Saad 1992, eq. 28).
                 let missing = (h * beta).abs() * c1[k].abs();
@@ -188,7 +190,8 @@ impl VelocityFlow {
 struct Small(SymmetricEigen<f64, nalgebra::Dyn>);
 
 impl Small {
-    fn new(h: f64, alphas: &[f64], betas: &[f64]) -> Self {
+    /// None with what is not finite, on which an eigensolver might not end.
+    fn new(h: f64, alphas: &[f64], betas: &[f64]) -> Option<Self> {
         let m = alphas.len();
         let mut tridiagonal = DMatrix::zeros(m, m);
         for i in 0..m {
@@ -198,7 +201,10 @@ impl Small {
                 tridiagonal[(i + 1, i)] = h * betas[i];
             }
         }
-        Self(SymmetricEigen::new(tridiagonal))
+        if tridiagonal.iter().any(|c: &f64| !c.is_finite()) {
+            return None;
+        }
+        SymmetricEigen::try_new(tridiagonal, f64::EPSILON, 100 * m).map(Self)
     }
 
     /// φ1(hT) e1 and φ2(hT) e1.
