@@ -68,7 +68,7 @@ impl Observer for Nobody {
     fn observe(&mut self, _step: u64, _state: &State) {}
 }
 
-/// 100,000 steps of the chain: stepping alone, watched for divergence, recorded, and measured too.
+/// 1,000,000 steps of the chain: stepping alone, watched for divergence, recorded, and measured too.
 fn recording(c: &mut Criterion) {
     let scene = chain();
     let system = ParticleSystem::new(&scene);

@@ -357,6 +357,20 @@ fn a_custom_rapier_row_converges_to_implicit_euler() {
         .expect("there");
     assert!((energy(own) / energy(row) - 1.0).abs() < 1e-11);
     assert_eq!(outcomes[row + 1]["substep"], 0.0025);
+    // The same settings twice are one row.
+    let twice = [
+        "run",
+        SCENE,
+        "--duration",
+        "0.01",
+        "--engines",
+        "none",
+        "--rapier",
+        "pgs=4",
+    ];
+    let report = json(&[&twice[..], &["--rapier", "pgs=4", "--format", "json"]].concat());
+    let rows = report["outcomes"].as_array().expect("outcomes").iter();
+    assert_eq!(rows.filter(|o| o["engine"] == "rapier(pgs=4)").count(), 1);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Any bytes: a scene whose numbers are all finite, or an error with a place; never a panic.
 //!
 //! `mkdir -p fuzz/corpus/scene && cp scenes/*/*.yml fuzz/corpus/scene/`, then
-//! `cargo +nightly fuzz run scene`.
+//! `cargo +nightly fuzz run scene -- -dict=fuzz/scene.dict`.
 
 #![no_main]
 

@@ -1,7 +1,7 @@
 //! `springcheck list integrators|effects|engines`
 
 use clap::ValueEnum;
-use comfy_table::{ContentArrangement, Table, presets};
+use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
 use springcheck::integrators::{EnergyLaw, Method, PerStep, Stable};
 use springcheck::{effects, engines, integrators};
 use std::process::ExitCode;
@@ -117,6 +117,10 @@ fn table(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {
         .set_header(header.to_vec());
     for row in rows {
         table.add_row(row);
+    }
+    // Ids stay whole, to be copied.
+    if let Some(ids) = table.column_mut(0) {
+        ids.set_constraint(ColumnConstraint::ContentWidth);
     }
     table
 }

@@ -253,9 +253,12 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
         })?;
         choice.engines = rows.into_iter().map(ChosenEngine::from).collect();
     }
-    choice
-        .engines
-        .extend(args.rapier.iter().map(Custom::chosen));
+    for chosen in args.rapier.iter().map(Custom::chosen) {
+        let known = |e: &ChosenEngine| e.row.id == chosen.row.id;
+        if !choice.engines.iter().any(known) {
+            choice.engines.push(chosen);
+        }
+    }
     if !args.timestep.is_empty() {
         choice.timesteps.clear();
         for &timestep in &args.timestep {

@@ -65,17 +65,19 @@ pub(super) fn all(
     host: &dyn Host,
 ) -> Result<Vec<Run>, SaveError> {
     let dim = 3 * scene.particles.len();
-    let mut runs: Vec<Run> = cases
+    cases
         .par_iter()
         .map(|case| one(case, dim, limits, host))
-        .collect::<Result<_, _>>()?;
-    // Short runs are timed again, one after the other, with nobody else on the machine.
-    for (case, run) in cases.iter().zip(&mut runs) {
+        .collect()
+}
+
+/// Times short runs again, one after the other, when nothing else runs.
+pub(super) fn time_again(cases: &[Case], runs: &mut [Run], limits: &Limits) {
+    for (case, run) in cases.iter().zip(runs) {
         if let Run::Ran(ran) = run {
             time(case, limits, &mut ran.wall);
         }
     }
-    Ok(runs)
 }
 
 fn one(case: &Case, dim: usize, limits: &Limits, host: &dyn Host) -> Result<Run, SaveError> {

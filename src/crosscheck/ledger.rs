@@ -92,6 +92,8 @@ pub(super) fn no_scale(scale: Option<f64>) -> Option<Check> {
         bound: None,
         derivation: "S = K(0) + U_elastic(0), else the sum of m |g| L".to_owned(),
         message:
-            "everything starts at rest with its springs unstretched, and weight or size is 0: energy errors have no relative size here".to_owned(),
+            "everything starts at rest with its springs unstretched, and weight or size is 0: \
+                  energy errors have no relative size here"
+                .to_owned(),
     })
 }

@@ -34,7 +34,8 @@ impl Plan<'_> {
             || execute::all(&self.cases, self.scene, &limits, host),
             || ledger::twin_proof(self.scene),
         );
-        let runs = runs?;
+        let mut runs = runs?;
+        execute::time_again(&self.cases, &mut runs, &limits);
         let (outcomes, series) = outcome::all(self, &runs, scale);
         Ok(Report {
             schema_version: SCHEMA_VERSION,

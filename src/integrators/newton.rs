@@ -1,4 +1,4 @@
-//! Newton's iteration for M (u - b) = γ f(t, y + γ u, u), over a dense or a sparse LU.
+//! Newton's iteration for M (u - b) = γ f(t, y + γ u, u), over a dense LU or sparse factors.
 //!
 //! Plain full steps: a line search and a regularised stiffness are not here yet, so a solve that
 //! does not converge is an error, never a silent continuation.

@@ -10,7 +10,8 @@ pub const TOLERANCE: f64 = 0.01;
 /// Largest distance over the particles between two runs of the same scene and timestep, over the
 /// instants both recorded; `tolerance` in metres.
 ///
-/// None when they share no instant but the start, which is the scene's and no run's. A distance says that two runs differ, not which one is wrong.
+/// None when they share no instant but the start, which is the scene's and no run's. A distance
+/// says that two runs differ, not which one is wrong.
 pub fn deviation(ours: &Trajectory, reference: &Trajectory, tolerance: f64) -> Option<Deviation> {
     let mut result: Option<Deviation> = None;
     let mut other = 0;

@@ -1,11 +1,12 @@
 //! Which way the energy balance goes: the fitted trend, its interval, and the class read from both.
 //!
-//! With D the fitted trend times the duration and f half the peak-to-peak of the residual, a series is
-//! bounded when the trend is insignificant at 99.9 % or |D| < 0.1 f, growing or dissipating when |D| > f,
-//! drifting in between. What "significant" takes is in `evidence`: it holds against noise that
-//! remembers, up to a random walk, where the textbook interval of a slope does not. A path that goes one
-//! way, in whatever shape, is its own trend: D is its net change and f half its largest reversal, since
-//! a straight line through a decay over in 2 % of the run, or through e^23, misses most of it.
+//! With D the fitted trend times the duration and f half the peak-to-peak of the residual, a series
+//! is bounded when the trend is insignificant at 99.9 % or |D| < 0.1 f, growing or dissipating when
+//! |D| > f, drifting in between. What "significant" takes is in `evidence`: it holds against noise
+//! that remembers, up to a random walk, where the textbook interval of a slope does not. A path
+//! that goes one way, in whatever shape, is its own trend: D is its net change and f half its
+//! largest reversal, since a straight line through a decay over in 2 % of the run, or through e^23,
+//! misses most of it.
 
 mod evidence;
 #[cfg(test)]
@@ -18,10 +19,11 @@ use crate::outcome::EnergyClass;
 pub struct Trend {
     /// Least-squares slope, units of b per unit of t. Not a growth rate: that is the slope of ln b.
     pub slope: f64,
-    /// 99.9 % two-sided interval of the slope, low to high, `slope` inside. It excludes 0 exactly when the
-    /// trend is significant; a significant trend may still be bounded (|D| < 0.1 f).
+    /// 99.9 % two-sided interval of the slope, low to high, `slope` inside. It excludes 0 exactly
+    /// when the trend is significant; a significant trend may still be bounded (|D| < 0.1 f).
     pub interval: [f64; 2],
-    /// Half the peak-to-peak of the residual about the least-squares line, units of b. Not that of b.
+    /// Half the peak-to-peak of the residual about the least-squares line, units of b. Not that of
+    /// b.
     pub fluctuation: f64,
     pub class: EnergyClass,
 }
@@ -29,9 +31,10 @@ pub struct Trend {
 /// A trend below this share of the fluctuation is none.
 const NEGLIGIBLE: f64 = 0.1;
 
-/// Fits and classifies b(t): `t` strictly increasing, evenly spaced but for a shorter last gap; `b` finite
-/// and as long as `t`. Fewer than two samples have no trend. A series whose peak-to-peak is below `floor` (units of b) is
-/// bounded whatever its shape. A slope too steep for f64 saturates, so that every answer is finite.
+/// Fits and classifies b(t): `t` strictly increasing, evenly spaced but for a shorter last gap; `b`
+/// finite and as long as `t`. Fewer than two samples have no trend. A series whose peak-to-peak is
+/// below `floor` (units of b) is bounded whatever its shape. A slope too steep for f64 saturates,
+/// so that every answer is finite.
 pub fn trend(t: &[f64], b: &[f64], floor: f64) -> Trend {
     let (low, high) = extremes(b);
     if t.len() < 2 || low == high {
@@ -87,8 +90,8 @@ fn directed(change: f64) -> EnergyClass {
     }
 }
 
-/// Values mapped onto [0, 1], so that neither 1e300 nor 1e-300 is ever squared, and slopes become D.
-/// The range they had is `spread` times `scale`, a product that may overflow.
+/// Values mapped onto [0, 1], so that neither 1e300 nor 1e-300 is ever squared, and slopes become
+/// D. The range they had is `spread` times `scale`, a product that may overflow.
 struct Unit {
     values: Vec<f64>,
     spread: f64,

@@ -38,7 +38,8 @@ pub struct Proof {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
     Pass,
-    /// The two sides do not compute the same scene: nothing compared with this engine means anything.
+    /// The two sides do not compute the same scene: nothing compared with this engine means
+    /// anything.
     Fail,
     /// Neither proved nor refuted, with the reason in the message.
     Inconclusive,
@@ -179,10 +180,11 @@ impl Pair {
     ///
     /// The amplification is measured, not estimated: the same path is taken again from starts one
     /// unit in the last place of the largest coordinate away, and ends `grown` away. Every
-    /// substep rounds that much on both sides, and its solve loses up to its condition number. So the bound holds on stiff, unstable and chaotic scenes too. It is usually 30 to
-    /// 200 times what is measured, since signs are random, and within a factor of 3 on the worst
-    /// of thousands of random nets; it is looser on scenes small beside their distance from the
-    /// origin, where both sides mostly round positions alike, but need not.
+    /// substep rounds that much on both sides, and its solve loses up to its condition number. So
+    /// the bound holds on stiff, unstable and chaotic scenes too. It is usually 30 to 200 times
+    /// what is measured, since signs are random, and within a factor of 3 on the worst of thousands
+    /// of random nets; it is looser on scenes small beside their distance from the origin, where
+    /// both sides mostly round positions alike, but need not.
     fn reference(&self, method: &'static str, substeps: u32) -> (Path, f64, String) {
         let h = self.timestep / f64::from(substeps);
         let path = Path::of(ours(&self.ours, method, h), substeps, JOINT_STEPS);

@@ -18,7 +18,7 @@ const LEGEND: &str = "\
 - **Deviation** is the largest distance of any particle from the same particle in the named rapier engine.
   It is not an error: rapier's spring joint is linearly implicit Euler at h = dt/n, which dissipates by design, so a
   good integrator departs from it. `rapier-forces` applies the scene's own forces to rapier's bodies and must
-  equal symplectic Euler to rounding.
+  equal symplectic Euler bit for bit.
 - **Error** is the largest distance from the truth; *floor* means below ten times the truth's own error bar.
 - *Diverged*, *failed* and *unsupported* are results, not fast runs: their time is not shown.
 - Times vary from run to run; everything else is reproducible.

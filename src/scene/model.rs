@@ -72,7 +72,7 @@ pub struct Particle {
     pub fixed: bool,
     /// Kilograms, positive.
     pub mass: f64,
-    /// Metres; drawn, and the ball's radius once a scene asks for contact. Default 0.1.
+    /// Metres; the ball's radius once a scene asks for contact. Default 0.1.
     pub radius: f64,
     /// Linear drag coefficient, N s/m. Default 0.
     pub drag: f64,

@@ -5,7 +5,7 @@ use super::sparse::{Entry, Sparse};
 use crate::system::Jacobian;
 use nalgebra::{DMatrix, DVector};
 
-/// Below this many free coordinates a dense factorisation is faster (measured: about 60).
+/// Up to this many free coordinates a dense factorisation is faster (measured).
 const DENSE: usize = 60;
 
 /// Solves (M - γ C - γ² K) z = r over the free coordinates; r and z have full length.
