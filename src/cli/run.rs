@@ -110,10 +110,9 @@ fn read(args: &Args, path: &std::path::Path) -> anyhow::Result<Scene> {
         scene.duration = duration;
     }
     let custom = args.rapier.iter().filter_map(|c| c.timestep.as_ref());
-    let own = [scene.solver.timestep];
     // A flag replaces the file's timestep, which then need not fit.
     let common = if args.timestep.is_empty() {
-        &own[..]
+        std::slice::from_ref(&scene.solver.timestep)
     } else {
         &args.timestep
     };
@@ -125,22 +124,21 @@ fn read(args: &Args, path: &std::path::Path) -> anyhow::Result<Scene> {
 }
 
 fn one(args: &Args, quiet: bool, scene: &Scene, path: &std::path::Path) -> anyhow::Result<Report> {
+    let place = place(args, path);
+    let files = match (args.save, &place) {
+        (None, _) => None,
+        (Some(kind), Some(place)) => Some(Files::new(kind, place, args.every)),
+        (Some(_), None) => bail!("--save needs --output when --format is not human"),
+    };
     let plan = Plan::new(scene, &choice(args, scene)?);
     let estimates = plan.estimate();
     let expected = expected(&estimates);
     if expected > ANNOUNCED && !quiet {
         announce(&estimates, expected);
     }
-    let place = place(args, path);
     if let Some(place) = &place {
         place.create()?;
     }
-    let files = args.save.map(|kind| (kind, place.as_ref(), args.every));
-    let files = match files {
-        None => None,
-        Some((kind, Some(place), every)) => Some(Files::new(kind, place, every)),
-        Some((_, None, _)) => bail!("--save needs --output when --format is not human"),
-    };
     let steps = plan.cases.iter().map(|case| case.label.steps).sum();
     let progress = Progress::new(steps, expected, quiet);
     let report = plan.execute(&host(&progress, files.as_ref()))?;

@@ -122,12 +122,8 @@ impl<'a> Plan<'a> {
             }
         }
         for chosen in &choice.engines {
-            let own: Vec<f64> = chosen.timestep.into_iter().collect();
-            let timesteps = if own.is_empty() {
-                &choice.timesteps
-            } else {
-                &own
-            };
+            let own = chosen.timestep.as_ref().map(std::slice::from_ref);
+            let timesteps = own.unwrap_or(&choice.timesteps);
             for &timestep in timesteps {
                 cases.push(engine_case(scene, &system, &chosen.row, timestep));
             }

@@ -106,7 +106,10 @@ fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
             };
             let undamped = if damped { "undamped " } else { "" };
             agrees.then(|| {
-                format!("{moves} as its law says: by {formula} a step, z = hω, on an {undamped}oscillator")
+                format!(
+                    "{moves} as its law says: by {formula} a step, z = hω, on an \
+                     {undamped}oscillator"
+                )
             })
         }
         (_, Stable::Below(limit)) if !damped => Some(format!(

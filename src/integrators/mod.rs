@@ -182,6 +182,12 @@ fn fit(buffer: &mut Vec<f64>, n: usize) {
     }
 }
 
+/// The largest magnitude; 0 of nothing.
+fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
+    let magnitudes = values.into_iter().map(|c| c.abs());
+    magnitudes.fold(0.0, f64::max)
+}
+
 /// y += a x.
 #[inline(always)]
 fn axpy(y: &mut [f64], a: f64, x: &[f64]) {

@@ -6,7 +6,7 @@
 //! SIAM J. Numer. Anal. 34; φ functions as in Niesen & Wright 2012, ACM TOMS 38; the stopping rule is
 //! that of Saad 1992, SIAM J. Numer. Anal. 29.)
 
-use super::{StepError, axpy, fit};
+use super::{StepError, axpy, fit, largest};
 use crate::system::{State, System};
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -168,8 +168,7 @@ impl VelocityFlow {
                 let (c1, c2) = small.actions();
                 // What the next vector would add, by the last component (Saad 1992, eq. 28).
                 let missing = (h * beta).abs() * c1[k].abs();
-                let enough = c1.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-                let enough = enough.max(speed / (h.abs() * scale) * mass_root(inverse_mass));
+                let enough = largest(&c1).max(speed / (h.abs() * scale) * mass_root(inverse_mass));
                 if closed || missing <= 0.25 * f64::EPSILON * enough {
                     for (row, q) in self.basis.iter().enumerate() {
                         axpy(&mut self.phi1, scale * c1[row], q);
@@ -248,10 +247,6 @@ fn phi2(z: f64) -> f64 {
     (2..18)
         .rev()
         .fold(0.0, |sum, k| (sum * z + 1.0) / f64::from(k))
-}
-
-fn largest(u: &[f64]) -> f64 {
-    u.iter().fold(0.0, |m, c| f64::max(m, c.abs()))
 }
 
 /// Sum of u w m over the free coordinates.

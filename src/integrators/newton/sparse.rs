@@ -5,7 +5,7 @@
 //! of dampers adds an unsymmetric part that is small beside the masses at any sensible step. So a
 //! Cholesky factor is nearly always a few times cheaper than LU, and as exact.
 
-use super::super::StepError;
+use super::super::{StepError, largest};
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Llt, Lu, SymbolicLlt, SymbolicLu};
 use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
@@ -114,11 +114,11 @@ impl Sparse {
             for &(row, column, value) in entries {
                 left[row] -= value * z[column];
             }
-            let off = left.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+            let off = largest(left.iter());
             if off <= REFINED * size {
                 return Some(z);
             }
-            if off.is_nan() || off > 0.5 * before {
+            if off > 0.5 * before {
                 // No longer shrinking: at rounding for this matrix, or not converging at all.
                 return (off <= 1e-13 * size).then_some(z);
             }
@@ -153,10 +153,6 @@ impl Sparse {
 /// A place in the lower triangle.
 fn folded(row: usize, column: usize) -> (usize, usize) {
     (row.max(column), row.min(column))
-}
-
-fn largest(r: &[f64]) -> f64 {
-    r.iter().fold(0.0, |m: f64, c| m.max(c.abs()))
 }
 
 #[cfg(test)]
