@@ -1,7 +1,7 @@
 //! Text from a file, made fit to show: it may be long, and steer a terminal.
 
 /// The character, or a stand-in for one that moves the cursor or reverses the line.
-pub(super) fn printable(c: char) -> char {
+pub(crate) fn printable(c: char) -> char {
     match c {
         '\t' => ' ',
         '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
@@ -11,7 +11,7 @@ pub(super) fn printable(c: char) -> char {
 }
 
 /// The first 60 characters, so that a message stays a line.
-pub(super) fn shorten(text: &str) -> String {
+pub(crate) fn shorten(text: &str) -> String {
     let mut short: String = text.chars().take(60).map(printable).collect();
     if text.chars().nth(60).is_some() {
         short.push('…');

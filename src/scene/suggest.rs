@@ -37,7 +37,7 @@ pub(super) fn key(found: &str, known: &[&str]) -> String {
 }
 
 /// The known word a few letters away, if any.
-pub(super) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
     // The distance is quadratic in length, and no known word is this long.
     if found.len() > 64 {
         return None;

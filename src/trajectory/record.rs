@@ -24,16 +24,43 @@ pub struct Trajectory {
     next_steps: Vec<u64>,
     next_x: Vec<f64>,
     next_v: Vec<f64>,
+    /// Whether `v` and `next_v` are the run's own, not differences of its positions.
+    has_velocities: bool,
+}
+
+/// The most instants a run of `particles` particles is recorded at.
+pub(super) fn most_instants(particles: usize) -> u64 {
+    let bytes = 2 * 6 * 8 * particles.max(1) as u64;
+    (BUDGET / bytes).clamp(FEWEST, INSTANTS)
 }
 
 /// Steps from one recorded instant to the next for a run of `steps` steps of `particles` particles.
 pub fn stride(steps: u64, particles: usize) -> u64 {
-    let bytes = 2 * 6 * 8 * particles.max(1) as u64;
-    let instants = (BUDGET / bytes).clamp(FEWEST, INSTANTS);
-    steps.div_ceil(instants - 1).max(1)
+    steps.div_ceil(most_instants(particles) - 1).max(1)
 }
 
 impl Trajectory {
+    /// Nothing yet, with room for so many instants and states one step after one.
+    pub(super) fn with_room(
+        dim: usize,
+        timestep: f64,
+        has_velocities: bool,
+        [instants, successors]: [usize; 2],
+    ) -> Self {
+        Self {
+            timestep,
+            dim,
+            steps: Vec::with_capacity(instants),
+            x: Vec::with_capacity(instants * dim),
+            v: Vec::with_capacity(instants * dim),
+            work: Vec::with_capacity(instants),
+            next_steps: Vec::with_capacity(successors),
+            next_x: Vec::with_capacity(successors * dim),
+            next_v: Vec::with_capacity(successors * dim),
+            has_velocities,
+        }
+    }
+
     /// Recorded instants.
     pub fn len(&self) -> usize {
         self.steps.len()
@@ -41,6 +68,11 @@ impl Trajectory {
 
     pub fn is_empty(&self) -> bool {
         self.steps.is_empty()
+    }
+
+    /// Seconds a step.
+    pub fn timestep(&self) -> f64 {
+        self.timestep
     }
 
     /// Coordinates of a state, 3 a particle.
@@ -63,6 +95,12 @@ impl Trajectory {
         &self.x[k * self.dim..(k + 1) * self.dim]
     }
 
+    /// Whether velocities are known. Where another program gave positions only they are not:
+    /// [`v`](Self::v) then holds differences, from which no energy is to be read.
+    pub fn has_velocities(&self) -> bool {
+        self.has_velocities
+    }
+
     /// Velocities at instant `k`.
     pub fn v(&self, k: usize) -> &[f64] {
         &self.v[k * self.dim..(k + 1) * self.dim]
@@ -73,11 +111,19 @@ impl Trajectory {
         self.work[k]
     }
 
-    fn push(&mut self, step: u64, state: &State) {
+    /// One more instant, after all others.
+    pub(super) fn push(&mut self, step: u64, state: &State) {
         self.steps.push(step);
         self.x.extend_from_slice(&state.x);
         self.v.extend_from_slice(&state.v);
         self.work.push(state.work);
+    }
+
+    /// The state one step after the last instant.
+    pub(super) fn push_successor(&mut self, step: u64, state: &State) {
+        self.next_steps.push(step);
+        self.next_x.extend_from_slice(&state.x);
+        self.next_v.extend_from_slice(&state.v);
     }
 
     /// Positions and velocities one step after instant `k`, where they were recorded.
@@ -110,17 +156,7 @@ impl Recorder {
         Self {
             stride,
             last: steps,
-            trajectory: Trajectory {
-                timestep,
-                dim,
-                steps: Vec::with_capacity(instants),
-                x: Vec::with_capacity(instants * dim),
-                v: Vec::with_capacity(instants * dim),
-                work: Vec::with_capacity(instants),
-                next_steps: Vec::with_capacity(successors),
-                next_x: Vec::with_capacity(successors * dim),
-                next_v: Vec::with_capacity(successors * dim),
-            },
+            trajectory: Trajectory::with_room(dim, timestep, true, [instants, successors]),
         }
     }
 
@@ -145,14 +181,11 @@ impl Observer for Recorder {
     }
 
     fn observe(&mut self, step: u64, state: &State) {
-        let t = &mut self.trajectory;
         let successor = self.stride > 1 && step % self.stride == 1 && step != self.last;
         if successor {
-            t.next_steps.push(step);
-            t.next_x.extend_from_slice(&state.x);
-            t.next_v.extend_from_slice(&state.v);
+            self.trajectory.push_successor(step, state);
         } else {
-            t.push(step, state);
+            self.trajectory.push(step, state);
         }
     }
 

@@ -1,0 +1,299 @@
+//! Trajectories as text: `t,id,x,y,z[,vx,vy,vz]`, or `t,x[,v]` on a free axis.
+
+mod header;
+mod place;
+
+pub(super) use place::of_field as place_of_field;
+
+use super::digits::Form;
+use super::error::{HALF, ReadError, Wrong};
+use super::expected::Expected;
+use super::times::{self, Source, Times};
+use super::{Numbers, Place, Table, limits};
+use crate::scene::shown::shorten;
+use ::csv::{ByteRecord, ReaderBuilder};
+use header::Columns;
+
+/// Reads the text of a file. Quotes around single fields are taken off, but nothing inside quotes
+/// is protected: a number needs none.
+pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Table, ReadError> {
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        let wrong = Wrong::new("this text is UTF-16", "save it as UTF-8");
+        return Err(wrong.at(file, Place::Text { line: 1, column: 1 }));
+    }
+    let text = place::without_mark(bytes);
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .quoting(false)
+        .from_reader(text);
+    let mut record = ByteRecord::new();
+    let mut commented = None;
+    let mut rows: Option<Rows> = None;
+    // Reading from memory, into bytes and with any number of fields, cannot fail.
+    while reader.read_byte_record(&mut record).unwrap_or(false) {
+        let start = record.position().map_or(0, ::csv::Position::byte);
+        let last = reader.position().byte() >= text.len() as u64;
+        let first = record.get(0).unwrap_or_default().trim_ascii_start();
+        let fail =
+            |(field, wrong): (usize, Wrong)| wrong.at(file, place::of_field(bytes, start, field));
+        if let Some(comment) = first.strip_prefix(b"#") {
+            let fields = std::iter::once(comment).chain(record.iter().skip(1));
+            commented = commented.or_else(|| Columns::new(fields, expected).ok());
+            continue;
+        }
+        if record.len() == 1 && first.is_empty() {
+            continue;
+        }
+        if let Some(rows) = &mut rows {
+            rows.add(&record, start, last).map_err(fail)?;
+            continue;
+        }
+        // Numbers right below a comment that names the columns.
+        if let Some(columns) = commented.take().filter(|_| number(first).is_some()) {
+            let rows = rows.insert(Rows::new(columns, expected));
+            rows.add(&record, start, last).map_err(fail)?;
+        } else {
+            let columns = Columns::new(record.iter(), expected).map_err(fail)?;
+            rows = Some(Rows::new(columns, expected));
+        }
+    }
+    let nothing = || {
+        let help = "is the file empty, or not yet written?";
+        Wrong::new("expected a header, found nothing", help)
+    };
+    rows.ok_or_else(nothing)
+        .and_then(Rows::finish)
+        .map_err(|wrong| wrong.at(file, place::of_end(bytes)))
+}
+
+/// The states read so far; the last may still lack particles.
+struct Rows<'a> {
+    columns: Columns,
+    expected: &'a Expected,
+    times: Vec<f64>,
+    /// Byte offsets of each state's first record.
+    starts: Vec<u64>,
+    x: Vec<f64>,
+    v: Vec<f64>,
+    /// How times, positions and velocities are written.
+    forms: [Form; 3],
+    /// Of each particle: how many states there were when it was last given.
+    given_in: Vec<usize>,
+    /// Particles of the last state given so far.
+    given: usize,
+}
+
+type Located<T> = Result<T, (usize, Wrong)>;
+
+impl<'a> Rows<'a> {
+    fn new(columns: Columns, expected: &'a Expected) -> Self {
+        Self {
+            columns,
+            expected,
+            times: Vec::new(),
+            starts: Vec::new(),
+            x: Vec::new(),
+            v: Vec::new(),
+            forms: [Form::default(); 3],
+            given_in: vec![0; expected.particles()],
+            given: 0,
+        }
+    }
+
+    /// One record that starts at this byte; errors name the field.
+    fn add(&mut self, record: &ByteRecord, start: u64, last: bool) -> Located<()> {
+        if record.len() != self.columns.count {
+            let (count, found) = (self.columns.count, record.len());
+            let message = format!("expected {count} fields, found {found}");
+            let help = if last && found < count { HALF } else { "" };
+            return Err((
+                found.min(count).saturating_sub(1),
+                Wrong::new(message, help),
+            ));
+        }
+        let t = self.number(record, self.columns.t, 0)?;
+        if self.times.last() != Some(&t) {
+            self.begin(t, start)
+                .map_err(|wrong| (self.columns.t, wrong))?;
+        }
+        let particle = self.particle(record)?;
+        self.store(record, particle)
+    }
+
+    /// A state at another time than the last.
+    fn begin(&mut self, t: f64, start: u64) -> Result<(), Wrong> {
+        times::follows(self.times.last().copied(), t)?;
+        self.complete("before the next time begins")?;
+        let numbers = self.x.len() + self.v.len() + 6 * self.expected.particles();
+        if numbers > limits::NUMBERS {
+            return Err(too_many());
+        }
+        self.times.push(t);
+        self.starts.push(start);
+        self.given = 0;
+        self.x.extend_from_slice(self.expected.start());
+        if !self.columns.v.is_empty() {
+            self.v.resize(self.x.len(), 0.0);
+        }
+        Ok(())
+    }
+
+    /// Whether the last state has all particles, or all but the fixed ones.
+    fn complete(&self, when: &str) -> Result<(), Wrong> {
+        let Some(t) = self.times.last() else {
+            return Ok(());
+        };
+        if self.given == self.given_in.len() {
+            return Ok(());
+        }
+        let missing = |id: &usize| self.given_in[*id] != self.times.len();
+        let fixed = self.expected.fixed();
+        let ids = 0..fixed.len();
+        if ids.clone().all(|id| missing(&id) == fixed[id]) {
+            return Ok(());
+        }
+        let some_fixed_given = ids.clone().any(|id| fixed[id] && !missing(&id));
+        let wanted = |id: &usize| missing(id) && (some_fixed_given || !fixed[*id]);
+        let mut lacking = ids.filter(wanted);
+        let first = lacking.next().unwrap_or_default();
+        let more = match lacking.count() {
+            0 => String::new(),
+            n => format!(" and {n} more"),
+        };
+        let message = format!("particle {first}{more} missing at t = {t:?} {when}");
+        Err(Wrong::new(
+            message,
+            "rows of one time stand together, one a particle: sort them by time",
+        ))
+    }
+
+    /// The particle a record is about.
+    fn particle(&mut self, record: &ByteRecord) -> Located<usize> {
+        let count = self.given_in.len();
+        let (field, particle) = match self.columns.id {
+            // Checked with the header: there is only one to be about.
+            None => (self.columns.t, self.expected.only().unwrap_or_default()),
+            Some(field) => {
+                let text = record.get(field).unwrap_or_default();
+                // Whole numbers in any form: `np.savetxt` writes 1.000000e+00.
+                let whole = number(text).filter(|id| *id >= 0.0 && id.fract() == 0.0);
+                let Some(id) = whole.map(|id| id as usize).filter(|id| *id < count) else {
+                    let found = shown(text);
+                    let message =
+                        format!("expected a particle from 0 to {}, found {found}", count - 1);
+                    return Err((
+                        field,
+                        Wrong::new(message, "particles count from 0, as in the scene"),
+                    ));
+                };
+                (field, id)
+            }
+        };
+        let stamp = self.times.len();
+        let t = self.times.last().copied().unwrap_or_default();
+        match self.given_in.get_mut(particle) {
+            Some(at) if *at != stamp => *at = stamp,
+            _ => {
+                let message = format!("particle {particle} a second time at t = {t:?}");
+                return Err((field, Wrong::new(message, "")));
+            }
+        }
+        self.given += 1;
+        Ok(particle)
+    }
+
+    /// Writes a record's coordinates into the last state.
+    fn store(&mut self, record: &ByteRecord, particle: usize) -> Located<()> {
+        let state = (self.times.len() - 1) * 3 * self.given_in.len();
+        let coordinate = match self.expected.free_axis() {
+            Some(free) if self.columns.x.len() == 1 => free.coordinate(),
+            _ => 3 * particle,
+        };
+        for axis in 0..self.columns.x.len() {
+            let at = state + coordinate + axis;
+            self.x[at] = self.number(record, self.columns.x[axis], 1)?;
+            if let Some(&field) = self.columns.v.get(axis) {
+                self.v[at] = self.number(record, field, 2)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A field as a finite number, a time (0), position (1) or velocity (2).
+    fn number(&mut self, record: &ByteRecord, field: usize, kind: usize) -> Located<f64> {
+        let text = record.get(field).unwrap_or_default();
+        match number(text) {
+            Some(value) if value.is_finite() => {
+                self.forms[kind].see(bare(text));
+                Ok(value)
+            }
+            Some(_) => {
+                let message = format!("expected a finite number, found {}", shown(text));
+                let help = "end the file before the first number that is none";
+                Err((field, Wrong::new(message, help)))
+            }
+            None => {
+                let message = format!("expected a number, found {}", shown(text));
+                Err((field, Wrong::new(message, "")))
+            }
+        }
+    }
+
+    fn finish(self) -> Result<Table, Wrong> {
+        if self.times.is_empty() {
+            return Err(Wrong::new(
+                "expected rows below the header, found none",
+                HALF,
+            ));
+        }
+        self.complete("before the file ends")
+            .map_err(|wrong| Wrong::new(wrong.message, HALF))?;
+        let v = !self.columns.v.is_empty();
+        let [t_form, x_form, v_form] = self.forms;
+        Ok(Table {
+            times: Times {
+                values: self.times,
+                written: t_form.written(),
+                source: Source::Text {
+                    starts: self.starts,
+                    field: self.columns.t,
+                },
+            },
+            x: Numbers {
+                values: self.x,
+                written: x_form.written(),
+            },
+            v: v.then_some(Numbers {
+                values: self.v,
+                written: v_form.written(),
+            }),
+        })
+    }
+}
+
+fn too_many() -> Wrong {
+    let message = format!("more than {} numbers", limits::NUMBERS);
+    Wrong::new(message, "keep fewer instants")
+}
+
+/// A field without blanks and quotes around it.
+fn bare(field: &[u8]) -> &[u8] {
+    let field = field.trim_ascii();
+    let inside = |quote: &[u8]| field.strip_prefix(quote)?.strip_suffix(quote);
+    inside(b"\"")
+        .or_else(|| inside(b"'"))
+        .map_or(field, <[u8]>::trim_ascii)
+}
+
+/// Possibly infinite or NaN; None where it is no number at all.
+fn number(field: &[u8]) -> Option<f64> {
+    std::str::from_utf8(bare(field)).ok()?.parse().ok()
+}
+
+fn shown(field: &[u8]) -> String {
+    match bare(field) {
+        b"" => "nothing".to_owned(),
+        text => format!("`{}`", shorten(&String::from_utf8_lossy(text))),
+    }
+}

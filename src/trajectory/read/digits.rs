@@ -1,0 +1,265 @@
+//! How many digits numbers are given to, told from the numbers themselves and how they are written.
+
+use super::super::Precision;
+use std::fmt::{LowerExp, Write};
+
+/// How a column or array writes its numbers, as far as that alone tells.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) enum Written {
+    /// Doubles, or text that is not all alike.
+    #[default]
+    Any,
+    /// As singles.
+    Single,
+    /// In text, each number with so many digits after the point, zeros included.
+    Decimals(u32),
+    /// In text, each number as d.ddde+00 with so many digits.
+    Digits(u32),
+}
+
+/// Watches the numbers of a text column until two of them are not written alike.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Form {
+    /// Digits after the point, and whether an exponent follows.
+    first: Option<(u32, bool)>,
+    mixed: bool,
+}
+
+/// With fewer decimals, numbers that happen to be short look the same.
+const FEWEST: u32 = 3;
+
+impl Form {
+    pub fn see(&mut self, number: &[u8]) {
+        if self.mixed {
+            return;
+        }
+        let exponent = number.iter().position(|b| matches!(b, b'e' | b'E'));
+        let mantissa = &number[..exponent.unwrap_or(number.len())];
+        let point = mantissa.iter().rposition(|b| *b == b'.');
+        let decimals = point.map_or(0, |point| mantissa.len() - 1 - point);
+        let own = (decimals as u32, exponent.is_some());
+        self.mixed = *self.first.get_or_insert(own) != own;
+    }
+
+    pub fn written(self) -> Written {
+        match self.first.filter(|_| !self.mixed) {
+            Some((decimals, false)) if decimals >= FEWEST => Written::Decimals(decimals),
+            Some((decimals, true)) if decimals >= FEWEST => Written::Digits(decimals + 1),
+            _ => Written::Any,
+        }
+    }
+}
+
+/// How exactly these numbers are given: states of `width` numbers, one after the other.
+///
+/// Only numbers that differ from the same one in the state before count: starts and fixed particles
+/// are often exact. From what is left, floats in full need 17 digits (singles 9); rounding shows in
+/// that no number needs more than so many decimals, or so many digits, and most need just these.
+pub(super) fn detect(values: &[f64], width: usize, written: Written) -> Precision {
+    match written {
+        Written::Decimals(decimals) => return Precision::Decimals(decimals),
+        Written::Digits(digits) if digits < FULL => return Precision::Digits(digits),
+        _ => {}
+    }
+    let sample = Sample::new(values, width, written);
+    match sample.float {
+        Float::Single => sample.rounded(SINGLE, Precision::Single),
+        Float::Double => sample.rounded(DOUBLE, Precision::Double),
+        Float::Exact(precision) => precision,
+    }
+}
+
+/// Significant digits that give back any double.
+pub(super) const FULL: u32 = 17;
+
+/// A number's shortest decimal form that gives back the same float, d.ddd * 10^exponent.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shortest {
+    pub digits: u32,
+    exponent: i32,
+}
+
+impl Shortest {
+    fn new(value: impl LowerExp, scratch: &mut String) -> Self {
+        scratch.clear();
+        // Writing into a string cannot fail.
+        let _ = write!(scratch, "{value:e}");
+        let (mantissa, exponent) = scratch.split_once('e').unwrap_or((scratch, "0"));
+        let digits = mantissa.bytes().filter(u8::is_ascii_digit).count();
+        Self {
+            digits: digits as u32,
+            exponent: exponent.parse().unwrap_or(0),
+        }
+    }
+
+    /// Digits after the point.
+    pub fn decimals(self) -> u32 {
+        u32::try_from(self.digits as i32 - 1 - self.exponent).unwrap_or(0)
+    }
+}
+
+/// Numbers that say something about rounding.
+pub(super) struct Sample {
+    values: Vec<f64>,
+    pub shortest: Vec<Shortest>,
+    pub float: Float,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Float {
+    Double,
+    Single,
+    /// Nothing is rounded: all numbers are short binary fractions, or nothing ever changes.
+    Exact(Precision),
+}
+
+/// So many numbers are enough.
+const ENOUGH: usize = 8192;
+
+impl Sample {
+    pub fn new(values: &[f64], width: usize, written: Written) -> Self {
+        let single = matches!(written, Written::Single);
+        let native = if single {
+            Precision::Single
+        } else {
+            Precision::Double
+        };
+        let sample = pick(values, width);
+        if sample.is_empty() || !single && sample.iter().all(|v| is_short_fraction(*v)) {
+            return Self {
+                values: sample,
+                shortest: Vec::new(),
+                float: Float::Exact(native),
+            };
+        }
+        let mut scratch = String::new();
+        let mut float = Float::Double;
+        if single || values.iter().all(|v| f64::from(*v as f32) == *v) {
+            float = Float::Single;
+        }
+        let shortest: Vec<_> = sample
+            .iter()
+            .map(|v| match float {
+                Float::Single => Shortest::new(*v as f32, &mut scratch),
+                _ => Shortest::new(*v, &mut scratch),
+            })
+            .collect();
+        // Singles in their own shortest text are no singles once read as doubles.
+        let longest = shortest.iter().map(|s| s.digits).max();
+        if float == Float::Double
+            && (longest == Some(8) || longest == Some(9))
+            && sample.iter().all(|v| is_printed_single(*v, &mut scratch))
+        {
+            float = Float::Single;
+        }
+        Self {
+            values: sample,
+            shortest,
+            float,
+        }
+    }
+
+    pub fn longest(&self) -> u32 {
+        self.shortest.iter().map(|s| s.digits).max().unwrap_or(0)
+    }
+
+    pub fn decimals(&self) -> u32 {
+        self.shortest
+            .iter()
+            .map(|s| s.decimals())
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// Decimals or digits if the numbers are rounded to them, else the float's own precision.
+    fn rounded(&self, full: u32, own: Precision) -> Precision {
+        let (longest, decimals) = (self.longest(), self.decimals());
+        let share = |same: &dyn Fn(&Shortest) -> bool| {
+            let count = self.shortest.iter().filter(|s| same(s)).count();
+            count as f64 / self.shortest.len() as f64
+        };
+        // A last digit is 0, and not written, one time in ten.
+        let to_decimals = share(&|s| s.decimals() == decimals);
+        let to_digits = share(&|s| s.digits == longest);
+        let by_decimals = Precision::Decimals(decimals);
+        if longest < full {
+            return match to_decimals >= to_digits {
+                true => by_decimals,
+                false => Precision::Digits(longest),
+            };
+        }
+        // Floats of one magnitude have much the same decimals, but no coarser than their spacing.
+        let median = self.median();
+        if to_decimals >= MOST && by_decimals.half_unit(median) >= 4.0 * own.half_unit(median) {
+            return by_decimals;
+        }
+        // Of doubles that begin with 1, 2 or 3, at most 44 % get by with 16 digits: their spacing of
+        // 2^-51 or less against a unit of 1e-15. Of twenty none then all do.
+        let open = |v: &&f64| {
+            let magnitude = v.abs();
+            magnitude / 10f64.powf(magnitude.log10().floor()) < 4.0
+        };
+        if full == DOUBLE
+            && longest == DOUBLE
+            && to_digits >= MOST
+            && self.values.iter().filter(open).count() >= 20
+        {
+            return Precision::Digits(longest);
+        }
+        own
+    }
+
+    /// Of the magnitudes.
+    fn median(&self) -> f64 {
+        let mut magnitudes: Vec<f64> = self.values.iter().map(|v| v.abs()).collect();
+        magnitudes.sort_unstable_by(f64::total_cmp);
+        magnitudes.get(magnitudes.len() / 2).copied().unwrap_or(0.0)
+    }
+}
+
+/// Numbers of which none needs so many digits are rounded ones, as doubles or as singles.
+const DOUBLE: u32 = 16;
+const SINGLE: u32 = 7;
+
+/// Numbers with all their decimals, at least.
+const MOST: f64 = 0.7;
+
+/// Numbers other than 0 that changed since the state before, evenly spread in a fixed irregular
+/// rhythm, so that no coordinate is left out.
+fn pick(values: &[f64], width: usize) -> Vec<f64> {
+    let width = width.max(1);
+    let changed = || {
+        let pairs = values.iter().zip(values.iter().skip(width));
+        pairs.filter(|(a, b)| a != b && **b != 0.0).map(|(_, b)| *b)
+    };
+    let stride = changed().count().div_ceil(ENOUGH).max(1) as u64;
+    // Knuth's multiplicative generator: any rhythm without a period will do.
+    let mut random = 1u64;
+    let mut due = 0;
+    let mut sample = Vec::new();
+    for (at, value) in (0u64..).zip(changed()) {
+        if at == due {
+            sample.push(value);
+            random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            due += 1 + (random >> 33) % (2 * stride - 1);
+        }
+    }
+    sample
+}
+
+/// Whether this is the shortest text of a single, or as near to it: programs break ties differently.
+fn is_printed_single(value: f64, scratch: &mut String) -> bool {
+    let single = value as f32;
+    let digits = Shortest::new(value, scratch).digits;
+    // The double that was read is off the text by up to 1e-7 of nine digits' half unit.
+    let half_unit = Precision::Digits(digits).half_unit(value) * (1.0 + 1e-6);
+    digits == Shortest::new(single, scratch).digits
+        && (value - f64::from(single)).abs() <= half_unit
+}
+
+/// At most 16 significant bits: 0.375, 2 or 1000, which are exact however they were written.
+fn is_short_fraction(value: f64) -> bool {
+    value.to_bits().trailing_zeros() >= 53 - 16
+}

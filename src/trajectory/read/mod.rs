@@ -1,0 +1,106 @@
+//! Trajectories other programs wrote: bytes in, checked [`Rows`] out, or one error that points at
+//! its place.
+//!
+//! ```text
+//! bytes -> table (csv | npz | npy): times, whole states, how they were written
+//!       -> step numbers (times) -> how exactly they are given (precision) -> Rows
+//! ```
+//!
+//! Text has a header and one row a particle and instant: `t,id,x,y,z`, and `vx,vy,vz` if wanted, in
+//! any order of columns. Rows of one instant stand together, their ids in any order. Without `id`
+//! rows are about the scene's only free particle. Lines that begin with `#` are comments, but such
+//! a line above the numbers can be the header, as `np.savetxt` writes it.
+//!
+//! Arrays are `t` of shape (T), `x` of shape (T, N, 3) and, if wanted, `v` of x's shape, in single
+//! or double precision or whole numbers. An NPY file is `x` alone: its times are n timesteps. With
+//! one free particle `x` may be (T, 3).
+//!
+//! Fixed particles may be left out, all of them or none. Where the one free particle moves on one
+//! axis ([`free_axis`]), text may be `t,x[,v]` and arrays (T): the coordinate on that axis, whichever
+//! it is, and its velocity. What is left out is as the scene has it at the start.
+//!
+//! A column or array with any other name is an error, not ignored: it may be a misspelt velocity.
+
+mod array;
+mod csv;
+mod digits;
+mod error;
+mod expected;
+mod layout;
+pub mod limits;
+mod npz;
+mod shape;
+mod times;
+
+pub use error::{Place, ReadError};
+pub use expected::{Expected, FreeAxis, free_axis};
+pub use layout::Layout;
+
+use super::{Precision, Rows};
+use digits::Written;
+use error::Wrong;
+
+/// What a file says, before its times are counted in steps.
+struct Table {
+    times: times::Times,
+    /// Positions, m.
+    x: Numbers,
+    /// Velocities, m/s.
+    v: Option<Numbers>,
+}
+
+/// Whole states, one after the other.
+struct Numbers {
+    values: Vec<f64>,
+    written: Written,
+}
+
+impl Numbers {
+    /// How exactly states of so many numbers are given. Text of singles gives back the singles it was
+    /// printed from.
+    fn measured(mut self, dim: usize) -> (Precision, Vec<f64>) {
+        let precision = digits::detect(&self.values, dim, self.written);
+        if precision == Precision::Single {
+            for value in &mut self.values {
+                *value = f64::from(*value as f32);
+            }
+        }
+        (precision, self.values)
+    }
+}
+
+/// Reads a trajectory that fits a scene. `name` is the file's, for messages and, without a `layout`,
+/// for [`Layout::guess`].
+///
+/// # Errors
+/// The first thing wrong, with its place. No input panics.
+pub fn read(
+    bytes: &[u8],
+    name: &str,
+    layout: Option<Layout>,
+    expected: &Expected,
+) -> Result<Rows, ReadError> {
+    if bytes.len() > limits::FILE_BYTES {
+        let cap = limits::FILE_BYTES >> 30;
+        let help = "keep fewer instants";
+        return Err(Wrong::new(format!("expected at most {cap} GiB"), help).at(name, Place::File));
+    }
+    let table = match layout.unwrap_or_else(|| Layout::guess(name, bytes)) {
+        Layout::Csv => csv::read(bytes, name, expected)?,
+        Layout::Npz => npz::read(bytes, name, expected)?,
+        Layout::Npy => npz::positions(bytes, name, expected)?,
+    };
+    let steps = table.times.steps(expected.timestep(), name, bytes)?;
+    let dim = 3 * expected.particles();
+    let (precision, x) = table.x.measured(dim);
+    let (precision_v, v) = table.v.map(|v| v.measured(dim)).unzip();
+    Ok(Rows {
+        timestep: expected.timestep(),
+        dim,
+        steps,
+        x,
+        v,
+        precision,
+        precision_v: precision_v.unwrap_or(precision),
+    })
+}

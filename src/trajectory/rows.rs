@@ -1,0 +1,125 @@
+//! A trajectory as rows of data, whoever computed it: what files and other programs give.
+
+use super::Trajectory;
+
+/// States a whole number of steps apart, not necessarily always the same number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rows {
+    /// Seconds a step.
+    pub timestep: f64,
+    /// Coordinates of a state, 3 a particle.
+    pub dim: usize,
+    /// Step number of each row, strictly increasing.
+    pub steps: Vec<u64>,
+    /// Positions, m: one row after the other.
+    pub x: Vec<f64>,
+    /// Velocities, m/s, as `x`; None where only positions are known.
+    pub v: Option<Vec<f64>>,
+    /// How exactly the positions were written down.
+    pub precision: Precision,
+    /// And the velocities, which are often rounded otherwise; as the positions where there are none.
+    pub precision_v: Precision,
+}
+
+/// How exactly data is given. Rounding to it is the best a replay can be held to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    Double,
+    Single,
+    /// So many digits after the decimal point.
+    Decimals(u32),
+    /// So many significant digits.
+    Digits(u32),
+}
+
+impl Precision {
+    /// Half a unit of the last digit `value` is given to, in the value's unit.
+    pub fn half_unit(self, value: f64) -> f64 {
+        let magnitude = value.abs();
+        // Half the spacing of numbers at this magnitude, at most.
+        let double = magnitude.max(f64::MIN_POSITIVE) * (0.5 * f64::EPSILON);
+        match self {
+            Self::Double => double,
+            Self::Single => {
+                magnitude.max(f64::from(f32::MIN_POSITIVE)) * (0.5 * f64::from(f32::EPSILON))
+            }
+            // Text may give more digits than the double has that was written down.
+            Self::Decimals(digits) => double.max(0.5 * power_of_ten(-i64::from(digits))),
+            Self::Digits(_) if magnitude == 0.0 => double,
+            Self::Digits(digits) => {
+                let exponent = magnitude.log10().floor() as i64;
+                double.max(0.5 * power_of_ten(exponent + 1 - i64::from(digits)))
+            }
+        }
+    }
+}
+
+fn power_of_ten(exponent: i64) -> f64 {
+    10f64.powi(exponent.clamp(-400, 400) as i32)
+}
+
+impl Rows {
+    pub fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.steps.is_empty()
+    }
+
+    /// Half a unit of the last digit that a value of coordinate `i` is given to: positions first,
+    /// then velocities.
+    pub fn half_unit(&self, i: usize, value: f64) -> f64 {
+        let precision = if i < self.dim {
+            self.precision
+        } else {
+            self.precision_v
+        };
+        precision.half_unit(value)
+    }
+
+    /// Seconds since the start.
+    pub fn time(&self, k: usize) -> f64 {
+        self.steps[k] as f64 * self.timestep
+    }
+
+    pub fn x(&self, k: usize) -> &[f64] {
+        &self.x[k * self.dim..(k + 1) * self.dim]
+    }
+
+    pub fn v(&self, k: usize) -> Option<&[f64]> {
+        let v = self.v.as_ref()?;
+        Some(&v[k * self.dim..(k + 1) * self.dim])
+    }
+}
+
+impl From<&Trajectory> for Rows {
+    /// The instants and their successors, in order, to the last bit.
+    fn from(run: &Trajectory) -> Self {
+        let mut rows = Self {
+            timestep: run.timestep(),
+            dim: run.dim(),
+            steps: Vec::new(),
+            x: Vec::new(),
+            v: None,
+            precision: Precision::Double,
+            precision_v: Precision::Double,
+        };
+        let mut velocities = Vec::new();
+        let mut push = |step: u64, x: &[f64], v: &[f64]| {
+            if rows.steps.last() != Some(&step) {
+                rows.steps.push(step);
+                rows.x.extend_from_slice(x);
+                velocities.extend_from_slice(v);
+            }
+        };
+        for k in 0..run.len() {
+            push(run.step(k), run.x(k), run.v(k));
+            if let Some((x, v)) = run.following(k) {
+                push(run.step(k) + 1, x, v);
+            }
+        }
+        rows.v = run.has_velocities().then_some(velocities);
+        rows
+    }
+}
