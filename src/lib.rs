@@ -45,3 +45,4 @@ pub mod report;
 pub mod scene;
 pub mod system;
 pub mod trajectory;
+pub mod truth;

@@ -1,0 +1,127 @@
+//! Closed forms, chosen by what a scene contains.
+//!
+//! Particles that springs join form a group; a scene has a closed form if every group has one. A
+//! group has one where its forces stay linear: without springs, with springs of rest length 0, or
+//! moving on one line with lengths proven to stay above 0. Its modes are then decoupled, and each is
+//! one scalar equation. Forces here are read off the scene, not off the effects' code, so that
+//! either would show a fault in the other.
+
+mod elliptic;
+mod jacobi;
+mod lengths;
+mod line;
+mod mode;
+mod modes;
+mod part;
+mod pendulum;
+mod problem;
+mod reduce;
+mod sideways;
+mod vector;
+mod words;
+
+pub use pendulum::Pendulum;
+
+use super::{Motion, States};
+use crate::scene::Scene;
+use crate::system::ParticleSystem;
+use part::Part;
+use problem::Problem;
+
+/// Ids of the effects the forms account for. Any other effect in a scene means no closed form.
+const KNOWN: &[&str] = &["gravity", "springs", "drag", "wind"];
+
+/// A closed form that applies.
+pub struct Found {
+    /// What it is, such as `parabola`.
+    pub method: String,
+    /// Why it applies to this scene.
+    pub reason: String,
+    pub motion: Box<dyn Motion>,
+}
+
+/// The form that holds for this scene up to `until` seconds, if one does.
+pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Found> {
+    let known = system
+        .effects()
+        .iter()
+        .all(|(row, _)| KNOWN.contains(&row.id));
+    let forward = until.is_finite() && until >= 0.0;
+    if !(known && forward) {
+        return None;
+    }
+    let problem = Problem::new(scene, until);
+    let parts: Option<Vec<Part>> = problem
+        .groups()
+        .iter()
+        .map(|group| reduce::reduce(&problem, group))
+        .collect();
+    let parts = parts?;
+    let mut methods = each_once(parts.iter().map(|p| p.method.as_str()));
+    let mut reasons = each_once(parts.iter().map(|p| p.reason.as_str()));
+    if parts.is_empty() {
+        methods.push("rest");
+        reasons.push("nothing is free to move");
+    }
+    Some(Found {
+        method: methods.join(" and "),
+        reason: reasons.join("; "),
+        motion: Box::new(Modal {
+            farthest: problem.start.x.iter().fold(0.0, |m, x| m.max(x.abs())),
+            size: problem.size,
+            x: problem.start.x,
+            v: problem.start.v,
+            parts,
+        }),
+    })
+}
+
+/// In order of first appearance; after three, `others`.
+fn each_once<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut found: Vec<&str> = Vec::new();
+    for text in texts {
+        if found.len() == 3 && !found.contains(&text) {
+            found.push("others");
+            break;
+        }
+        if !found.contains(&text) {
+            found.push(text);
+        }
+    }
+    found
+}
+
+/// Groups of modes around the start.
+struct Modal {
+    x: Vec<f64>,
+    v: Vec<f64>,
+    size: f64,
+    /// Largest coordinate, m.
+    farthest: f64,
+    parts: Vec<Part>,
+}
+
+impl Motion for Modal {
+    fn states(&self, times: &[f64]) -> States {
+        let dim = self.x.len();
+        let mut states = States {
+            dim,
+            x: self.x.repeat(times.len()),
+            v: self.v.repeat(times.len()),
+        };
+        for (k, &t) in times.iter().enumerate() {
+            let at = k * dim..(k + 1) * dim;
+            let (x, v) = (&mut states.x[at.clone()], &mut states.v[at]);
+            for part in &self.parts {
+                part.add(t, x, v);
+            }
+        }
+        states
+    }
+
+    fn error_bar(&self, t: f64) -> f64 {
+        let bars = self.parts.iter().map(|p| p.error_bar(t, self.size));
+        // A position is a sum with the start, which may lie far from the origin.
+        bars.fold(0.0, f64::max) + f64::EPSILON * self.farthest
+    }
+}

@@ -1,0 +1,223 @@
+//! The plane pendulum on a rigid rod, by Jacobi's elliptic functions.
+
+use super::super::{Motion, States};
+use super::elliptic::{Jacobi, Modulus};
+use super::vector::{across, dot, norm, scaled, sub, unit};
+
+/// A bob on a rigid rod, swinging in a plane or going round in it; no damping.
+///
+/// q'' = -w² sin q with w² = g / l has q = 2 asin(k sn(w t + u0, k)) where it swings, with
+/// k² = sin²(q0 / 2) + (q0' / 2w)², and q = 2 am(k w t + u0, 1/k) where it goes round. Not to be
+/// confused with the spring pendulum, which has no closed form. No scene is given this form: scenes
+/// have no rods.
+#[derive(Debug, Clone)]
+pub struct Pendulum {
+    pivot: [f64; 3],
+    /// Unit vectors: along gravity, and across it in the plane of motion.
+    down: [f64; 3],
+    side: [f64; 3],
+    /// m.
+    length: f64,
+    /// w, rad/s.
+    w: f64,
+    round: Round,
+    /// k, over 1 where the pendulum goes round.
+    energy: f64,
+    /// How many times larger the rounding of 1 - k² is than of a product: where it nears 0, its two
+    /// terms cancel.
+    cancelled: f64,
+    modulus: Modulus,
+    start: Jacobi,
+}
+
+/// Whether it passes the top, and which way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Round {
+    No,
+    Forward,
+    Backward,
+}
+
+/// Components that should be 0 may be this share of the vector: a few roundings of the file's
+/// numbers and their products.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+impl Pendulum {
+    /// The pendulum through this angle from straight down (rad) with this angular velocity (rad/s),
+    /// on a rod of `length` (m) under `gravity` (m/s²). It moves in the plane of x and z about the
+    /// origin, z up, and x is positive where the angle is.
+    ///
+    /// None unless length and gravity are positive and all numbers finite.
+    pub fn new(length: f64, gravity: f64, angle: f64, rate: f64) -> Option<Self> {
+        let finite = [length, gravity, angle, rate].iter().all(|n| n.is_finite());
+        if !(finite && length > 0.0 && gravity > 0.0) {
+            return None;
+        }
+        let w = (gravity / length).sqrt();
+        let (sin, cos) = (0.5 * angle).sin_cos();
+        let r = 0.5 * rate / w;
+        // Half angles differ in sign by a turn; the cosine is kept positive.
+        let (sin, cos) = if cos < 0.0 { (-sin, -cos) } else { (sin, cos) };
+        let energy = sin.hypot(r);
+        let beyond = (cos - r.abs()) * (cos + r.abs());
+        let cancelled = (cos * cos + r * r) / beyond.abs();
+        let complement = beyond.abs().sqrt();
+        let (round, modulus, start) = if beyond >= 0.0 {
+            let (sn, cn) = if energy > 0.0 {
+                (sin / energy, r / energy)
+            } else {
+                (0.0, 1.0)
+            };
+            let modulus = Modulus {
+                k: energy,
+                complement,
+            };
+            (Round::No, modulus, Jacobi { sn, cn, dn: cos })
+        } else {
+            let modulus = Modulus {
+                k: 1.0 / energy,
+                complement: complement / energy,
+            };
+            let forward = if r > 0.0 {
+                Round::Forward
+            } else {
+                Round::Backward
+            };
+            let dn = r.abs() / energy;
+            (
+                forward,
+                modulus,
+                Jacobi {
+                    sn: sin,
+                    cn: cos,
+                    dn,
+                },
+            )
+        };
+        Some(Self {
+            pivot: [0.0; 3],
+            down: [0.0, 0.0, -1.0],
+            side: [1.0, 0.0, 0.0],
+            length,
+            w,
+            round,
+            energy,
+            cancelled,
+            modulus,
+            start,
+        })
+    }
+
+    /// The pendulum of a bob at this position and velocity, on a rod from `pivot`, under this
+    /// acceleration of gravity (m, m/s, m/s²).
+    ///
+    /// None if the rod or gravity is zero, or the motion leaves a vertical plane.
+    pub fn hung(
+        pivot: [f64; 3],
+        position: [f64; 3],
+        velocity: [f64; 3],
+        gravity: [f64; 3],
+    ) -> Option<Self> {
+        let rod = sub(position, pivot);
+        let (length, speed) = (norm(rod), norm(velocity));
+        let (down, along) = (unit(gravity)?, unit(rod)?);
+        let out = |v: [f64; 3]| sub(v, scaled(down, dot(v, down)));
+        // The plane is the rod's, or the velocity's where the rod hangs or stands straight.
+        let side = if across(rod, down) > ROUNDING * length {
+            unit(out(along))?
+        } else if speed > 0.0 {
+            unit(out(velocity))?
+        } else {
+            let thin = (0..3).min_by(|&a, &b| down[a].abs().total_cmp(&down[b].abs()))?;
+            let mut axis = [0.0; 3];
+            axis[thin] = 1.0;
+            unit(out(axis))?
+        };
+        let angle = dot(along, side).atan2(dot(along, down));
+        let ahead = sub(
+            scaled(side, dot(along, down)),
+            scaled(down, dot(along, side)),
+        );
+        let forward = dot(velocity, ahead);
+        if norm(sub(velocity, scaled(ahead, forward))) > ROUNDING * speed {
+            return None;
+        }
+        let found = Self::new(length, norm(gravity), angle, forward / length)?;
+        Some(Self {
+            pivot,
+            down,
+            side,
+            ..found
+        })
+    }
+
+    /// Time of one swing there and back, or of one turn, s; infinite where it only just reaches
+    /// the top.
+    pub fn period(&self) -> f64 {
+        let quarter = self.modulus.quarter_period();
+        match self.round {
+            Round::No => 4.0 * quarter / self.w,
+            _ => 2.0 * quarter / (self.energy * self.w),
+        }
+    }
+
+    /// Angle from straight down at `t`, rad, in (-π, π].
+    pub fn angle(&self, t: f64) -> f64 {
+        let (sin, cos, _) = self.half(t);
+        // Half angles a turn apart are the same angle; the cosine is taken positive.
+        let turned = if cos < 0.0 { -1.0 } else { 1.0 };
+        2.0 * (turned * sin).atan2(turned * cos)
+    }
+
+    /// Angular velocity at `t`, rad/s.
+    pub fn rate(&self, t: f64) -> f64 {
+        self.half(t).2
+    }
+
+    /// Sine and cosine of half the angle, and the angular velocity.
+    fn half(&self, t: f64) -> (f64, f64, f64) {
+        let Self { w, energy, .. } = *self;
+        let u = match self.round {
+            Round::No => w * t,
+            Round::Forward => energy * w * t,
+            Round::Backward => -energy * w * t,
+        };
+        let Jacobi { sn, cn, dn } = self.start.plus(&self.modulus.at(u), &self.modulus);
+        match self.round {
+            Round::No => (energy * sn, dn, 2.0 * w * energy * cn),
+            Round::Forward => (sn, cn, 2.0 * w * energy * dn),
+            Round::Backward => (sn, cn, -2.0 * w * energy * dn),
+        }
+    }
+}
+
+/// The motion of the bob alone: states of three coordinates.
+impl Motion for Pendulum {
+    fn states(&self, times: &[f64]) -> States {
+        let mut states = States {
+            dim: 3,
+            ..States::default()
+        };
+        for &t in times {
+            let (sin, cos, rate) = self.half(t);
+            // Of the whole angle.
+            let (sin, cos) = (2.0 * sin * cos, (cos - sin) * (cos + sin));
+            for c in 0..3 {
+                let (down, side) = (self.length * self.down[c], self.length * self.side[c]);
+                states.x.push(self.pivot[c] + cos * down + sin * side);
+                states.v.push(rate * (cos * side - sin * down));
+            }
+        }
+        states
+    }
+
+    /// 16 eps (1 + w t) lengths, with the speed's rate k w for w, and more near the energy that only
+    /// just reaches the top: there the period goes like log |1 - k²|, of which few digits are left.
+    fn error_bar(&self, t: f64) -> f64 {
+        let period = 1.0 + self.cancelled / self.modulus.quarter_period();
+        let phase = self.w * self.energy * t * period;
+        let bar = 16.0 * f64::EPSILON * self.length * (1.0 + phase);
+        // On its circle it is in any case, also where the phase is not known at all.
+        bar.min(2.0 * self.length) + f64::EPSILON * (norm(self.pivot) + self.length)
+    }
+}

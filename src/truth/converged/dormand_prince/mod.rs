@@ -1,0 +1,205 @@
+//! The explicit Runge-Kutta method of order 8 of Dormand and Prince, at fixed steps.
+
+mod coefficients;
+
+pub use coefficients::DORMAND_PRINCE_8;
+
+use super::precise::Precise;
+use super::stepper::{Stepper, fit};
+use crate::integrators::Tableau;
+use crate::system::System;
+use coefficients::{ERROR_5, ORDER_3};
+
+/// Coordinates handled at once, so that sums over stages stay in registers.
+const LANES: usize = 8;
+
+/// Steps of an explicit tableau in Nyström form: as (x, v)' = (v, a), stage velocities are sums of
+/// stage accelerations, so positions are x + c h v + h² Σ ā a with ā = a a, and only accelerations
+/// are kept. Where forces depend on velocity it is the same Runge-Kutta method.
+///
+/// The first weight is taken as what makes the weights sum to 1, and to 1/2 for positions: rounded
+/// coefficients would drift with time.
+pub struct DormandPrince {
+    stages: Vec<Stage>,
+    /// Weights of the end, the first stage's left out.
+    end: Vec<Weight>,
+    /// Weights of the error estimates of order 5 and 3.
+    errors: [Vec<Weight>; 2],
+    /// Stage accelerations, padded to whole lanes.
+    accelerations: Vec<Vec<f64>>,
+    /// Stage position and velocity.
+    x: Vec<f64>,
+    v: Vec<f64>,
+}
+
+struct Stage {
+    node: f64,
+    row: Vec<Weight>,
+}
+
+/// What one stage's acceleration adds to a position (times h²) and to a velocity (times h).
+struct Weight {
+    stage: usize,
+    position: f64,
+    velocity: f64,
+}
+
+impl Default for DormandPrince {
+    fn default() -> Self {
+        Self::with(&DORMAND_PRINCE_8)
+    }
+}
+
+impl DormandPrince {
+    /// With another explicit tableau, at least consistent. Its error estimates mean nothing.
+    pub fn with(tableau: &Tableau) -> Self {
+        let stages = tableau.b.len();
+        let rows = tableau.a.iter().zip(tableau.c);
+        let mut order_3 = tableau.b.to_vec();
+        for (stage, weight) in ORDER_3 {
+            if let Some(b) = order_3.get_mut(stage) {
+                *b -= weight;
+            }
+        }
+        let mut end = weights(tableau, tableau.b);
+        end.retain(|weight| weight.stage > 0);
+        Self {
+            stages: rows
+                .map(|(row, &node)| Stage {
+                    node,
+                    row: weights(tableau, row),
+                })
+                .collect(),
+            end,
+            errors: [weights(tableau, &ERROR_5), weights(tableau, &order_3)],
+            accelerations: vec![Vec::new(); stages],
+            x: Vec::new(),
+            v: Vec::new(),
+        }
+    }
+
+    /// An estimate of the error of the step of `h` seconds just taken, largest over the coordinates:
+    /// in position, m, and in velocity, m/s. Of the order of the method's own, and larger.
+    pub(super) fn local_error(&self, h: f64) -> [f64; 2] {
+        let [of_5, of_3] = [&self.errors[0], &self.errors[1]].map(|rows| self.largest_sums(rows));
+        // DOP853's mixture: err5² / sqrt(err5² + err3² / 100).
+        let mixed = |five: f64, three: f64| {
+            let both = five.hypot(0.1 * three);
+            if both == 0.0 {
+                0.0
+            } else {
+                five * (five / both)
+            }
+        };
+        [h * h * mixed(of_5[0], of_3[0]), h * mixed(of_5[1], of_3[1])]
+    }
+
+    /// Largest magnitude over the coordinates of weighted sums of accelerations: as a position and
+    /// as a velocity. NaN if one is.
+    fn largest_sums(&self, weights: &[Weight]) -> [f64; 2] {
+        let mut most = [0.0_f64; 2];
+        let padded = self.accelerations.first().map_or(0, Vec::len);
+        for start in (0..padded).step_by(LANES) {
+            let (dx, dv) = self.sums(weights, start);
+            for (most, sums) in most.iter_mut().zip([dx, dv]) {
+                for sum in sums {
+                    *most = if sum.is_nan() {
+                        sum
+                    } else {
+                        most.max(sum.abs())
+                    };
+                }
+            }
+        }
+        most
+    }
+
+    /// Weighted sums of accelerations over some coordinates: for positions and for velocities.
+    #[inline(always)]
+    fn sums(&self, weights: &[Weight], start: usize) -> ([f64; LANES], [f64; LANES]) {
+        let (mut dx, mut dv) = ([0.0; LANES], [0.0; LANES]);
+        for weight in weights {
+            let a = &self.accelerations[weight.stage][start..start + LANES];
+            for (lane, a) in a.iter().enumerate() {
+                dx[lane] += weight.position * a;
+                dv[lane] += weight.velocity * a;
+            }
+        }
+        (dx, dv)
+    }
+
+    /// Overwrites the stage's position and velocity from the stages before it.
+    fn prepare(&mut self, stage: usize, h: f64, state: &Precise) {
+        let dim = state.x.len();
+        let node = self.stages[stage].node;
+        for start in (0..dim).step_by(LANES) {
+            let (dx, dv) = self.sums(&self.stages[stage].row, start);
+            for (lane, at) in (start..dim.min(start + LANES)).enumerate() {
+                let drift = node * h * state.v[at] + h * h * dx[lane];
+                self.x[at] = state.x[at] + (state.x_low[at] + drift);
+                self.v[at] = state.v[at] + (state.v_low[at] + h * dv[lane]);
+            }
+        }
+    }
+
+    /// Adds the step to the state.
+    fn finish(&self, h: f64, state: &mut Precise) {
+        let Some(first) = self.accelerations.first() else {
+            return;
+        };
+        let dim = state.x.len();
+        for start in (0..dim).step_by(LANES) {
+            let (mut dx, mut dv) = ([0.0; LANES], [0.0; LANES]);
+            let first = &first[start..start + LANES];
+            for weight in &self.end {
+                let a = &self.accelerations[weight.stage][start..start + LANES];
+                for (lane, (a, first)) in a.iter().zip(first).enumerate() {
+                    dx[lane] += weight.position * (a - first);
+                    dv[lane] += weight.velocity * (a - first);
+                }
+            }
+            for (lane, at) in (start..dim.min(start + LANES)).enumerate() {
+                let drift = h * (state.v[at] + state.v_low[at]);
+                let dx = drift + h * h * (0.5 * first[lane] + dx[lane]);
+                state.add(at, dx, h * (first[lane] + dv[lane]));
+            }
+        }
+    }
+}
+
+impl Stepper for DormandPrince {
+    fn step(&mut self, system: &dyn System, t: f64, h: f64, state: &mut Precise) {
+        let dim = state.x.len();
+        fit(&mut self.x, dim);
+        fit(&mut self.v, dim);
+        for a in &mut self.accelerations {
+            fit(a, dim.next_multiple_of(LANES));
+        }
+        for stage in 0..self.stages.len() {
+            self.prepare(stage, h, state);
+            let t = t + self.stages[stage].node * h;
+            let a = &mut self.accelerations[stage][..dim];
+            system.acceleration(t, &self.x, &self.v, a);
+        }
+        self.finish(h, state);
+    }
+
+    fn evaluations(&self) -> u64 {
+        self.stages.len() as u64
+    }
+}
+
+/// A combination of stage slopes as weights of stage accelerations, those of no weight left out.
+fn weights(tableau: &Tableau, row: &[f64]) -> Vec<Weight> {
+    let through = |at: usize| -> f64 {
+        let slopes = row.iter().zip(tableau.a);
+        slopes.map(|(w, a)| w * a.get(at).unwrap_or(&0.0)).sum()
+    };
+    let all = (0..tableau.b.len()).map(|stage| Weight {
+        stage,
+        position: through(stage),
+        velocity: row.get(stage).copied().unwrap_or(0.0),
+    });
+    all.filter(|w| w.position != 0.0 || w.velocity != 0.0)
+        .collect()
+}

@@ -1,0 +1,187 @@
+//! Halving the steps until two independent estimates agree.
+
+use super::NotConverged;
+use super::level::{LOST, Level};
+use super::mesh::Mesh;
+use super::precise::Precise;
+use super::rate::fastest_rate;
+use super::reference::STEPS;
+use crate::system::{State, System};
+
+/// Bytes of kept states.
+const MEMORY: usize = 10 << 20;
+
+/// The first steps are at most this long, in units of the fastest time constant: barely stable.
+const FIRST_STEP: f64 = 1.0;
+
+/// No fewer pieces than this at first: a scene without forces still has its bar.
+const FEWEST: u64 = 16;
+
+/// Halving all steps but shrinking what is left by less than this was the last time: rounding is
+/// left.
+const WORTHWHILE: f64 = 1.4;
+
+/// Twice in a row by less than this was the last time too: what is left is of order 2 or less.
+const SMOOTH: f64 = 4.0;
+
+/// Halvings of single steps may go on this many times without bringing the estimates closer: a
+/// collision has to be resolved first.
+const PATIENCE: u32 = 16;
+
+/// What is asked for.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted {
+    /// Seconds.
+    pub until: f64,
+    /// The scene's size, m; 0 if it has none.
+    pub size: f64,
+    /// Force evaluations times coordinates.
+    pub budget: u64,
+}
+
+/// The level to use, and how well it is known. Lists have an entry for each instant of the level's
+/// mesh and never fall.
+pub(super) struct Halved {
+    pub level: Level,
+    /// The size wanted, or of the motion where it has none, m.
+    pub size: f64,
+    /// How far neighbours have parted, in units of their distance at the start.
+    pub amplification: Vec<f64>,
+    /// How far rounding may have led the motion astray, m.
+    pub rounding: Vec<f64>,
+    /// Largest coordinate, m.
+    pub magnitude: Vec<f64>,
+    /// Force evaluations times coordinates that were spent.
+    pub spent: u64,
+    pub ended: Ended,
+}
+
+/// Why no further halving was done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// The estimates agree.
+    Agreed,
+    /// Smaller steps no longer bring them closer.
+    Stalled,
+    /// Smaller steps would cost more than was allowed.
+    Spent,
+}
+
+/// Takes as many steps as the fastest rate asks for; then halves those with too large an error of
+/// their own; and once there are none, all.
+///
+/// # Errors
+/// When the budget does not allow even the first, or forces are not finite.
+pub(super) fn halve(
+    system: &(dyn System + Sync),
+    start: &State,
+    wanted: Wanted,
+) -> Result<Halved, NotConverged> {
+    let dim = system.dim() as u64;
+    let rate = fastest_rate(system, start, wanted.size).ok_or_else(NotConverged::not_finite)?;
+    let start = Precise::from(start);
+    let most = instants(system.dim());
+    let [per_piece, at_the_end] = Level::costs().map(|cost| cost * dim);
+
+    let pieces = first_pieces(rate, wanted.until);
+    let first_cost = (per_piece + at_the_end).saturating_mul(pieces);
+    if first_cost > wanted.budget {
+        return Err(NotConverged::too_fast(rate, pieces, first_cost, wanted));
+    }
+    let mut mesh = Mesh::uniform(wanted.until, pieces, most);
+    let mut all = true;
+    let mut progress = Progress::default();
+    let mut spent = 0_u64;
+    let mut coarser: Option<Level> = None;
+    let mut best: Option<Level> = None;
+    let ended = loop {
+        let pieces = mesh.pieces() as u64;
+        let cost = (per_piece + at_the_end).saturating_mul(pieces);
+        if spent.saturating_add(cost) > wanted.budget {
+            break Ended::Spent;
+        }
+        spent += per_piece * pieces;
+        let level = Level::new(system, &start, mesh);
+        let size = level.size_or(wanted.size);
+        let target = level.target(size);
+        let (next, next_all) = level.halved(size, most);
+        mesh = next;
+        let agreed = level.gap() <= target;
+        let shrunk = best
+            .as_ref()
+            .map(|best| best.shrunk_to(&level, target, size));
+        if shrunk.is_none_or(|factor| factor >= 1.0) {
+            coarser = best.replace(level);
+        }
+        if agreed {
+            break Ended::Agreed;
+        }
+        if shrunk.is_some_and(|factor| progress.is_over(factor, all)) {
+            break Ended::Stalled;
+        }
+        all = next_all;
+    };
+    let Some(mut level) = best else {
+        return Err(NotConverged::not_finite());
+    };
+    let size = level.size_or(wanted.size);
+    // Larger steps tell what rounding does as well, unless they are too large to follow the motion.
+    let with = coarser.filter(|coarser| coarser.gap() < LOST * size);
+    let with = with.as_ref().unwrap_or(&level);
+    let (gaps, (amplification, rounding)) = rayon::join(
+        || level.gaps_of_three(system, &start),
+        || {
+            rayon::join(
+                || with.amplification(system, &start, size),
+                || with.rounding(system, &start),
+            )
+        },
+    );
+    let (amplification, rounding) = (level.spread(&amplification), level.spread(&rounding));
+    spent += at_the_end * level.mesh.pieces() as u64;
+    level.gaps = gaps;
+    Ok(Halved {
+        amplification,
+        rounding,
+        magnitude: level.magnitude(),
+        size,
+        spent,
+        ended,
+        level,
+    })
+}
+
+/// Whether it is still worth going on.
+#[derive(Default)]
+struct Progress {
+    slow: u32,
+    idle: u32,
+}
+
+impl Progress {
+    /// After gaps shrank by `factor` as `all` steps were halved, or some.
+    fn is_over(&mut self, factor: f64, all: bool) -> bool {
+        if factor >= SMOOTH {
+            *self = Self::default();
+            return false;
+        }
+        if all {
+            self.slow += 1;
+            return factor < WORTHWHILE || self.slow == 2;
+        }
+        self.idle += 1;
+        self.idle == PATIENCE
+    }
+}
+
+/// The most intervals, a power of two, whose states fit into memory.
+fn instants(dim: usize) -> u64 {
+    let states = MEMORY / (16 * dim.max(1));
+    1 << states.saturating_sub(1).max(1).ilog2()
+}
+
+/// A power of two.
+fn first_pieces(rate: f64, until: f64) -> u64 {
+    let needed = (rate * until / (FIRST_STEP * f64::from(STEPS))).ceil();
+    (needed.min(1e15) as u64).max(FEWEST).next_power_of_two()
+}

@@ -1,0 +1,158 @@
+//! Time cut into pieces of unequal length, each a power of two shorter than the longest.
+
+/// Halvings below an interval; beyond that a piece is as short as a rounding of the whole.
+const DEEPEST: u8 = 40;
+
+/// A stretch of time from 0 in equal intervals, each halved into pieces as often as it needs.
+///
+/// All lengths are `until` over a power of two, so that no sum of them rounds.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Mesh {
+    until: f64,
+    /// How often each piece's interval was halved, in order of time.
+    depths: Vec<u8>,
+    /// The number of pieces up to the end of each interval.
+    ends: Vec<usize>,
+}
+
+/// A part of an interval, in units of its length: exact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Part {
+    pub offset: f64,
+    pub length: f64,
+}
+
+impl Part {
+    pub fn end(self) -> f64 {
+        self.offset + self.length
+    }
+}
+
+impl Mesh {
+    /// Equal pieces in at most `most` intervals; both powers of two.
+    pub fn uniform(until: f64, pieces: u64, most: u64) -> Self {
+        let intervals = pieces.min(most).max(1);
+        let each = pieces.max(1) / intervals;
+        let depth = each.ilog2() as u8;
+        Self {
+            until,
+            depths: vec![depth; (intervals * each) as usize],
+            ends: (1..=intervals).map(|k| (k * each) as usize).collect(),
+        }
+    }
+
+    /// From its parts, if they fit: each interval is filled exactly.
+    pub fn from_parts(until: f64, depths: Vec<u8>, counts: &[u64]) -> Option<Self> {
+        let mut ends = Vec::with_capacity(counts.len());
+        let mut end = 0_usize;
+        for &count in counts {
+            let start = end;
+            end = end.checked_add(usize::try_from(count).ok()?)?;
+            let pieces = depths.get(start..end)?;
+            let filled: u64 = pieces
+                .iter()
+                .map(|d| 1_u64 << (DEEPEST - d.min(&DEEPEST)))
+                .sum();
+            if filled != 1 << DEEPEST || pieces.iter().any(|d| *d > DEEPEST) {
+                return None;
+            }
+            ends.push(end);
+        }
+        let whole = end == depths.len() && !ends.is_empty();
+        whole.then_some(Self {
+            until,
+            depths,
+            ends,
+        })
+    }
+
+    /// Seconds.
+    pub fn until(&self) -> f64 {
+        self.until
+    }
+
+    /// Seconds of each interval.
+    pub fn interval(&self) -> f64 {
+        self.until / self.ends.len() as f64
+    }
+
+    pub fn intervals(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// The start of interval k, s, rounded once.
+    pub fn time(&self, k: usize) -> f64 {
+        k as f64 * self.interval()
+    }
+
+    pub fn pieces(&self) -> usize {
+        self.depths.len()
+    }
+
+    /// The depths of all pieces.
+    pub fn depths(&self) -> &[u8] {
+        &self.depths
+    }
+
+    /// Which pieces interval k consists of.
+    pub fn range(&self, k: usize) -> std::ops::Range<usize> {
+        let start = k.checked_sub(1).map_or(0, |before| self.ends[before]);
+        start..self.ends[k]
+    }
+
+    /// The steps through interval k, `each` equal ones, a power of two, through every piece.
+    pub fn steps(&self, k: usize, each: u32) -> impl Iterator<Item = Part> {
+        let pieces = self.depths[self.range(k)].iter();
+        let lengths = pieces.flat_map(move |depth| {
+            let length = 0.5_f64.powi(i32::from(*depth)) / f64::from(each);
+            std::iter::repeat_n(length, each as usize)
+        });
+        lengths.scan(0.0, |offset, length| {
+            let part = Part {
+                offset: *offset,
+                length,
+            };
+            *offset += length;
+            Some(part)
+        })
+    }
+
+    /// Every piece halved `more(piece)` times, where it can be; the intervals halved too as long as
+    /// all pieces allow and there are at most `most`.
+    pub fn refined(&self, more: impl Fn(usize) -> u8, most: u64) -> Self {
+        let mut refined = Self {
+            until: self.until,
+            depths: Vec::with_capacity(self.pieces()),
+            ends: Vec::with_capacity(self.intervals()),
+        };
+        for k in 0..self.intervals() {
+            for piece in self.range(k) {
+                let depth = self.depths[piece];
+                let halvings = more(piece).min(DEEPEST.saturating_sub(depth));
+                let parts = std::iter::repeat_n(depth + halvings, 1 << halvings);
+                refined.depths.extend(parts);
+            }
+            refined.ends.push(refined.depths.len());
+        }
+        while refined.intervals() as u64 * 2 <= most && refined.depths.iter().all(|d| *d > 0) {
+            refined.halve_intervals();
+        }
+        refined
+    }
+
+    fn halve_intervals(&mut self) {
+        let mut ends = Vec::with_capacity(2 * self.intervals());
+        for k in 0..self.intervals() {
+            let range = self.range(k);
+            let first_half = self
+                .steps(k, 1)
+                .take_while(|part| part.offset < 0.5)
+                .count();
+            ends.extend([range.start + first_half, range.end]);
+        }
+        self.ends = ends;
+        for depth in &mut self.depths {
+            *depth -= 1;
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! A motion converged until two independent estimates of high order agree, with an error bar as a
+//! function of time.
+//!
+//! The first estimate, which is the reference, takes steps of Dormand and Prince's method of order
+//! 8; the second extrapolates Gragg's midpoint rule to order 10. They share the forces and the cuts
+//! of time and nothing else. Steps are halved, first those with a large error of their own, then
+//! all, until the two agree to rounding. The error bar is three times the largest distance of the
+//! reference from the second estimate and from itself at half the steps, and what rounding may do:
+//! that is measured on motions with magnified rounding, since estimates can be rounded alike.
+//!
+//! ```text
+//! rate -> mesh -> two estimates -> halving -> bars -> horizon
+//!                  precise sums     noise, growth     reference (states at any time) <-> bytes
+//! ```
+
+mod bytes;
+mod dormand_prince;
+mod gragg;
+mod growth;
+mod halving;
+mod key;
+mod level;
+mod mesh;
+mod noise;
+mod precise;
+mod rate;
+mod reference;
+mod samples;
+mod stepper;
+
+pub use dormand_prince::{DORMAND_PRINCE_8, DormandPrince};
+pub use gragg::{Gragg, SUBSTEPS};
+pub use key::key;
+pub use precise::Precise;
+pub use reference::{Reference, SharedSystem};
+pub use stepper::Stepper;
+
+use super::Store;
+use crate::scene::Scene;
+use crate::system::{ParticleSystem, State};
+use halving::{Ended, Halved, Wanted, halve};
+use level::Level;
+use reference::{Record, STEPS};
+use std::fmt::Write;
+use std::sync::Arc;
+
+/// Changes whenever the same scene would get other bits.
+const VERSION: u32 = 1;
+
+/// What [`find`] may spend on a scene, in force evaluations times coordinates.
+pub const BUDGET: u64 = 1 << 30;
+
+/// The horizon ends where the error bar exceeds this share of the size.
+pub const HORIZON: f64 = 1e-6;
+
+/// The bar is this many times what stands between the estimates and what rounding may do: two errors
+/// of one kind and one sign differ by less than either.
+const CAUTION: f64 = 3.0;
+
+/// A converged reference and what is known of it.
+pub struct Converged {
+    /// Both estimates and their steps.
+    pub method: String,
+    /// The last time, s, at which the error bar is below [`HORIZON`] times the size.
+    pub horizon: f64,
+    /// The error bar at the horizon, its largest up to there, m.
+    pub error_bound: f64,
+    /// The rate at which neighbouring motions part, 1/s; None where they do not part exponentially,
+    /// or not for long enough to tell.
+    pub growth: Option<f64>,
+    /// How well the estimates agree and what ends the horizon.
+    pub reason: String,
+    /// Force evaluations times coordinates that were spent.
+    pub spent: u64,
+    pub motion: Reference,
+}
+
+/// There is no converged reference, and why.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{reason}")]
+pub struct NotConverged {
+    pub reason: String,
+}
+
+/// Converges the motion of any system from `start`, at t = 0, up to `until` seconds.
+///
+/// `size` is the length, m, errors are held against; where it is 0, the largest distance from the
+/// start takes its place. `budget` counts force evaluations times coordinates, of all levels
+/// together; no clock is read, and results do not depend on the number of threads.
+///
+/// # Errors
+/// When the budget is too small, the forces are not finite, or the estimates do not agree at all.
+pub fn converge(
+    system: &SharedSystem,
+    start: &State,
+    until: f64,
+    size: f64,
+    budget: u64,
+) -> Result<Converged, NotConverged> {
+    let time = until > 0.0 && until.is_finite();
+    let fits = system.dim() > 0 && [&start.x, &start.v].iter().all(|c| c.len() == system.dim());
+    if !time || !fits || !(0.0..f64::INFINITY).contains(&size) {
+        return Err(NotConverged::new(
+            "there is no time to cover, no state that fits, or no size",
+        ));
+    }
+    let wanted = Wanted {
+        until,
+        size,
+        budget,
+    };
+    let halved = halve(&**system, start, wanted)?;
+    let bars = bars(&halved);
+    let Halved { level, size, .. } = &halved;
+    let limit = HORIZON * size;
+    let within = bars.iter().take_while(|bar| **bar <= limit).count();
+    if within < 2 {
+        return Err(NotConverged::apart(&halved, limit));
+    }
+    let horizon = level.mesh.time(within - 1).min(until);
+    let growth = growth::growth_rate(&halved.amplification, &level.mesh);
+    Ok(Converged {
+        method: format!(
+            "Dormand-Prince 8 with {} steps, against Gragg extrapolation of order {} with {}",
+            thousands(steps_of(level)),
+            2 * SUBSTEPS.len(),
+            thousands(level.mesh.pieces())
+        ),
+        horizon,
+        error_bound: bars[within - 1],
+        growth,
+        reason: reason(&halved, within, horizon, until, growth),
+        spent: halved.spent,
+        motion: Reference {
+            system: Arc::clone(system),
+            record: Record {
+                mesh: halved.level.mesh,
+                samples: halved.level.first,
+                bars,
+            },
+        },
+    })
+}
+
+/// The converged reference of a scene and the system built from it, from the store or anew within
+/// [`BUDGET`]. What was found, and that nothing was found, is saved under the scene's [`key`]; a
+/// stored one gives the same bits.
+///
+/// # Errors
+/// As [`converge`].
+pub fn find(
+    scene: &Scene,
+    system: &ParticleSystem,
+    until: f64,
+    store: &dyn Store,
+) -> Result<Converged, NotConverged> {
+    let name = key(scene, until);
+    let system: SharedSystem = Arc::new(system.clone());
+    let saved = store.load(&name);
+    if let Some(found) = saved.and_then(|b| bytes::decode(&b, &name, &system, until)) {
+        return found;
+    }
+    let start = ParticleSystem::initial_state(scene);
+    let found = converge(&system, &start, until, scene.size(), BUDGET);
+    store.save(&name, &bytes::encode(&found, &name));
+    found
+}
+
+/// The error bar at each instant, m.
+fn bars(halved: &Halved) -> Vec<f64> {
+    let gaps = halved.level.gaps.iter();
+    let rounding = halved.magnitude.iter().zip(&halved.rounding);
+    gaps.zip(rounding)
+        .map(|(gap, (magnitude, rounding))| CAUTION * (gap + rounding) + f64::EPSILON * magnitude)
+        .collect()
+}
+
+fn reason(halved: &Halved, within: usize, horizon: f64, until: f64, growth: Option<f64>) -> String {
+    let gap = halved.level.gaps[within - 1];
+    let mut text = format!("independent estimates agree within {gap:.1e} m");
+    if horizon < until {
+        let _ = match (growth, halved.ended) {
+            (Some(rate), _) => write!(text, "; neighbours part at {rate:.2} /s"),
+            (None, Ended::Spent) => write!(text, "; smaller steps would cost more than allowed"),
+            (None, _) => write!(text, "; beyond it smaller steps do not bring them together"),
+        };
+    }
+    text
+}
+
+impl NotConverged {
+    fn new(reason: impl Into<String>) -> Self {
+        Self {
+            reason: reason.into(),
+        }
+    }
+
+    fn not_finite() -> Self {
+        Self::new("the forces at the start are not finite")
+    }
+
+    /// The first steps alone would exceed the budget.
+    fn too_fast(rate: f64, pieces: u64, cost: u64, wanted: Wanted) -> Self {
+        Self::new(format!(
+            "the fastest motion, {rate:.1e} /s over {} s, takes at least {} steps of an explicit \
+             method: {:.1e} coordinates of forces, where {:.1e} are allowed",
+            wanted.until,
+            thousands(pieces.saturating_mul(u64::from(STEPS))),
+            cost as f64,
+            wanted.budget as f64
+        ))
+    }
+
+    /// The best level's estimates are farther apart than the horizon allows from the first instant.
+    fn apart(halved: &Halved, limit: f64) -> Self {
+        let Halved { level, ended, .. } = halved;
+        let more = match ended {
+            Ended::Spent => "smaller steps would cost more than allowed",
+            _ => "smaller steps do not bring them together",
+        };
+        Self::new(format!(
+            "independent estimates of {} steps differ by more than {limit:.1e} m from the start; \
+             {more}",
+            thousands(steps_of(level))
+        ))
+    }
+}
+
+/// Steps of the reference.
+fn steps_of(level: &Level) -> u64 {
+    level.mesh.pieces() as u64 * u64::from(STEPS)
+}
+
+/// 16384 as `16,384`.
+fn thousands(n: impl ToString) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}

@@ -1,0 +1,155 @@
+//! What really happens in a scene: a closed form where what it contains allows one, otherwise a
+//! reference converged until two independent estimates agree. Both come with an error bar.
+//!
+//! Not to be confused with rapier, which is one more method.
+
+pub mod closed;
+pub mod converged;
+
+use crate::outcome::TruthKind;
+use crate::scene::Scene;
+use crate::system::ParticleSystem;
+
+/// A known motion.
+pub trait Motion: Send + Sync {
+    /// Positions (m) and velocities (m/s) of all coordinates at each of these times, s, which are
+    /// ascending and lie between 0 and the `until` the motion was found for.
+    fn states(&self, times: &[f64]) -> States;
+
+    /// No position in [0, t] is farther from what really happens than this, m.
+    fn error_bar(&self, t: f64) -> f64;
+
+    /// Ascending times in [0, `until`], close enough together to show the motion: where states cost
+    /// least.
+    fn landmarks(&self, until: f64) -> Vec<f64> {
+        let part = |k: u32| until * f64::from(k) / f64::from(LANDMARKS);
+        (0..=LANDMARKS).map(part).collect()
+    }
+}
+
+const LANDMARKS: u32 = 1_000;
+
+/// States at given times, all of one length.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct States {
+    /// Coordinates of a state.
+    pub dim: usize,
+    /// One state after the other.
+    pub x: Vec<f64>,
+    pub v: Vec<f64>,
+}
+
+impl States {
+    pub fn x(&self, k: usize) -> &[f64] {
+        &self.x[k * self.dim..(k + 1) * self.dim]
+    }
+
+    pub fn v(&self, k: usize) -> &[f64] {
+        &self.v[k * self.dim..(k + 1) * self.dim]
+    }
+}
+
+/// Which truths are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Demand {
+    /// A closed form if there is one, else a converged reference.
+    #[default]
+    Auto,
+    /// A closed form or none.
+    Closed,
+    None,
+}
+
+/// Keeps what is expensive to compute, by content. It may forget, and it may be shared by programs
+/// that run at once; what it returns is checked before it is used.
+pub trait Store: Sync {
+    /// What was saved under this key: lower-case hexadecimal digits.
+    fn load(&self, key: &str) -> Option<Vec<u8>>;
+
+    /// Failing to save is no error: it is computed again next time.
+    fn save(&self, key: &str, bytes: &[u8]);
+}
+
+/// Keeps nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoStore;
+
+impl Store for NoStore {
+    fn load(&self, _key: &str) -> Option<Vec<u8>> {
+        None
+    }
+    fn save(&self, _key: &str, _bytes: &[u8]) {}
+}
+
+/// A scene's truth.
+pub struct Truth {
+    pub kind: TruthKind,
+    /// Such as `parabola`, or the reference's method and steps; None without truth.
+    pub method: Option<String>,
+    /// Why this form applies, or why there is none.
+    pub reason: String,
+    /// The last time at which the error bar is below 1e-6 of the scene's size; 0 without truth.
+    pub horizon: f64,
+    /// Largest bar up to the horizon, m.
+    pub error_bound: f64,
+    motion: Option<Box<dyn Motion>>,
+}
+
+/// The truth of a scene up to `until` seconds, as far as demanded.
+pub fn find(
+    scene: &Scene,
+    system: &ParticleSystem,
+    demand: Demand,
+    until: f64,
+    store: &dyn Store,
+) -> Truth {
+    if demand == Demand::None {
+        return Truth::none("not asked for");
+    }
+    if let Some(found) = closed::find(scene, system, until) {
+        let error_bound = found.motion.error_bar(until);
+        if error_bound.is_finite() {
+            return Truth {
+                kind: TruthKind::ClosedForm,
+                method: Some(found.method),
+                reason: found.reason,
+                horizon: until,
+                error_bound,
+                motion: Some(found.motion),
+            };
+        }
+    }
+    if demand == Demand::Closed {
+        return Truth::none("no closed form known for what this scene contains");
+    }
+    match converged::find(scene, system, until, store) {
+        Ok(found) => Truth {
+            kind: TruthKind::Converged,
+            method: Some(found.method),
+            reason: found.reason,
+            horizon: found.horizon,
+            error_bound: found.error_bound,
+            motion: Some(Box::new(found.motion)),
+        },
+        Err(not) => Truth::none(not.to_string()),
+    }
+}
+
+impl Truth {
+    /// No truth, and why.
+    pub fn none(reason: impl Into<String>) -> Self {
+        Self {
+            kind: TruthKind::None,
+            method: None,
+            reason: reason.into(),
+            horizon: 0.0,
+            error_bound: 0.0,
+            motion: None,
+        }
+    }
+
+    /// The motion, where there is a truth.
+    pub fn motion(&self) -> Option<&dyn Motion> {
+        self.motion.as_deref()
+    }
+}
