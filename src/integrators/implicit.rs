@@ -5,7 +5,8 @@
 
 use super::newton::Newton;
 use super::{
-    EnergyLaw, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy, fit,
+    EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy,
+    fit,
 };
 use crate::system::{Linearization, State, System};
 
@@ -33,6 +34,7 @@ const fn implicit(id: &'static str, name: &'static str, order: u32, energy: Ener
             stable: Stable::Always,
             energy,
         },
+        exact: Exact::of_order(order),
         source: "",
         not: "",
         build: |settings: &Settings| Box::new(Implicit::new(Scheme::Euler, settings)),

@@ -70,6 +70,7 @@ pub struct Method {
     pub evaluations: PerStep,
     /// On x'' = -w² x, with z = h w.
     pub oscillator: Oscillator,
+    pub exact: Exact,
     /// Paper or textbook.
     pub source: &'static str,
     /// What it must not be confused with.
@@ -116,6 +117,26 @@ pub enum Stable {
     },
 }
 
+/// Which motions a method follows without any error but rounding, at every step size.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exact {
+    Nothing,
+    /// Under a force that depends on nothing: free fall is a parabola, and stays one.
+    ConstantForce,
+}
+
+impl Exact {
+    /// What the order implies for a method whose errors are derivatives of the force: under a
+    /// constant force all of them vanish, but for the first order's own h² a / 2.
+    pub const fn of_order(order: u32) -> Self {
+        if order > 1 {
+            Self::ConstantForce
+        } else {
+            Self::Nothing
+        }
+    }
+}
+
 /// What happens to the oscillator's energy, as a function of z = h w.
 #[derive(Debug, Clone, Copy)]
 pub enum EnergyLaw {
@@ -155,6 +176,7 @@ pub static REGISTRY: &[Method] = &[
     runge_kutta::HEUN,
     runge_kutta::RALSTON,
     splitting::VELOCITY_VERLET,
+    splitting::POSITION_VERLET,
     runge_kutta::RK4,
     splitting::YOSHIDA4,
     splitting::PEFRL,

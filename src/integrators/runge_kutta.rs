@@ -1,7 +1,8 @@
 //! Explicit Runge-Kutta methods: one stepper, a tableau a method.
 
 use super::{
-    EnergyLaw, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy, fit,
+    EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy,
+    fit,
 };
 use crate::system::{Power, State, System};
 
@@ -58,6 +59,7 @@ const fn explicit(
         reversible: false,
         evaluations: PerStep::Exactly(stages),
         oscillator,
+        exact: Exact::of_order(order),
         source: "",
         not: "",
         build: |_: &Settings| Box::new(RungeKutta::new(EULER)),

@@ -2,7 +2,8 @@
 
 use super::velocity_flow::VelocityFlow;
 use super::{
-    EnergyLaw, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy, fit,
+    EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy,
+    fit,
 };
 use crate::system::{State, System};
 
@@ -15,6 +16,45 @@ pub enum Stage {
     Kick(f64),
 }
 use Stage::{Drift, Kick};
+
+/// 1 / (2 - 2^(1/3)).
+const W1: f64 = 1.351_207_191_959_657_8;
+/// 1 - 2 W1.
+const W0: f64 = -1.702_414_383_919_315_3;
+
+// Omelyan, Mryglod, Folk 2002, their position-extended Forest-Ruth-like solution.
+const XI: f64 = 0.178_617_895_844_809_1;
+const LAMBDA: f64 = -0.212_341_831_062_605_4;
+const CHI: f64 = -0.066_264_582_669_818_5;
+
+impl Stage {
+    /// Kick, drift, kick.
+    pub const VERLET: &'static [Self] = &[Kick(0.5), Drift(1.0), Kick(0.5)];
+
+    /// Forest and Ruth's triple jump.
+    pub const YOSHIDA4: &'static [Self] = &[
+        Drift(W1 / 2.0),
+        Kick(W1),
+        Drift((W0 + W1) / 2.0),
+        Kick(W0),
+        Drift((W0 + W1) / 2.0),
+        Kick(W1),
+        Drift(W1 / 2.0),
+    ];
+
+    /// Omelyan, Mryglod and Folk's four kicks.
+    pub const PEFRL: &'static [Self] = &[
+        Drift(XI),
+        Kick((1.0 - 2.0 * LAMBDA) / 2.0),
+        Drift(CHI),
+        Kick(LAMBDA),
+        Drift(1.0 - 2.0 * (CHI + XI)),
+        Kick(LAMBDA),
+        Drift(CHI),
+        Kick((1.0 - 2.0 * LAMBDA) / 2.0),
+        Drift(XI),
+    ];
+}
 
 /// How a kick treats forces that depend on velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,6 +86,7 @@ const fn symplectic(
             stable: Stable::Below(limit),
             energy,
         },
+        exact: Exact::of_order(order),
         source: "",
         not: "",
         build: |_: &Settings| Box::new(Splitting::new(&[], DampingTreatment::Explicit)),
@@ -60,7 +101,8 @@ const EULER_BAND: EnergyLaw = EnergyLaw::Band {
 
 pub(super) const SYMPLECTIC_EULER: Method = Method {
     source: "de Vogelaere 1956; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
-    not: "explicit_euler, which drifts with the old velocity",
+    not: "explicit_euler, which drifts with the old velocity; leapfrog without its first half kick \
+          is this method",
     build: |_| {
         Box::new(Splitting::new(
             &[Kick(1.0), Drift(1.0)],
@@ -98,13 +140,8 @@ pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Method = Method {
 
 pub(super) const VELOCITY_VERLET: Method = Method {
     source: "Swope et al. 1982; Hairer, Lubich, Wanner, Acta Numerica 2003 (Störmer-Verlet)",
-    not: "position Verlet (drift, kick, drift), or Verlet with a predicted velocity in the damper",
-    build: |_| {
-        Box::new(Splitting::new(
-            &[Kick(0.5), Drift(1.0), Kick(0.5)],
-            DampingTreatment::ExactFlow,
-        ))
-    },
+    not: "position_verlet (drift, kick, drift), or Verlet with a predicted velocity in the damper",
+    build: |_| Box::new(Splitting::new(Stage::VERLET, DampingTreatment::ExactFlow)),
     ..symplectic(
         "velocity_verlet",
         "velocity Verlet",
@@ -118,28 +155,32 @@ pub(super) const VELOCITY_VERLET: Method = Method {
     )
 };
 
-/// 1 / (2 - 2^(1/3)).
-const W1: f64 = 1.351_207_191_959_657_8;
-/// 1 - 2 W1.
-const W0: f64 = -1.702_414_383_919_315_3;
+pub(super) const POSITION_VERLET: Method = Method {
+    source: "Verlet 1967; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4",
+    not: "velocity_verlet, which kicks first and last",
+    build: |_| {
+        Box::new(Splitting::new(
+            &[Drift(0.5), Kick(1.0), Drift(0.5)],
+            DampingTreatment::ExactFlow,
+        ))
+    },
+    ..symplectic(
+        "position_verlet",
+        "position Verlet",
+        2,
+        1,
+        2.0,
+        EnergyLaw::Band {
+            band: |z| (1.0, 1.0 / (1.0 - z * z / 4.0)),
+            formula: "[1, 1/(1 - z²/4)]",
+        },
+    )
+};
 
 pub(super) const YOSHIDA4: Method = Method {
     source: "Forest & Ruth 1990, Physica D 43; Yoshida 1990, Phys. Lett. A 150",
     not: "Yoshida's sixth- and eighth-order methods",
-    build: |_| {
-        Box::new(Splitting::new(
-            &[
-                Drift(W1 / 2.0),
-                Kick(W1),
-                Drift((W0 + W1) / 2.0),
-                Kick(W0),
-                Drift((W0 + W1) / 2.0),
-                Kick(W1),
-                Drift(W1 / 2.0),
-            ],
-            DampingTreatment::ExactFlow,
-        ))
-    },
+    build: |_| Box::new(Splitting::new(Stage::YOSHIDA4, DampingTreatment::ExactFlow)),
     ..symplectic(
         "yoshida4",
         "Yoshida / Forest-Ruth",
@@ -150,30 +191,10 @@ pub(super) const YOSHIDA4: Method = Method {
     )
 };
 
-// Omelyan, Mryglod, Folk 2002, their position-extended Forest-Ruth-like solution.
-const XI: f64 = 0.178_617_895_844_809_1;
-const LAMBDA: f64 = -0.212_341_831_062_605_4;
-const CHI: f64 = -0.066_264_582_669_818_5;
-
 pub(super) const PEFRL: Method = Method {
     source: "Omelyan, Mryglod, Folk 2002, Comput. Phys. Commun. 146, 188",
     not: "Forest-Ruth (yoshida4): one evaluation more, an error constant far smaller",
-    build: |_| {
-        Box::new(Splitting::new(
-            &[
-                Drift(XI),
-                Kick((1.0 - 2.0 * LAMBDA) / 2.0),
-                Drift(CHI),
-                Kick(LAMBDA),
-                Drift(1.0 - 2.0 * (CHI + XI)),
-                Kick(LAMBDA),
-                Drift(CHI),
-                Kick((1.0 - 2.0 * LAMBDA) / 2.0),
-                Drift(XI),
-            ],
-            DampingTreatment::ExactFlow,
-        ))
-    },
+    build: |_| Box::new(Splitting::new(Stage::PEFRL, DampingTreatment::ExactFlow)),
     ..symplectic("pefrl", "PEFRL", 4, 4, 2.989_450, EnergyLaw::Bounded)
 };
 

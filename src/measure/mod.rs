@@ -3,6 +3,7 @@
 mod deviation;
 mod energy;
 mod momentum;
+pub mod order;
 mod scale;
 mod trend;
 pub mod twin;

@@ -1,5 +1,7 @@
 //! Seeded series of every kind the energy balance takes: a thousand each without a trend, and with one.
 
+mod growth;
+
 use super::*;
 use EnergyClass::{Bounded, Dissipating, Drifting, Growing};
 use std::f64::consts::{LN_10, TAU};

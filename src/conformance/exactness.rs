@@ -1,0 +1,33 @@
+//! Exactness: motions followed without error, at any step.
+
+use super::finding::Verdict;
+use super::subject::{advance, distance};
+use super::systems::ConstantForce;
+use super::{Law, SOLVED_TO};
+use crate::integrators::Exact;
+
+/// s; nothing depends on it.
+const STEP: f64 = 0.1;
+const STEPS: usize = 10;
+
+/// Ten steps, each solved to 1e-12, on positions and velocities of order 10.
+const BOUND: f64 = 100.0 * SOLVED_TO;
+
+pub(super) const LAW: Law = Law {
+    id: "exactness",
+    summary: "free fall is met exactly, or is not, as claimed",
+    derivation: "ten steps solved to 1e-12 on values up to 10; explicit ones leave rounding",
+    judge: |subject| {
+        let mut state = ConstantForce::start();
+        let mut integrator = subject.fresh();
+        advance(integrator.as_mut(), &ConstantForce, STEP, STEPS, &mut state)?;
+        let off = distance(&state, &ConstantForce::exact(STEP * STEPS as f64));
+        let claimed = subject.claims.exact == Exact::ConstantForce;
+        Ok(Verdict::of_property(
+            claimed,
+            off,
+            BOUND,
+            "exact under a constant force",
+        ))
+    },
+};

@@ -1,0 +1,133 @@
+//! Stability: up to which z = h w the oscillator's amplitude stays bounded.
+
+use super::Law;
+use super::finding::Verdict;
+use super::subject::{Broken, Build, advance};
+use super::systems::Oscillator;
+use crate::integrators::Stable;
+use crate::outcome::CheckStatus;
+use crate::system::{State, System};
+
+pub(super) const LAW: Law = Law {
+    id: "stability",
+    summary: "the undamped oscillator is stable exactly as far as claimed",
+    derivation: "bisection of the one-step matrix's spectral radius to 1e-9; limits are published \
+                 to six decimals",
+    judge: |subject| {
+        let Some(oscillator) = subject.claims.oscillator else {
+            return Ok(Verdict::skip("the oscillator"));
+        };
+        let stable = oscillator.stable;
+        let upto = match stable {
+            Stable::Below(limit) => f64::max(FAR, 1.25 * limit),
+            _ => FAR,
+        };
+        let found = measured_limit(subject.build, 0.0, upto)?;
+        let seen = found.map_or_else(
+            || format!("stable up to {upto}"),
+            |z| format!("stable below z = {z:.6}"),
+        );
+        let (holds, bound, claim) = match stable {
+            Stable::Below(limit) => (
+                found.is_some_and(|z| (z - limit).abs() < PUBLISHED),
+                Some(limit),
+                format!("stable below {limit:.6}"),
+            ),
+            // However slowly it grows, at a tenth of a radian a step it shows.
+            Stable::Never => (
+                found.is_some_and(|z| z < SMALL),
+                Some(SMALL),
+                "never stable".to_owned(),
+            ),
+            Stable::Always | Stable::AlwaysAlong { .. } => {
+                (found.is_none(), None, "always stable".to_owned())
+            }
+        };
+        let status = if holds {
+            CheckStatus::Pass
+        } else {
+            CheckStatus::Fail
+        };
+        Ok(Verdict::new(
+            status,
+            found,
+            bound,
+            format!("claims to be {claim}, is {seen}"),
+        ))
+    },
+};
+
+/// Where stability without limit is looked for.
+const FAR: f64 = 10.0;
+const SMALL: f64 = 0.1;
+/// Limits have six decimals.
+pub(super) const PUBLISHED: f64 = 1e-6;
+
+/// rad/s.
+pub(super) const W: f64 = 7.0;
+
+/// Cells of the scan, whatever its range.
+const CELLS: u32 = 4_000;
+
+/// The largest z = h w up to which no oscillator of damping ratio `zeta` is unstable, to 1e-9: a
+/// scan of 4,000 cells up to `upto`, then bisection. None where none of them is unstable.
+///
+/// # Errors
+/// [`Broken`] when a step cannot be taken.
+pub fn measured_limit(build: Build, zeta: f64, upto: f64) -> Result<Option<f64>, Broken> {
+    let system = Oscillator { w: W, zeta };
+    let cell = upto / f64::from(CELLS);
+    let mut first = None;
+    for i in 1..=CELLS {
+        if unstable(build, &system, cell * f64::from(i))? {
+            first = Some(cell * f64::from(i));
+            break;
+        }
+    }
+    let Some(mut high) = first else {
+        return Ok(None);
+    };
+    let mut low = high - cell;
+    while high - low > 1e-9 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            // Neighbours already: a limit beyond a million has no ninth decimal.
+            break;
+        }
+        if unstable(build, &system, middle)? {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Ok(Some(low))
+}
+
+/// Whether a step of z / W is: a spectral radius above 1 by more than rounding. Beyond the limit
+/// itself it grows like the square root of how far z is beyond it, or linearly.
+pub(super) fn unstable(build: Build, system: &dyn System, z: f64) -> Result<bool, Broken> {
+    Ok(spectral_radius(one_step_matrix(build, system, z)?) > 1.0 + 1e-12)
+}
+
+/// The one-step map of a linear one-coordinate system as a 2 x 2 matrix over (x, v/W), row-major.
+fn one_step_matrix(build: Build, system: &dyn System, z: f64) -> Result<[f64; 4], Broken> {
+    let column = |x: f64, v: f64| -> Result<[f64; 2], Broken> {
+        let mut state = State::new(vec![x], vec![W * v]);
+        advance(build().as_mut(), system, z / W, 1, &mut state)?;
+        let first = |values: &[f64]| values.first().copied().unwrap_or(0.0);
+        Ok([first(&state.x), first(&state.v) / W])
+    };
+    let ([a, c], [b, d]) = (column(1.0, 0.0)?, column(0.0, 1.0)?);
+    Ok([a, b, c, d])
+}
+
+/// Largest modulus of the eigenvalues of a 2 x 2 matrix.
+fn spectral_radius([a, b, c, d]: [f64; 4]) -> f64 {
+    let (half, det) = ((a + d) / 2.0, a * d - b * c);
+    let disc = half * half - det;
+    if disc < 0.0 {
+        det.sqrt()
+    } else {
+        half.abs() + disc.sqrt()
+    }
+}
