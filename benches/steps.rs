@@ -72,7 +72,7 @@ impl Observer for Nobody {
 fn recording(c: &mut Criterion) {
     let scene = chain();
     let system = ParticleSystem::new(&scene);
-    let scale = measure::energy_scale(&scene, &system);
+    let scale = measure::energy_scale(&scene, &system, None);
     let limits =
         Limits::new(system.clone(), measure::divergence_limit(&scene, scale)).now_and_then();
     let steps = scene.steps(scene.solver.timestep);

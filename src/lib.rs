@@ -4,18 +4,21 @@
 //! Data flows one way, and the modules are its stages in order:
 //!
 //! ```text
-//! scene file -> Scene -> System (flat vectors, effects) -> Engine (integrator | rapier)
-//!            -> Trajectory -> measures -> Report -> terminal, Markdown, JSON, SVG
+//! scene file -> Scene -> System (flat vectors, effects) -> Engine (integrator | rapier | external)
+//!            -> Trajectory -> measures (truth, laws) -> Report -> terminal, Markdown, JSON, SVG
 //! ```
 //!
 //! - [`scene`] reads a YAML file, strictly; [`effects`] builds only the forces it calls for;
 //! - [`system`] is what an integrator sees: vectors, accelerations, Jacobians, no particles;
 //! - [`integrators`] are rows of facts over three steppers: tableau, splitting, Newton;
-//! - [`engines`] run an integrator, or rapier worlds built from the same scene;
-//! - [`trajectory`] keeps a bounded record of a run, or all of it in a file;
-//! - [`measure`] turns records into energy verdicts, deviations, and the twin proof;
+//! - [`engines`] run an integrator, rapier worlds built from the same scene, or other programs;
+//! - [`truth`] is what really happens: a closed form or a converged reference, with an error bar;
+//! - [`trajectory`] keeps a bounded record of a run, or all of it in a file, and reads other people's;
+//! - [`measure`] turns records into errors, energy verdicts, deviations, orders, the scheme they
+//!   follow, and the twin proof;
 //! - [`crosscheck`] runs everything side by side and fills a [`Report`](outcome::Report);
-//! - [`report`] writes it down.
+//! - [`report`] writes it down;
+//! - [`conformance`] holds any integrator, ours or yours, to the facts it claims.
 //!
 //! ```
 //! use springcheck::crosscheck::{Choice, Plan, Quiet};

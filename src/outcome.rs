@@ -17,6 +17,9 @@ pub struct Report {
     pub truth: Truth,
     pub outcomes: Vec<Outcome>,
     pub checks: Vec<Check>,
+    /// `compare` alone: the first step that leaves the scheme, null where none does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fault: Option<Option<Fault>>,
     /// What plots need and the JSON does not carry.
     #[serde(skip)]
     pub figures: Figures,
@@ -60,8 +63,11 @@ pub struct EffectUse {
 #[derive(Debug, Clone, Serialize)]
 pub struct Truth {
     pub kind: TruthKind,
+    /// The form, or the reference's methods and steps.
     pub method: Option<String>,
+    /// Largest error bar of positions up to the horizon.
     pub error_bound_m: Option<f64>,
+    /// Until when positions mean anything.
     pub horizon_s: Option<f64>,
     /// Why there is none, or why this form applies.
     pub reason: Option<String>,
@@ -111,19 +117,22 @@ pub struct Outcome {
     pub velocity_error_m_s: Option<Spread>,
     /// Against each reference engine that ran at this timestep.
     pub deviation_m: BTreeMap<String, Deviation>,
-    /// Null when nothing was recorded (unsupported).
+    /// Null when nothing was recorded (unsupported) or no velocities are known.
     pub energy: Option<Energy>,
     pub momentum: Option<Momentum>,
     pub work: Work,
-    /// Null until a replay has named the scheme.
+    /// Null where there is nothing to replay.
     pub identified: Option<Identified>,
     /// Plain sentences for the table's foot; not part of the JSON.
     #[serde(skip)]
     pub remarks: Vec<String>,
 }
 
+/// Largest distance of a particle from where it truly is (m) or from its true velocity (m/s), over
+/// the recorded instants up to the truth's horizon.
 #[derive(Debug, Clone, Serialize)]
 pub struct Spread {
+    /// At the last of these instants.
     #[serde(rename = "final")]
     pub last: f64,
     pub max: f64,
@@ -204,15 +213,66 @@ pub struct WallTime {
     pub mad: Option<f64>,
 }
 
+/// The scheme a trajectory follows, by one-step replay.
 #[derive(Debug, Clone, Serialize)]
 pub struct Identified {
+    /// A method's id, or a common mistake's.
     pub method: String,
+    /// Steps it takes inside one timestep.
     pub substeps: u32,
+    /// Largest distance of a replayed step from the recorded one over the steps that follow the
+    /// scheme, in units of what rounding explains; the median over all where nothing fits.
     pub defect: f64,
+    /// The nearest scheme that is not equivalent, as `method` or `method/substeps`.
     pub runner_up: Option<String>,
     pub runner_up_defect: Option<f64>,
+    /// One scheme and no other explains the data.
     pub decisive: bool,
+    /// Others that explain it as well.
     pub equivalent: Vec<String>,
+    /// Why it is not decisive; null where it is.
+    pub undecided: Option<Undecided>,
+}
+
+/// Why a trajectory has not one scheme.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Undecided {
+    /// The equivalent ones are the same map where this trajectory goes: no data could tell.
+    SameMap,
+    /// They differ by less than the data is rounded.
+    DataTooCoarse,
+    /// Rounding explains none.
+    NothingFits,
+}
+
+/// The first step of a trajectory that does not follow its scheme.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Fault {
+    /// Step n leads from t_n to t_n+1, zero-based; of rows several steps apart, the first of the
+    /// steps between them.
+    pub step: u64,
+    /// t_n, seconds.
+    pub t_s: f64,
+    /// The particle that is off farthest.
+    pub particle: usize,
+    /// What `expected` and `found` are of it, at the end of the step or of the span: x, y, z.
+    pub quantity: Quantity,
+    /// By the scheme, from the row before.
+    pub expected: [f64; 3],
+    /// As recorded; null where that is not a finite number.
+    pub found: [Option<f64>; 3],
+    /// The change that explains it, when it acts, and how many particles are off.
+    pub explanation: String,
+}
+
+/// What a fault shows in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Quantity {
+    #[serde(rename = "position_m")]
+    Position,
+    #[serde(rename = "velocity_m_s")]
+    Velocity,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -240,6 +300,8 @@ pub enum CheckStatus {
 pub struct Figures {
     /// One per outcome that recorded anything, in the outcomes' order.
     pub curves: Vec<Curves>,
+    /// What really happens, up to the truth's horizon.
+    pub truth: Option<TruthCurves>,
     /// The curve the scene asks for: its axis label and range.
     pub plot: Option<PlotAxis>,
     /// The two coordinates (0, 1, 2) trajectories are projected on: the widest, `up` vertical.
@@ -255,17 +317,28 @@ pub struct PlotAxis {
     pub y_range: Option<[f64; 2]>,
 }
 
-/// Series over the recorded instants of one outcome; all finite, equally long.
+/// Series over the recorded instants of one outcome; all finite, equally long where not empty.
 #[derive(Debug, Clone)]
 pub struct Curves {
     /// Index into the report's outcomes.
     pub outcome: usize,
     /// Seconds.
     pub t: Vec<f64>,
-    /// (B - B(0)) / S, or joules where the scene has no scale.
+    /// (B - B(0)) / S, or joules where the scene has no scale; empty where no velocities are known.
     pub energy: Vec<f64>,
     /// The coordinate `plot` names; empty without one.
     pub plot: Vec<f64>,
     /// A few particles' paths projected on `Figures::plane`: one polyline each.
+    pub paths: Vec<Vec<[f64; 2]>>,
+}
+
+/// The truth over some instants; all finite, equally long.
+#[derive(Debug, Clone)]
+pub struct TruthCurves {
+    /// Seconds.
+    pub t: Vec<f64>,
+    /// As in [`Curves`].
+    pub plot: Vec<f64>,
+    /// As in [`Curves`].
     pub paths: Vec<Vec<[f64; 2]>>,
 }

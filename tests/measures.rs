@@ -10,6 +10,7 @@ use springcheck::outcome::{EnergyClass, Outcome, Report, Status};
 use springcheck::scene::{self, DampingModel, Scene, Wind};
 use springcheck::system::ParticleSystem;
 use springcheck::trajectory::{Recorder, Trajectory};
+use springcheck::truth::Demand;
 
 fn read(yaml: &str) -> Scene {
     scene::parse(yaml.as_bytes(), "test.yml", &integrators::ids()).expect("a valid scene")
@@ -54,7 +55,7 @@ fn recorded(scene: &Scene, method: &str, steps: u64, h: f64) -> Trajectory {
 
 #[test]
 fn the_energy_scale_is_kinetic_plus_elastic_else_weight_times_size_else_none() {
-    let scale = |scene: &Scene| measure::energy_scale(scene, &ParticleSystem::new(scene));
+    let scale = |scene: &Scene| measure::energy_scale(scene, &ParticleSystem::new(scene), None);
     // k A² / 2 = 6.25 J, plus m v² / 2.
     let mut scene = oscillator(0.01, 0.0);
     assert_eq!(scale(&scene), Some(6.25));
@@ -142,13 +143,30 @@ fn a_long_fall_is_no_divergence_however_small_the_scale() {
 #[test]
 fn a_scene_without_a_scale_says_why() {
     let lone = "solver: {type: rk4, timestep: 0.01}\nparticles: [{pos: [0, 0, 3], mass: 2}]\n";
-    let report = report(&read(lone), &["rk4"]);
-    assert_eq!(report.scene.energy_scale_j, None);
-    let check = report
-        .checks
-        .iter()
-        .find(|check| check.id == "energy-scale");
-    assert!(check.is_some_and(|check| check.message.contains("at rest")));
+    let scene = read(lone);
+    let with = |truth| {
+        let choice = Choice {
+            truth,
+            ..Choice::default_for(&scene)
+        };
+        Plan::new(&scene, &choice).execute(&Quiet).expect("it runs")
+    };
+    let check = |report: &Report| {
+        let found = report
+            .checks
+            .iter()
+            .find(|check| check.id == "energy-scale");
+        found.map(|check| check.message.clone())
+    };
+    let unknown = with(Demand::None);
+    assert_eq!(unknown.scene.energy_scale_j, None);
+    assert!(check(&unknown).is_some_and(|message| message.contains("at rest")));
+    // Of the truth the fall is known: m (g t)² / 2, with t = 5 s.
+    let known = with(Demand::Auto);
+    let fall = 0.5 * 2.0 * (9.81 * 5.0_f64).powi(2);
+    let scale = known.scene.energy_scale_j.expect("a scale");
+    assert!((scale / fall - 1.0).abs() < 4.0 * f64::EPSILON, "{scale}");
+    assert_eq!(check(&known), None);
 }
 
 #[test]

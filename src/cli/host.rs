@@ -1,18 +1,29 @@
-//! What a run needs of the outside: files to save to, somebody to show progress.
+//! What a run needs of the outside: files to save to, somebody to show progress, a place for truths.
 
+use super::cache::Cache;
 use super::progress::Progress;
 use super::save::Files;
 use springcheck::crosscheck::{Host, Label, Saver};
 use springcheck::trajectory::SaveError;
+use springcheck::truth::Store;
 
-/// Progress and files as the library sees them.
-pub fn host<'a>(progress: &'a Progress, files: Option<&'a Files>) -> impl Host + 'a {
-    Terminal { progress, files }
+/// Progress, files and cache as the library sees them.
+pub fn host<'a>(
+    progress: &'a Progress,
+    files: Option<&'a Files>,
+    cache: &'a Cache,
+) -> impl Host + 'a {
+    Terminal {
+        progress,
+        files,
+        cache,
+    }
 }
 
 struct Terminal<'a> {
     progress: &'a Progress,
     files: Option<&'a Files>,
+    cache: &'a Cache,
 }
 
 impl Host for Terminal<'_> {
@@ -22,5 +33,9 @@ impl Host for Terminal<'_> {
 
     fn progress(&self, steps: u64) {
         self.progress.advance(steps);
+    }
+
+    fn store(&self) -> &dyn Store {
+        self.cache
     }
 }

@@ -1,8 +1,9 @@
-//! `springcheck list integrators|effects|engines`
+//! `springcheck list integrators|effects|engines|mistakes`
 
 use clap::ValueEnum;
 use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
 use springcheck::integrators::{EnergyLaw, Method, PerStep, Stable};
+use springcheck::measure::identify::{MISTAKES, Mistake, Wrong};
 use springcheck::{effects, engines, integrators};
 use std::process::ExitCode;
 
@@ -17,6 +18,8 @@ enum What {
     Integrators,
     Effects,
     Engines,
+    /// Wrong integrators that `compare` knows by name.
+    Mistakes,
 }
 
 /// Prints a registry.
@@ -36,6 +39,14 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
             table(
                 &["engine", "what"],
                 rows.map(|row| vec![row.id.to_string(), row.summary.into()]),
+            )
+            .to_string()
+        }
+        What::Mistakes => {
+            let rows = MISTAKES.iter();
+            table(
+                &["mistake", "meant to be", "what is wrong"],
+                rows.map(|row| vec![row.id.into(), meant(row).into(), row.says.into()]),
             )
             .to_string()
         }
@@ -77,6 +88,14 @@ fn of_integrators() -> Table {
             ]
         }),
     )
+}
+
+/// The method a mistake is a wrong form of.
+fn meant(mistake: &Mistake) -> &'static str {
+    match mistake.wrong {
+        Wrong::Step { meant, .. } => meant,
+        Wrong::Physics(_) | Wrong::Length(_) => "any",
+    }
 }
 
 /// Where each method is from and what it is not.

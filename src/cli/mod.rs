@@ -1,5 +1,8 @@
 //! Verbs, one file each: the only place that touches files, the terminal and exit codes.
 
+mod cache;
+mod compare;
+mod external;
 mod host;
 mod list;
 mod output;
@@ -15,8 +18,8 @@ use std::process::ExitCode;
 
 /// Is a particle-spring integrator right, and what does being right cost?
 ///
-/// Runs hand-written integrators side by side with the equivalent rapier world and reports energy,
-/// trajectories and stability.
+/// Runs hand-written integrators side by side with the equivalent rapier world and the truth, and
+/// reports errors, energy, orders, and the scheme each really follows.
 #[derive(Debug, Parser)]
 #[command(name = "springcheck", version, max_term_width = 100)]
 struct Cli {
@@ -36,7 +39,9 @@ struct Cli {
 enum Verb {
     /// Cross-check scenes: every chosen integrator beside rapier; a table and reports/<scene>/.
     Run(run::Args),
-    /// What there is: integrators, effects, engines, with their facts.
+    /// A trajectory some other program computed: is it right, and which scheme is it really?
+    Compare(compare::Args),
+    /// What there is: integrators, effects, engines, mistakes, with their facts.
     List(list::Args),
 }
 
@@ -68,6 +73,7 @@ pub fn main() -> ExitCode {
     .write_global();
     let done = match cli.verb {
         Verb::Run(args) => run::run(&args, cli.quiet),
+        Verb::Compare(args) => compare::compare(&args, cli.quiet),
         Verb::List(args) => list::list(&args),
     };
     match done {
@@ -81,7 +87,9 @@ pub fn main() -> ExitCode {
 
 /// A scene error stands for itself; anything else is introduced, with its causes.
 fn message(error: &anyhow::Error) -> String {
-    if error.is::<springcheck::scene::SceneError>() {
+    let placed = error.is::<springcheck::scene::SceneError>()
+        || error.is::<springcheck::trajectory::ReadError>();
+    if placed {
         error.to_string()
     } else {
         format!("error: {error:#}")

@@ -1,5 +1,7 @@
 //! `springcheck run SCENE...`
 
+use super::cache::Cache;
+use super::external::{self, External, Timeout};
 use super::host::host;
 use super::output::Place;
 use super::progress::Progress;
@@ -13,6 +15,7 @@ use springcheck::integrators;
 use springcheck::outcome::{CheckStatus, Figures, Report};
 use springcheck::report;
 use springcheck::scene::{self, Scene};
+use springcheck::truth::Demand;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -36,6 +39,21 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE,...")]
     rapier: Vec<Custom>,
 
+    /// One more row from a program that prints `t,id,x,y,z[,vx,vy,vz]`, started without a shell;
+    /// repeatable. In the command: {scene}, {scene_json}, {timestep}, {duration}, and {output}, an
+    /// .npz read instead of stdout.
+    #[arg(long, value_name = "NAME=COMMAND")]
+    external: Vec<External>,
+
+    /// A program that takes longer is stopped: 60s, 2m, 500ms.
+    #[arg(
+        long,
+        value_name = "TIME",
+        requires = "external",
+        default_value = "60s"
+    )]
+    external_timeout: Timeout,
+
     /// Timesteps in seconds, separated by commas: everything runs at each. Default: the scene's.
     #[arg(long, value_name = "H,...", value_delimiter = ',')]
     timestep: Vec<f64>,
@@ -43,6 +61,15 @@ pub struct Args {
     /// Seconds to simulate. Default: the scene's.
     #[arg(long, value_name = "SECONDS")]
     duration: Option<f64>,
+
+    /// What errors are measured against: a closed form or else a converged reference (auto), a
+    /// closed form or nothing (closed), nothing (none).
+    #[arg(long, value_enum, default_value_t = Truth::Auto, value_name = "KIND")]
+    truth: Truth,
+
+    /// Measure every integrator's order, also where that takes long.
+    #[arg(long)]
+    order: bool,
 
     /// What goes to stdout.
     #[arg(long, default_value = HUMAN, value_parser = formats())]
@@ -61,10 +88,28 @@ pub struct Args {
     every: u64,
 }
 
-/// The format whose texts are tables for people, with files beside them.
-const HUMAN: &str = "human";
+/// `--truth`.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub enum Truth {
+    Auto,
+    Closed,
+    None,
+}
 
-fn formats() -> PossibleValuesParser {
+impl Truth {
+    pub fn demand(self) -> Demand {
+        match self {
+            Self::Auto => Demand::Auto,
+            Self::Closed => Demand::Closed,
+            Self::None => Demand::None,
+        }
+    }
+}
+
+/// The format whose texts are tables for people, with files beside them.
+pub const HUMAN: &str = "human";
+
+pub fn formats() -> PossibleValuesParser {
     PossibleValuesParser::new(report::FORMATS.iter().map(|format| format.id))
 }
 
@@ -80,6 +125,7 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         .map(|path| read(args, path))
         .collect::<anyhow::Result<Vec<_>>>()?;
     distinct(args)?;
+    external::distinct(&args.external)?;
     let mut reports = Vec::new();
     for (scene, path) in scenes.iter().zip(&args.scenes) {
         let report = one(args, quiet, scene, path)?;
@@ -130,7 +176,9 @@ fn one(args: &Args, quiet: bool, scene: &Scene, path: &std::path::Path) -> anyho
         (Some(kind), Some(place)) => Some(Files::new(kind, place, args.every)),
         (Some(_), None) => bail!("--save needs --output when --format is not human"),
     };
-    let plan = Plan::new(scene, &choice(args, scene)?);
+    let mut choice = choice(args, scene)?;
+    choice.programs = external::chosen(&args.external, path, args.external_timeout);
+    let plan = Plan::new(scene, &choice);
     let estimates = plan.estimate();
     let expected = expected(&estimates);
     if expected > ANNOUNCED && !quiet {
@@ -141,7 +189,7 @@ fn one(args: &Args, quiet: bool, scene: &Scene, path: &std::path::Path) -> anyho
     }
     let steps = plan.cases.iter().map(|case| case.label.steps).sum();
     let progress = Progress::new(steps, expected, quiet);
-    let report = plan.execute(&host(&progress, files.as_ref()))?;
+    let report = plan.execute(&host(&progress, files.as_ref(), &Cache::new()))?;
     progress.finish();
     if let Some(place) = &place {
         place.write(&report)?;
@@ -236,6 +284,8 @@ fn quoted(path: &std::path::Path) -> Option<String> {
 
 fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
     let mut choice = Choice::default_for(scene);
+    choice.truth = args.truth.demand();
+    choice.order = args.order;
     if args.integrators == ["all"] {
         choice.methods = Choice::all_methods(scene);
     } else if !args.integrators.is_empty() {

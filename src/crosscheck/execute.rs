@@ -1,11 +1,13 @@
 //! Runs the cases in parallel.
 
-use super::plan::{Case, Label};
+use super::plan::{Build, Case, Label, Plan, Source};
+use super::program;
+use crate::engines::external::Program;
 use crate::engines::{Counts, Ended, Limits, Observer, Unsupported, simulate};
-use crate::outcome::WallTime;
-use crate::scene::Scene;
+use crate::outcome::{Status, WallTime};
 use crate::system::State;
 use crate::trajectory::{Recorder, SaveError, Trajectory};
+use crate::truth::{NoStore, Store};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -19,6 +21,11 @@ pub trait Host: Sync {
 
     /// So many more steps have been taken.
     fn progress(&self, steps: u64);
+
+    /// Where truths are kept from one run to the next.
+    fn store(&self) -> &dyn Store {
+        &NoStore
+    }
 }
 
 /// Saves a run as it goes.
@@ -45,43 +52,77 @@ impl Host for Quiet {
 /// What one case left.
 pub(super) enum Run {
     Unsupported(Unsupported),
+    /// Nothing is known of it but why.
+    Failed(String),
     Ran(Box<Ran>),
 }
 
 /// A case that ran, to its end or not.
 pub(super) struct Ran {
-    pub ended: Ended,
+    pub status: Status,
+    /// Why it did not run to its end.
+    pub reason: Option<String>,
     /// Steps taken.
     pub steps: u64,
     pub trajectory: Trajectory,
     pub counts: Counts,
-    pub wall: WallTime,
+    /// None of a file.
+    pub wall: Option<WallTime>,
+    /// What else is to be said of it.
+    pub remarks: Vec<String>,
 }
 
-pub(super) fn all(
-    cases: &[Case],
-    scene: &Scene,
-    limits: &Limits,
-    host: &dyn Host,
-) -> Result<Vec<Run>, SaveError> {
-    let dim = 3 * scene.particles.len();
-    cases
-        .par_iter()
-        .map(|case| one(case, dim, limits, host))
-        .collect()
+/// All engines in parallel and, beside them, the programs one after the other: they may print and
+/// use as many threads as they like.
+pub(super) fn all(plan: &Plan, limits: &Limits, host: &dyn Host) -> Result<Vec<Run>, SaveError> {
+    let dim = 3 * plan.scene.particles.len();
+    let mut engines: Vec<(usize, &Case, &Build)> = Vec::new();
+    let mut programs: Vec<(usize, &Case, &dyn Program)> = Vec::new();
+    for (at, case) in plan.cases.iter().enumerate() {
+        match &case.source {
+            Source::Engine(build) => engines.push((at, case, build)),
+            Source::Program(program) => programs.push((at, case, program.as_ref())),
+        }
+    }
+    let (ours, theirs) = rayon::join(
+        || -> Result<Vec<(usize, Run)>, SaveError> {
+            let engines = engines.par_iter();
+            engines
+                .map(|(at, case, build)| Ok((*at, one(case, build, dim, limits, host)?)))
+                .collect()
+        },
+        || -> Vec<(usize, Run)> {
+            let programs = programs.iter();
+            programs
+                .map(|(at, case, program)| (*at, program::one(plan, case, *program, limits, host)))
+                .collect()
+        },
+    );
+    let mut runs = ours?;
+    runs.extend(theirs);
+    runs.sort_by_key(|(at, _)| *at);
+    Ok(runs.into_iter().map(|(_, run)| run).collect())
 }
 
 /// Times short runs again, one after the other, when nothing else runs.
 pub(super) fn time_again(cases: &[Case], runs: &mut [Run], limits: &Limits) {
     for (case, run) in cases.iter().zip(runs) {
-        if let Run::Ran(ran) = run {
-            time(case, limits, &mut ran.wall);
+        if let (Some(build), Run::Ran(ran)) = (case.source.engine(), run)
+            && let Some(wall) = &mut ran.wall
+        {
+            time(case, build, limits, wall);
         }
     }
 }
 
-fn one(case: &Case, dim: usize, limits: &Limits, host: &dyn Host) -> Result<Run, SaveError> {
-    let mut engine = match (case.build)() {
+fn one(
+    case: &Case,
+    build: &Build,
+    dim: usize,
+    limits: &Limits,
+    host: &dyn Host,
+) -> Result<Run, SaveError> {
+    let mut engine = match build() {
         Ok(engine) => engine,
         Err(unsupported) => {
             host.progress(case.label.steps);
@@ -98,7 +139,7 @@ fn one(case: &Case, dim: usize, limits: &Limits, host: &dyn Host) -> Result<Run,
     let mut ended = simulate(engine.as_mut(), steps, &coarse, &mut recorder, &tick);
     let first = start.elapsed().as_secs_f64();
     if ended != Ended::Completed
-        && let Ok(again) = (case.build)()
+        && let Ok(again) = build()
     {
         // It ended about here; the same bits once more, looked at in every step, say where.
         engine = again;
@@ -106,30 +147,40 @@ fn one(case: &Case, dim: usize, limits: &Limits, host: &dyn Host) -> Result<Run,
         ended = simulate(engine.as_mut(), steps, limits, &mut recorder, &|_| {});
     }
     if let Some(mut saver) = host.saver(&case.label)? {
-        save(case, limits, saver.as_mut());
+        save(case, build, limits, saver.as_mut());
         saver.finish()?;
     }
-    let taken = match &ended {
-        Ended::Completed => steps,
-        Ended::Diverged { step, .. } | Ended::Failed { step, .. } => *step,
+    let (status, reason, taken) = match ended {
+        Ended::Completed => (Status::Completed, None, steps),
+        Ended::Diverged { step, reason } => {
+            let reason = format!("in step {}: {reason}", step - 1);
+            (Status::Diverged, Some(reason), step)
+        }
+        Ended::Failed { step, error } => (
+            Status::Failed,
+            Some(format!("in step {step}: {error}")),
+            step,
+        ),
     };
     host.progress(steps.saturating_sub(taken));
     Ok(Run::Ran(Box::new(Ran {
+        status,
+        reason,
         steps: taken,
         trajectory: recorder.finish(),
         counts: engine.counts(),
-        wall: WallTime {
+        wall: Some(WallTime {
             min: first,
             median: first,
             mad: None,
-        },
-        ended,
+        }),
+        remarks: Vec::new(),
     })))
 }
 
 /// The same run once more, to the file: bits are the same, and the timed run writes nothing.
-fn save(case: &Case, limits: &Limits, saver: &mut dyn Saver) {
-    if let Ok(mut engine) = (case.build)() {
+fn save(case: &Case, build: &Build, limits: &Limits, saver: &mut dyn Saver) {
+    if let Ok(mut engine) = build() {
         simulate(engine.as_mut(), case.label.steps, limits, saver, &|_| {});
     }
 }
@@ -140,11 +191,11 @@ const PATIENCE: f64 = 0.02;
 
 /// Times a case that takes less than the patience; the run that was recorded, beside others, was its
 /// warm-up. A longer one keeps the time of that run.
-fn time(case: &Case, limits: &Limits, wall: &mut WallTime) {
+fn time(case: &Case, build: &Build, limits: &Limits, wall: &mut WallTime) {
     let mut times = Vec::new();
     let coarse = limits.now_and_then();
     while times.len() < REPEATS && times.iter().sum::<f64>() + wall.min < PATIENCE {
-        let Ok(mut engine) = (case.build)() else {
+        let Ok(mut engine) = build() else {
             return;
         };
         let start = Instant::now();

@@ -2,11 +2,11 @@
 
 use super::execute::Run;
 use super::plan::Plan;
-use crate::engines::Ended;
+use super::truths::Truths;
 use crate::measure::EnergySeries;
-use crate::outcome::{Curves, Figures, PlotAxis};
+use crate::measure::Known;
+use crate::outcome::{Curves, Figures, PlotAxis, Status, TruthCurves};
 use crate::scene::Scene;
-use crate::trajectory::Trajectory;
 
 /// At most so many particles' paths are drawn.
 const PATHS: usize = 8;
@@ -15,6 +15,7 @@ pub(super) fn figures(
     plan: &Plan,
     runs: &[Run],
     energies: &[Option<EnergySeries>],
+    truths: &Truths,
     scale: Option<f64>,
 ) -> Figures {
     let scene = plan.scene;
@@ -22,27 +23,33 @@ pub(super) fn figures(
     let drawn = drawn(scene);
     let mut curves = Vec::new();
     for (outcome, (run, energy)) in runs.iter().zip(energies).enumerate() {
-        let (Run::Ran(ran), Some(energy)) = (run, energy) else {
+        let Run::Ran(ran) = run else {
             continue;
         };
         let trajectory = &ran.trajectory;
-        let instants = &energy.instants;
+        let instants = match energy {
+            Some(energy) => &energy.instants,
+            // Without velocities there is motion all the same.
+            None if !trajectory.has_velocities() => &(0..trajectory.len()).collect(),
+            None => continue,
+        };
         curves.push(Curves {
             outcome,
-            t: energy.t.clone(),
-            energy: energy.error(scale.unwrap_or(1.0)),
-            plot: scene.plot.as_ref().map_or_else(Vec::new, |plot| {
-                let at = 3 * plot.particle + plot.dof;
-                instants.iter().map(|&k| trajectory.x(k)[at]).collect()
-            }),
-            paths: drawn
-                .iter()
-                .map(|&particle| path(trajectory, particle, plane, instants))
-                .collect(),
+            t: instants.iter().map(|&k| trajectory.time(k)).collect(),
+            energy: energy
+                .as_ref()
+                .map_or_else(Vec::new, |energy| energy.error(scale.unwrap_or(1.0))),
+            plot: plotted(scene, || instants.iter().map(|&k| trajectory.x(k))),
+            paths: paths(&drawn, plane, || instants.iter().map(|&k| trajectory.x(k))),
         });
     }
+    let timesteps = plan.cases.iter().map(|case| case.label.timestep);
+    let finest = timesteps.fold(f64::INFINITY, f64::min);
     Figures {
         curves,
+        truth: truths
+            .at(finest)
+            .map(|known| truth(scene, &drawn, plane, known, finest)),
         plot: scene.plot.as_ref().map(|plot| PlotAxis {
             label: format!(
                 "particle {}, {} (m)",
@@ -61,9 +68,40 @@ pub(super) fn figures(
     }
 }
 
-fn path(run: &Trajectory, particle: usize, plane: [usize; 2], instants: &[usize]) -> Vec<[f64; 2]> {
-    let point = |&k: &usize| plane.map(|axis| run.x(k)[3 * particle + axis]);
-    instants.iter().map(point).collect()
+fn truth(
+    scene: &Scene,
+    drawn: &[usize],
+    plane: [usize; 2],
+    known: &Known,
+    timestep: f64,
+) -> TruthCurves {
+    let states = || (0..known.steps.len()).map(|k| known.states.x(k));
+    TruthCurves {
+        t: known.steps.iter().map(|s| *s as f64 * timestep).collect(),
+        plot: plotted(scene, states),
+        paths: paths(drawn, plane, states),
+    }
+}
+
+/// The coordinate the scene asks for; empty if it asks for none.
+fn plotted<'a, I: Iterator<Item = &'a [f64]>>(scene: &Scene, states: impl Fn() -> I) -> Vec<f64> {
+    scene.plot.as_ref().map_or_else(Vec::new, |plot| {
+        let at = 3 * plot.particle + plot.dof;
+        states().map(|x| x[at]).collect()
+    })
+}
+
+/// One polyline for each of these particles.
+fn paths<'a, I: Iterator<Item = &'a [f64]>>(
+    particles: &[usize],
+    plane: [usize; 2],
+    states: impl Fn() -> I,
+) -> Vec<Vec<[f64; 2]>> {
+    let path = |&particle: &usize| {
+        let point = |x: &[f64]| plane.map(|axis| x[3 * particle + axis]);
+        states().map(point).collect()
+    };
+    particles.iter().map(path).collect()
 }
 
 /// Beside motion this much wider, an axis shows nothing.
@@ -91,7 +129,7 @@ fn plane(scene: &Scene, runs: &[Run]) -> [usize; 2] {
 /// How wide the scene's start and the first completed run are along an axis, m.
 fn extent(scene: &Scene, runs: &[Run], axis: usize) -> f64 {
     let calm = runs.iter().find_map(|run| match run {
-        Run::Ran(ran) if ran.ended == Ended::Completed => Some(&ran.trajectory),
+        Run::Ran(ran) if ran.status == Status::Completed => Some(&ran.trajectory),
         _ => None,
     });
     let start = scene.particles.iter().map(|p| p.position[axis]);

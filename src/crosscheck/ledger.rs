@@ -4,7 +4,7 @@ use super::execute::Run;
 use super::plan::Plan;
 use crate::effects::Effect;
 use crate::measure::twin;
-use crate::outcome::{Check, CheckStatus, EffectUse, SceneFacts};
+use crate::outcome::{Check, CheckStatus, EffectUse, Kind, SceneFacts};
 use crate::scene::Scene;
 use crate::system::ParticleSystem;
 use std::time::{Duration, Instant};
@@ -13,7 +13,7 @@ pub(super) fn scene_facts(plan: &Plan, runs: &[Run], scale: Option<f64>) -> Scen
     let scene = plan.scene;
     let (mut forces, mut damping) = (0, 0);
     for (case, run) in plan.cases.iter().zip(runs) {
-        if let (Some(_), Run::Ran(ran)) = (case.method, run) {
+        if let (Kind::Integrator, Run::Ran(ran)) = (case.kind, run) {
             forces += ran.counts.force_evaluations.unwrap_or(0);
             damping += ran.counts.damping_evaluations.unwrap_or(0);
         }

@@ -3,53 +3,74 @@
 //! [`Plan`] says what will run, [`Plan::execute`] runs it in parallel and measures it. Results do
 //! not depend on the number of threads; only wall times do.
 
+mod compare;
 mod execute;
 mod figures;
+mod identity;
 mod ledger;
+mod order;
 mod outcome;
 mod plan;
+mod program;
 mod remarks;
+mod truths;
 
+pub use compare::Comparison;
 pub use execute::{Host, Quiet, Saver};
-pub use plan::{Case, Choice, ChosenEngine, Estimate, Label, Plan};
+pub use plan::{Build, Case, Choice, ChosenEngine, ChosenProgram, Estimate, Label, Plan, Source};
 
 use crate::engines::Limits;
 use crate::measure;
-use crate::outcome::{Report, SCHEMA_VERSION, Truth, TruthKind};
+use crate::outcome::{Check, Kind, Report, SCHEMA_VERSION};
 use crate::trajectory::SaveError;
-
-/// Why every report has `truth.kind: none` so far.
-const NO_TRUTH: &str = "not computed; engines are held against each other and the laws of energy";
+use crate::truth;
+use truths::Truths;
 
 impl Plan<'_> {
-    /// Runs every case and the twin proof, and measures what they left.
+    /// Runs every case, the truth and the twin proof, and measures what they left.
     ///
     /// # Errors
     /// Only when a trajectory file could not be written; whatever an engine does is an outcome.
     pub fn execute(&self, host: &dyn Host) -> Result<Report, SaveError> {
-        let scale = measure::energy_scale(self.scene, &self.system);
-        let limit = measure::divergence_limit(self.scene, scale);
+        // When a run stops must not depend on whether a truth was asked for.
+        let before = measure::energy_scale(self.scene, &self.system, None);
+        let limit = measure::divergence_limit(self.scene, before);
         let limits = Limits::new(self.system.clone(), limit);
-        let (runs, proofs) = rayon::join(
-            || execute::all(&self.cases, self.scene, &limits, host),
-            || ledger::twin_proof(self.scene),
-        );
+        let find = || {
+            let (scene, system) = (self.scene, &self.system);
+            truth::find(scene, system, self.demand, self.until(), host.store())
+        };
+        let (truth, (runs, proofs)) = rayon::join(find, || {
+            rayon::join(|| execute::all(self, &limits, host), || self.proofs())
+        });
         let mut runs = runs?;
+        let truths = Truths::new(self, &runs, truth);
+        let orders = order::checks(self, truths.truth());
         execute::time_again(&self.cases, &mut runs, &limits);
-        let (outcomes, series) = outcome::all(self, &runs, scale);
+        let scale = measure::energy_scale(self.scene, &self.system, truths.peak());
+        let (outcomes, series) = outcome::all(self, &runs, &truths, scale);
         Ok(Report {
             schema_version: SCHEMA_VERSION,
             scene: ledger::scene_facts(self, &runs, scale),
-            truth: Truth {
-                kind: TruthKind::None,
-                method: None,
-                error_bound_m: None,
-                horizon_s: None,
-                reason: Some(NO_TRUTH.to_owned()),
-            },
-            figures: figures::figures(self, &runs, &series, scale),
+            truth: truths.facts(),
+            figures: figures::figures(self, &runs, &series, &truths, scale),
             outcomes,
-            checks: proofs.into_iter().chain(ledger::no_scale(scale)).collect(),
+            fault: None,
+            checks: proofs
+                .into_iter()
+                .chain(orders)
+                .chain(ledger::no_scale(scale))
+                .collect(),
         })
+    }
+
+    /// That rapier's world and ours are the same scene, unless nothing here was computed.
+    fn proofs(&self) -> Vec<Check> {
+        let recorded = |case: &Case| case.kind == Kind::External;
+        if self.cases.iter().all(recorded) {
+            Vec::new()
+        } else {
+            ledger::twin_proof(self.scene)
+        }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::execute::Run;
 use super::plan::{Case, Plan};
-use super::remarks;
-use crate::engines::Ended;
+use super::truths::Truths;
+use super::{identity, remarks};
 use crate::measure::{self, EnergySeries, TOLERANCE};
 use crate::outcome::{Outcome, Status, Work};
 use rayon::prelude::*;
@@ -13,11 +13,12 @@ use std::collections::BTreeMap;
 pub(super) fn all(
     plan: &Plan,
     runs: &[Run],
+    truths: &Truths,
     scale: Option<f64>,
 ) -> (Vec<Outcome>, Vec<Option<EnergySeries>>) {
     (0..runs.len())
         .into_par_iter()
-        .map(|index| one(plan, runs, index, scale))
+        .map(|index| one(plan, runs, index, truths, scale))
         .unzip()
 }
 
@@ -25,6 +26,7 @@ fn one(
     plan: &Plan,
     runs: &[Run],
     index: usize,
+    truths: &Truths,
     scale: Option<f64>,
 ) -> (Outcome, Option<EnergySeries>) {
     let case = &plan.cases[index];
@@ -35,17 +37,13 @@ fn one(
             outcome.status = Status::Unsupported;
             outcome.reason = Some(unsupported.reason.clone());
         }
+        Run::Failed(reason) => {
+            outcome.status = Status::Failed;
+            outcome.reason = Some(reason.clone());
+        }
         Run::Ran(ran) => {
-            (outcome.status, outcome.reason) = match &ran.ended {
-                Ended::Completed => (Status::Completed, None),
-                Ended::Diverged { step, reason } => (
-                    Status::Diverged,
-                    Some(format!("in step {}: {reason}", step - 1)),
-                ),
-                Ended::Failed { step, error } => {
-                    (Status::Failed, Some(format!("in step {step}: {error}")))
-                }
-            };
+            outcome.status = ran.status;
+            outcome.reason.clone_from(&ran.reason);
             if outcome.status != Status::Completed {
                 outcome.stopped_at_s = Some(ran.steps as f64 * case.label.timestep);
             }
@@ -56,15 +54,23 @@ fn one(
                 .map(|series| measure::judge(series, scale, diverged));
             outcome.momentum = measure::momentum(plan.scene, &plan.system, &ran.trajectory);
             outcome.deviation_m = deviations(plan, runs, index);
+            outcome.identified = identity::of_run(plan, case, ran);
+            if let Some(errors) = truths.errors(case.label.timestep, &ran.trajectory) {
+                outcome.position_error_m = Some(errors.position);
+                outcome.velocity_error_m_s = errors.velocity;
+            }
             outcome.work = Work {
                 steps: ran.steps,
                 force_evaluations: ran.counts.all_force_passes(),
                 linear_solves: ran.counts.linear_solves,
-                wall_s: Some(ran.wall.clone()),
+                wall_s: ran.wall.clone(),
             };
         }
     }
     outcome.remarks = remarks::remarks(plan, case, &outcome);
+    if let Run::Ran(ran) = &runs[index] {
+        outcome.remarks.extend(ran.remarks.iter().cloned());
+    }
     (outcome, series)
 }
 

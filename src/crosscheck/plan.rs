@@ -1,10 +1,13 @@
 //! What will run: each chosen engine at each timestep.
 
+use crate::engines::external::Program;
 use crate::engines::{self, Engine, EngineRow, IntegratorEngine, Unsupported};
-use crate::integrators::{self, Method, Settings};
+use crate::integrators::{self, Integrator, Method, Settings};
 use crate::outcome::Kind;
 use crate::scene::Scene;
 use crate::system::ParticleSystem;
+use crate::truth::Demand;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What the caller wants run; [`Choice::default_for`] is what a run without flags does.
@@ -13,8 +16,14 @@ pub struct Choice {
     /// In the order outcomes are listed.
     pub methods: Vec<&'static Method>,
     pub engines: Vec<ChosenEngine>,
-    /// Seconds; every method runs at each, and every engine without a timestep of its own.
+    /// Other people's programs, after all others.
+    pub programs: Vec<ChosenProgram>,
+    /// Seconds; every method and program runs at each, and every engine without a timestep of its own.
     pub timesteps: Vec<f64>,
+    /// What errors are measured against.
+    pub truth: Demand,
+    /// Measure every method's order, however long the run.
+    pub order: bool,
 }
 
 /// A reference engine, or one more rapier row with settings of the user's own.
@@ -31,6 +40,19 @@ impl From<&EngineRow> for ChosenEngine {
             row: row.clone(),
             timestep: None,
         }
+    }
+}
+
+/// Another program, and what reports call it: a name no integrator and no engine has.
+#[derive(Clone)]
+pub struct ChosenProgram {
+    pub name: String,
+    pub program: Arc<dyn Program>,
+}
+
+impl std::fmt::Debug for ChosenProgram {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("ChosenProgram").field(&self.name).finish()
     }
 }
 
@@ -59,7 +81,10 @@ impl Choice {
                 .filter(|row| row.default)
                 .map(ChosenEngine::from)
                 .collect(),
+            programs: Vec::new(),
             timesteps: vec![scene.solver.timestep],
+            truth: Demand::Auto,
+            order: false,
         }
     }
 
@@ -91,8 +116,28 @@ pub struct Case<'a> {
     pub dissipates: Option<String>,
     /// Others report their distance from it.
     pub reference: bool,
-    /// A fresh engine at the scene's start.
-    pub build: Box<dyn Fn() -> Result<Box<dyn Engine>, Unsupported> + Send + Sync + 'a>,
+    pub source: Source<'a>,
+}
+
+/// Where a case's trajectory comes from.
+pub enum Source<'a> {
+    /// A fresh engine at the scene's start, advanced here step by step, as often as wanted.
+    Engine(Build<'a>),
+    /// Everything at once, from a program that runs once.
+    Program(Arc<dyn Program>),
+}
+
+/// Makes an engine, or says why there can be none.
+pub type Build<'a> = Box<dyn Fn() -> Result<Box<dyn Engine>, Unsupported> + Send + Sync + 'a>;
+
+impl<'a> Source<'a> {
+    /// What makes the engine, where there is one.
+    pub fn engine(&self) -> Option<&Build<'a>> {
+        match self {
+            Self::Engine(build) => Some(build),
+            Self::Program(_) => None,
+        }
+    }
 }
 
 /// Which run something belongs to.
@@ -105,11 +150,21 @@ pub struct Label {
     pub particles: usize,
 }
 
+impl Label {
+    /// When the run ends, s.
+    pub fn end(&self) -> f64 {
+        self.steps as f64 * self.timestep
+    }
+}
+
 /// The cases of one scene, in the order of the report.
 pub struct Plan<'a> {
     pub scene: &'a Scene,
     pub system: ParticleSystem,
     pub cases: Vec<Case<'a>>,
+    pub demand: Demand,
+    /// As [`Choice::order`].
+    pub order: bool,
 }
 
 impl<'a> Plan<'a> {
@@ -128,14 +183,56 @@ impl<'a> Plan<'a> {
                 cases.push(engine_case(scene, &system, &chosen.row, timestep));
             }
         }
+        for chosen in &choice.programs {
+            for &timestep in &choice.timesteps {
+                cases.push(program_case(scene, chosen, timestep));
+            }
+        }
         Self {
             scene,
             system,
             cases,
+            demand: choice.truth,
+            order: choice.order,
         }
     }
 
-    /// How long each case will take, from its first few steps.
+    /// When the last run ends, s.
+    pub fn until(&self) -> f64 {
+        let ends = self.cases.iter().map(|case| case.label.end());
+        ends.fold(0.0, f64::max)
+    }
+
+    /// One more row after the other integrators: one of the caller's own, under this name, at this
+    /// timestep, s. `build` makes a fresh one for each run.
+    ///
+    /// Nothing is claimed of it here; `conformance::check` is for that.
+    #[must_use]
+    pub fn with_integrator(
+        mut self,
+        name: &str,
+        timestep: f64,
+        build: impl Fn() -> Box<dyn Integrator> + Send + Sync + 'a,
+    ) -> Self {
+        let (scene, system) = (self.scene, self.system.clone());
+        let case = Case {
+            label: label(scene, name, timestep),
+            kind: Kind::Integrator,
+            substeps: 1,
+            method: None,
+            dissipates: None,
+            reference: false,
+            source: Source::Engine(Box::new(move || {
+                let engine = IntegratorEngine::with(scene, system.clone(), build(), timestep);
+                Ok(Box::new(engine))
+            })),
+        };
+        let integrators = self.cases.iter().rposition(|c| c.kind == Kind::Integrator);
+        self.cases.insert(integrators.map_or(0, |at| at + 1), case);
+        self
+    }
+
+    /// How long each case will take, from its first few steps. Nobody knows it of a program.
     pub fn estimate(&self) -> Vec<Estimate> {
         // One after the other: neighbours on the machine would make every case look slow.
         self.cases.iter().filter_map(estimate).collect()
@@ -171,10 +268,10 @@ fn integrator_case<'a>(
         method: Some(method),
         dissipates: None,
         reference: false,
-        build: Box::new(move || {
+        source: Source::Engine(Box::new(move || {
             let engine = IntegratorEngine::new(scene, system.clone(), method, &settings, timestep);
             Ok(Box::new(engine))
-        }),
+        })),
     }
 }
 
@@ -194,7 +291,19 @@ fn engine_case<'a>(
             .dissipates
             .map(|why| why.replace("{n}", &row.substeps().to_string())),
         reference: row.reference,
-        build: Box::new(move || row.build(scene, system.clone(), timestep)),
+        source: Source::Engine(Box::new(move || row.build(scene, system.clone(), timestep))),
+    }
+}
+
+fn program_case<'a>(scene: &Scene, chosen: &ChosenProgram, timestep: f64) -> Case<'a> {
+    Case {
+        label: label(scene, &chosen.name, timestep),
+        kind: Kind::External,
+        substeps: 1,
+        method: None,
+        dissipates: None,
+        reference: false,
+        source: Source::Program(Arc::clone(&chosen.program)),
     }
 }
 
@@ -210,7 +319,7 @@ const SAMPLE: Duration = Duration::from_millis(1);
 const SAMPLES: usize = 2;
 
 fn estimate(case: &Case) -> Option<Estimate> {
-    let mut engine = (case.build)().ok()?;
+    let mut engine = case.source.engine()?().ok()?;
     // The first step allocates and orders matrices; it stands for no other.
     engine.step().ok()?;
     let mut sample = || {

@@ -22,13 +22,14 @@ pub struct Drag {
 }
 
 impl Drag {
-    /// None when no free particle has drag.
+    /// None when no free particle has drag. A negative coefficient, which no scene file can state,
+    /// drives.
     pub fn new(scene: &Scene) -> Option<Self> {
         let coefficients: Vec<_> = scene
             .particles
             .iter()
             .enumerate()
-            .filter(|(_, p)| !p.fixed && p.drag > 0.0)
+            .filter(|(_, p)| !p.fixed && p.drag != 0.0)
             .map(|(i, p)| (i, p.drag))
             .collect();
         (!coefficients.is_empty()).then_some(Self { coefficients })

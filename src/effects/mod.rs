@@ -9,12 +9,14 @@
 mod drag;
 mod gravitational;
 mod gravity;
+mod scaled;
 mod springs;
 mod wind;
 
 pub use drag::Drag;
 pub use gravitational::Gravitational;
 pub use gravity::Gravity;
+pub use scaled::Scaled;
 pub use springs::{Spring, Springs};
 pub use wind::Wind;
 

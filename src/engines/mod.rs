@@ -1,5 +1,6 @@
-//! Whatever can advance a scene: our integrators, rapier's worlds, and later other programs.
+//! Whatever can advance a scene: our integrators, rapier's worlds, and other programs.
 
+pub mod external;
 mod integrator;
 pub mod rapier;
 mod registry;

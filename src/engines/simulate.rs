@@ -74,7 +74,7 @@ impl Limits {
     }
 
     /// Why this state counts as diverged, if it does.
-    fn exceeded(&self, state: &State) -> Option<String> {
+    pub(crate) fn exceeded(&self, state: &State) -> Option<String> {
         // The squared speeds bound K from above at half its cost.
         let kinetic = 0.5 * self.heaviest * sum_of_squares(&state.v);
         let calm = match self.limit {

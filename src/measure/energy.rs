@@ -26,8 +26,12 @@ pub struct EnergySeries {
 }
 
 impl EnergySeries {
-    /// None when nothing was recorded. Instants whose energy is not finite are left out.
+    /// None when nothing was recorded or no velocities are known: what differences of positions make
+    /// of a kinetic energy is no fault of the run. Instants whose energy is not finite are left out.
     pub fn new(system: &ParticleSystem, run: &Trajectory) -> Option<Self> {
+        if !run.has_velocities() {
+            return None;
+        }
         let mut series = Self {
             t: Vec::with_capacity(run.len()),
             instants: Vec::with_capacity(run.len()),

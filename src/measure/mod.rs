@@ -2,6 +2,8 @@
 
 mod deviation;
 mod energy;
+mod error;
+pub mod identify;
 mod momentum;
 pub mod order;
 mod scale;
@@ -10,6 +12,7 @@ pub mod twin;
 
 pub use deviation::{TOLERANCE, deviation, reach};
 pub use energy::{EnergySeries, judge};
+pub use error::{Errors, Known, errors};
 pub use momentum::momentum;
 pub use scale::{divergence_limit, energy_scale};
 pub use trend::{Trend, trend};

@@ -6,7 +6,7 @@ use crate::system::ParticleSystem;
 use crate::trajectory::Trajectory;
 
 /// Largest departures from the initial values over the recorded instants; each None where
-/// something is fixed or an effect does not keep it.
+/// something is fixed or an effect does not keep it. None where velocities are not known.
 pub fn momentum(scene: &Scene, system: &ParticleSystem, run: &Trajectory) -> Option<Momentum> {
     let free = scene.particles.iter().all(|p| !p.fixed);
     let keeps = |keeps: fn(&dyn crate::effects::Effect) -> bool| {
@@ -14,7 +14,7 @@ pub fn momentum(scene: &Scene, system: &ParticleSystem, run: &Trajectory) -> Opt
     };
     let linear = keeps(|e| e.keeps_momentum());
     let angular = keeps(|e| e.keeps_angular_momentum());
-    if run.is_empty() || !(linear || angular) {
+    if run.is_empty() || !run.has_velocities() || !(linear || angular) {
         return None;
     }
     let start = totals(scene, run, 0);

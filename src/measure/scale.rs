@@ -3,25 +3,27 @@
 use crate::scene::{Particle, Scene, Spring};
 use crate::system::{ParticleSystem, System};
 
-/// S in joules: K(0) + U_elastic(0); if that is 0, the sum over free particles of m |g| L, with L
-/// the scene's size. None if all of these are 0.
+/// S in joules: the larger of K(0) + U_elastic(0) and `peak`, the largest kinetic energy of the
+/// truth where one is known; if both are 0, the sum over free particles of m |g| L, with L the
+/// scene's size. None if all of these are 0.
 ///
 /// Not the total energy, which depends on where gravity's zero is.
-pub fn energy_scale(scene: &Scene, system: &ParticleSystem) -> Option<f64> {
+pub fn energy_scale(scene: &Scene, system: &ParticleSystem, peak: Option<f64>) -> Option<f64> {
     let start = ParticleSystem::initial_state(scene);
     let own = system.kinetic(&start.v) + system.elastic(0.0, &start.x);
     // Rest lengths computed from positions leave rounding, not energy.
-    let rounding = elastic_rounding(scene);
-    if own > rounding {
-        return Some(own);
-    }
+    let own = Some(own).filter(|own| *own > elastic_rounding(scene));
     let weight: f64 = scene
         .particles
         .iter()
         .filter(|p| !p.fixed)
         .map(|p| p.mass * scene.solver.gravity.abs())
         .sum();
-    let scale = weight * scene.size();
+    let rest = weight * scene.size();
+    // So does a truth that stands still.
+    let peak = peak.filter(|peak| *peak > f64::EPSILON * rest && peak.is_finite());
+    let moving = own.unwrap_or(0.0).max(peak.unwrap_or(0.0));
+    let scale = if moving > 0.0 { moving } else { rest };
     (scale > 0.0).then_some(scale)
 }
 

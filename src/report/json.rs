@@ -40,7 +40,8 @@ fn is_finite(report: &Report) -> bool {
             &report.scene,
             &report.truth,
             &report.outcomes,
-            &report.checks
+            &report.checks,
+            &report.fault
         )
     );
     let mut text = String::with_capacity(numbers.len());

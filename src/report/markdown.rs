@@ -2,6 +2,7 @@
 
 mod ledger;
 
+use super::identity;
 use super::notes::{notes, references, several_timesteps};
 use super::svg::FIGURES;
 use super::verdict::verdict;
@@ -38,6 +39,7 @@ pub fn render(report: &Report) -> String {
     text += &outcomes(report);
     text += &remarks(report);
     text += &checks(&report.checks);
+    text += &fault(report);
     text += &ledger::energies(report);
     text += &ledger::effects(report);
     text + LEGEND
@@ -159,7 +161,7 @@ fn checks(checks: &[Check]) -> String {
     if checks.is_empty() {
         return String::new();
     }
-    let number = |n: Option<f64>| n.map_or(NOTHING.into(), words::sci);
+    let number = |n: Option<f64>| n.map_or(NOTHING.into(), words::quantity);
     let row = |check: &Check| {
         let status = match check.status {
             CheckStatus::Pass => "pass",
@@ -188,6 +190,18 @@ fn checks(checks: &[Check]) -> String {
         "message",
     ];
     format!("## Checks\n\n{}", table(&header, &rows))
+}
+
+fn fault(report: &Report) -> String {
+    let lines = identity::fault(report);
+    if lines.is_empty() {
+        return String::new();
+    }
+    let item = |line: &String| format!("- {}\n", escape(line));
+    format!(
+        "## First fault\n\n{}\n",
+        lines.iter().map(item).collect::<String>()
+    )
 }
 
 fn table(header: &[&str], rows: &[Vec<String>]) -> String {

@@ -2,6 +2,7 @@
 //!
 //! A format is a row of [`FORMATS`]; the figures beside a report are [`svg::figures`].
 
+mod identity;
 pub mod json;
 pub mod markdown;
 mod notes;

@@ -1,6 +1,6 @@
 //! Sentences about outcomes: who is meant, and what is worth saying.
 
-use super::words;
+use super::{identity, words};
 use crate::outcome::{Outcome, Report, Status};
 
 /// A sentence and the engines it is about.
@@ -43,6 +43,7 @@ fn sentences(outcome: &Outcome) -> Vec<String> {
         }
     }
     sentences.extend(remarks);
+    sentences.extend(identity::sentence(outcome));
     sentences
 }
 

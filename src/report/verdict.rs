@@ -1,7 +1,7 @@
 //! The one sentence that says the most important thing.
 
 use super::notes::{listed, subjects};
-use super::words;
+use super::{identity, words};
 use crate::outcome::{Check, CheckStatus, EnergyClass, Outcome, Report, Status};
 
 /// Engines named in one group before "and n more".
@@ -35,6 +35,7 @@ pub fn within(report: &Report, columns: usize) -> String {
 fn clauses(report: &Report) -> Vec<Clause> {
     let mut clauses = Vec::new();
     clauses.extend(failed_checks(&report.checks).map(|text| vec![text]));
+    clauses.extend(identity::verdict(report).map(|text| vec![text]));
     clauses.extend(own(report).map(|text| vec![text]));
     clauses.extend(groups(report));
     clauses.extend(twin_proof(&report.checks));
@@ -115,7 +116,14 @@ fn own(report: &Report) -> Option<String> {
         EnergyClass::Dissipating => format!("dissipates energy{error}"),
         EnergyClass::Growing => format!("gains energy{error}"),
     };
-    Some(format!("{name} {does}"))
+    let error = first.position_error_m.as_ref();
+    let error = error.map(
+        |e| match words::truth_error(e.max, &report.truth).as_str() {
+            "floor" => ", on the truth".to_owned(),
+            error => format!(", {error} m from the truth"),
+        },
+    );
+    Some(format!("{name} {does}{}", error.unwrap_or_default()))
 }
 
 fn groups(report: &Report) -> Vec<Clause> {

@@ -1,6 +1,8 @@
 //! The words and numbers the human-readable reports share.
 
-use crate::outcome::{Energy, EnergyClass, Outcome, Report, Status, Truth, TruthKind};
+use crate::outcome::{
+    Check, CheckStatus, Energy, EnergyClass, Outcome, Report, Status, Truth, TruthKind,
+};
 
 /// What stands where there is nothing to say.
 pub const NOTHING: &str = "-";
@@ -11,6 +13,42 @@ pub fn sci(value: f64) -> String {
         return "0".into();
     }
     format!("{value:.1e}")
+}
+
+/// As plain as two significant digits allow: `0.31`, `12`, `3.1e4`.
+pub fn short_sci(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        v if (0.995..99.5).contains(&v) => format!("{value:.0}"),
+        v if (0.00995..0.995).contains(&v) => format!("{value:.2}"),
+        _ => sci(value),
+    }
+}
+
+/// What a check compares: three digits, `2.97` or `1.1e-16`.
+pub fn quantity(value: f64) -> String {
+    match value.abs() {
+        v if (0.0995..999.5).contains(&v) => short((value * 1e3).round() / 1e3),
+        _ => sci(value),
+    }
+}
+
+/// What a check measured beside its bound, with the sign between them; empty without numbers.
+pub fn measured(check: &Check) -> String {
+    let passed = check.status == CheckStatus::Pass;
+    match (check.measured, check.bound) {
+        (Some(m), Some(b)) => {
+            let sign = match (passed, m <= b) {
+                (true, true) => "<=",
+                (true, false) => ">=",
+                (false, true) => "<",
+                (false, false) => ">",
+            };
+            format!("{} {sign} {}", quantity(m), quantity(b))
+        }
+        (Some(m), None) => quantity(m),
+        _ => String::new(),
+    }
 }
 
 /// A number as an author would write it, at most three digits where it is not short already:

@@ -1,7 +1,7 @@
 //! The system a scene describes: particles and the effects that act on them.
 
 use super::{Jacobian, Linearization, Power, State, System};
-use crate::effects::{self, Effect, EffectRow};
+use crate::effects::{self, Effect, EffectRow, Scaled};
 use crate::scene::Scene;
 use std::sync::Arc;
 
@@ -20,6 +20,12 @@ pub struct ParticleSystem {
 impl ParticleSystem {
     /// Builds only the effects the scene asks for.
     pub fn new(scene: &Scene) -> Self {
+        Self::scaled(scene, &|_| 1.0)
+    }
+
+    /// The same with the forces of each effect multiplied by this factor, 0 leaving it out: what a
+    /// program computes that forgets an effect, turns its sign or applies it twice.
+    pub fn scaled(scene: &Scene, factor: &dyn Fn(&EffectRow) -> f64) -> Self {
         let inverse_mass = scene
             .particles
             .iter()
@@ -27,13 +33,30 @@ impl ParticleSystem {
             .collect();
         let effects: Effects = effects::REGISTRY
             .iter()
-            .filter_map(|row| (row.build)(scene).map(|effect| (row, effect)))
+            .filter_map(|row| {
+                let effect = (row.build)(scene)?;
+                match factor(row) {
+                    0.0 => None,
+                    1.0 => Some((row, effect)),
+                    factor => Some((row, Box::new(Scaled::new(effect, factor)) as _)),
+                }
+            })
             .collect();
         Self {
             damped: effects.iter().any(|(_, e)| e.is_damped()),
             driven: effects.iter().any(|(_, e)| e.is_driven()),
             inverse_mass,
             effects: Arc::new(effects),
+        }
+    }
+
+    /// The same forces taken for accelerations: what a program computes that never divides by the
+    /// mass.
+    pub fn undivided(&self) -> Self {
+        let whole = |w: &f64| if *w > 0.0 { 1.0 } else { 0.0 };
+        Self {
+            inverse_mass: self.inverse_mass.iter().map(whole).collect(),
+            ..self.clone()
         }
     }
 

@@ -31,7 +31,7 @@ fn the_json_has_exactly_the_contracts_keys() {
         keys(&report["truth"]),
         set(&["kind", "method", "error_bound_m", "horizon_s", "reason"])
     );
-    assert_eq!(report["truth"]["kind"], "none");
+    assert_eq!(report["truth"]["kind"], "closed_form");
     for outcome in report["outcomes"].as_array().expect("outcomes") {
         assert_eq!(
             keys(outcome),

@@ -1,8 +1,10 @@
 //! The program as its users run it.
 
+mod compare;
 mod contract;
 mod errors;
 mod saved;
+mod truth;
 
 use assert_cmd::Command;
 use serde_json::Value;
@@ -12,6 +14,11 @@ use std::path::Path;
 fn springcheck() -> Command {
     let mut command = Command::cargo_bin("springcheck").expect("the binary");
     command.current_dir(env!("CARGO_MANIFEST_DIR"));
+    // Not the user's.
+    command.env(
+        "SPRINGCHECK_CACHE",
+        concat!(env!("CARGO_TARGET_TMPDIR"), "/cache"),
+    );
     command
 }
 
@@ -28,6 +35,16 @@ fn json(args: &[&str]) -> Value {
     let (code, out, err) = output(args);
     assert_eq!(code, 0, "{err}");
     serde_json::from_str(&out).expect("JSON on stdout")
+}
+
+/// The exit code beside what stands on stdout.
+fn json_of(args: &[&str]) -> (i32, Value) {
+    let (code, out, err) = output(args);
+    let report = serde_json::from_str(&out);
+    (
+        code,
+        report.unwrap_or_else(|_| panic!("no JSON: {out}{err}")),
+    )
 }
 
 fn keys(value: &Value) -> BTreeSet<&str> {

@@ -151,7 +151,7 @@ fn shipped_scenes_load() {
         .iter()
         .map(|(path, _)| scene::read(path, METHODS).unwrap_or_else(|error| panic!("{error}")))
         .collect();
-    assert_eq!(scenes.len(), 14);
+    assert_eq!(scenes.len(), 20);
     for scene in &scenes {
         assert!(scene.description.is_some() && !scene.name.is_empty());
         assert!(scene.file.ends_with(".yml"));

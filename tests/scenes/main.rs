@@ -37,7 +37,7 @@ fn complete(text: &str) -> String {
 /// The bytes of every shipped scene, with its path.
 fn shipped() -> Vec<(std::path::PathBuf, Vec<u8>)> {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let mut files: Vec<_> = ["pa1", "oscillator"]
+    let mut files: Vec<_> = ["golden", "order", "oscillator", "pa1"]
         .iter()
         .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
         .map(|entry| entry.unwrap().path())

@@ -2,10 +2,10 @@
 //! is. Every law is a number that is small for the right pair and large for a mutant.
 
 mod forces;
-mod golden;
 mod joints;
 mod proofs;
 mod scenes;
+mod worlds;
 
 use springcheck::engines::{Engine, EngineRow, IntegratorEngine, find, rapier::Settings};
 use springcheck::integrators;

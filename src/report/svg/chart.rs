@@ -8,8 +8,8 @@ use super::palette;
 use super::panels::{Panel, budget, panels};
 use super::range;
 use super::scale::Axis;
-use super::{WIDTH, heading, name};
-use crate::outcome::{Curves, Report, Status};
+use super::{TRUTH_NAME, WIDTH, heading, name};
+use crate::outcome::{Curves, Report, Status, TruthCurves};
 
 /// Which curves, and how their axis looks.
 pub struct Chart<'a> {
@@ -17,6 +17,8 @@ pub struct Chart<'a> {
     pub y_title: String,
     /// The series of a run, as long as its `t`; shorter ones end early.
     pub series: fn(&Curves) -> &[f64],
+    /// The truth's, where it has this curve.
+    pub truth: fn(&TruthCurves) -> &[f64],
     /// The vertical axis of a panel.
     pub axis: &'a dyn Fn(&Panel) -> Axis,
 }
@@ -25,9 +27,9 @@ pub struct Chart<'a> {
 pub fn chart(report: &Report, chart: &Chart) -> String {
     let panels = panels(report);
     let names = panels.iter().flat_map(|p| &p.runs).map(|(o, _)| name(o));
-    let names: Vec<String> = names.collect();
+    let names: Vec<String> = names.chain([TRUTH_NAME.to_owned()]).collect();
     let right = WIDTH - labels::margin(names.iter().map(String::as_str));
-    let rows = panels.iter().map(|p| p.runs.len()).max().unwrap_or(0);
+    let rows = panels.iter().map(|p| p.runs.len() + 1).max().unwrap_or(0);
     let tall = if panels.len() > 1 { 230.0 } else { 340.0 };
     let height = f64::max(tall, (rows as f64 + 0.5) * PITCH);
     let points = budget(names.len());
@@ -54,7 +56,7 @@ pub fn chart(report: &Report, chart: &Chart) -> String {
             y: (chart.axis)(panel),
         };
         frame.ground(&mut canvas, &panel.title, "time (s)", &chart.y_title);
-        draw(&mut canvas, report, panel, &frame, chart.series, points);
+        draw(&mut canvas, report, panel, &frame, chart, points);
         frame.outline(&mut canvas);
         top += height + BELOW;
     }
@@ -66,16 +68,30 @@ fn draw(
     report: &Report,
     panel: &Panel,
     frame: &Frame,
-    series: fn(&Curves) -> &[f64],
+    chart: &Chart,
     points: usize,
 ) {
     let mut runs = panel.runs.clone();
     runs.sort_by_key(|(outcome, _)| palette::layer(report, outcome));
     let mut notes = Vec::new();
     let w = frame.window;
+    if let Some(truth) = &report.figures.truth {
+        let pixels = pixels(frame, &truth.t, (chart.truth)(truth));
+        let drawn = line::draw(&thinned(&pixels, points), w);
+        canvas.path(&drawn.data, palette::TRUTH);
+        notes.extend(pixels.last().map(|last| {
+            let [x, y] = drawn.end.unwrap_or(*last);
+            Label {
+                text: TRUTH_NAME.to_owned(),
+                stroke: palette::TRUTH,
+                exit: (drawn.end.is_some() && x > w.right - 3.0).then_some(y),
+                wish: y.clamp(w.top, w.bottom),
+            }
+        }));
+    }
     for (outcome, curves) in runs {
         let stroke = palette::stroke(report, outcome);
-        let mut pixels = pixels(frame, &curves.t, series(curves));
+        let mut pixels = pixels(frame, &curves.t, (chart.series)(curves));
         let Some(&last) = pixels.last() else { continue };
         if palette::is_wild(outcome) {
             pixels = line::until_far(pixels, w);

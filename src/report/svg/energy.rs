@@ -24,6 +24,8 @@ pub fn draw(report: &Report) -> String {
         title: "energy balance over time".into(),
         y_title,
         series: |curves| &curves.energy,
+        // The zero line.
+        truth: |_| &[],
         axis: &axis,
     };
     chart(report, &energy)

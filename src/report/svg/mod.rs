@@ -18,6 +18,8 @@ use crate::outcome::{Outcome, Report};
 
 /// Pixels; what a page of text is wide.
 const WIDTH: f64 = 880.0;
+/// What labels call the truth.
+const TRUTH_NAME: &str = "truth";
 /// Characters of an engine's name that labels have room for.
 const NAME: usize = 30;
 

@@ -16,6 +16,13 @@ const RAPIER: [(&str, &str, f64); 3] = [
     ("#000000", "9 3 2 3", 1.6),
 ];
 
+/// The truth: a pale band that every other line runs on, or off.
+pub const TRUTH: Stroke = Stroke {
+    colour: "#c4c4c4",
+    dash: "",
+    width: 6.0,
+};
+
 /// The look of the outcome's engine.
 pub fn stroke(report: &Report, outcome: &Outcome) -> Stroke {
     let mut seen: Vec<&str> = Vec::new();

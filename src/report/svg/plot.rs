@@ -24,6 +24,7 @@ pub fn draw(report: &Report) -> String {
         title: format!("{label} over time"),
         y_title: label,
         series: |curves| &curves.plot,
+        truth: |truth| &truth.plot,
         axis: &|panel| axis(panel, asked),
     };
     chart(report, &plot)

@@ -8,7 +8,7 @@ use super::palette;
 use super::panels::{Panel, budget, panels};
 use super::range;
 use super::scale::Axis;
-use super::{WIDTH, heading, name};
+use super::{TRUTH_NAME, WIDTH, heading, name};
 use crate::outcome::{Report, Status};
 
 /// Smallest and largest panel, pixels; the largest height holds for a single panel.
@@ -106,6 +106,12 @@ fn paths(
     points: usize,
 ) -> bool {
     let mut stopped = false;
+    for path in report.figures.truth.iter().flat_map(|truth| &truth.paths) {
+        let pixels: Vec<[f64; 2]> = path.iter().map(|p| frame.place(*p)).collect();
+        let kept = line::thinned(&pixels, points);
+        let pixels: Vec<[f64; 2]> = kept.into_iter().map(|i| pixels[i]).collect();
+        canvas.path(&line::draw(&pixels, frame.window).data, palette::TRUTH);
+    }
     let mut runs = panel.runs.clone();
     runs.sort_by_key(|(outcome, _)| palette::layer(report, outcome));
     for &(outcome, curves) in &runs {
@@ -162,13 +168,16 @@ fn legend(
     stopped: bool,
 ) -> f64 {
     let w = frame.window;
-    let labels: Vec<Label> = panel
-        .runs
-        .iter()
+    let truth = report.figures.truth.iter();
+    let truth = truth.map(|_| (TRUTH_NAME.to_owned(), palette::TRUTH));
+    let runs = panel.runs.iter();
+    let runs = runs.map(|(outcome, _)| (name(outcome), palette::stroke(report, outcome)));
+    let labels: Vec<Label> = truth
+        .chain(runs)
         .enumerate()
-        .map(|(i, (outcome, _))| Label {
-            text: name(outcome),
-            stroke: palette::stroke(report, outcome),
+        .map(|(i, (text, stroke))| Label {
+            text,
+            stroke,
             exit: None,
             wish: w.top + (i as f64 + 0.5) * PITCH,
         })

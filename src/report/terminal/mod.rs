@@ -5,6 +5,7 @@ mod fit;
 mod paint;
 mod table;
 
+use super::identity;
 use super::notes::notes;
 use super::verdict;
 use super::words;
@@ -19,11 +20,14 @@ pub const WIDTH: usize = 100;
 /// with the verdict and a newline.
 pub fn render(report: &Report) -> String {
     let mut lines = scene(report);
-    lines.extend(ledger(&report.scene.effects));
+    if report.fault.is_none() {
+        lines.extend(ledger(&report.scene.effects));
+    }
     lines.push(String::new());
     lines.extend(table::table(report));
     lines.extend(remarks(report));
     lines.extend(checks(&report.checks));
+    lines.extend(fault(report));
     lines.push(String::new());
     let verdict = wrap(&verdict::within(report, WIDTH), WIDTH, "");
     lines.extend(verdict.iter().map(|line| mark(Tone::Strong, line)));
@@ -91,39 +95,95 @@ fn remarks(report: &Report) -> Vec<String> {
     lines
 }
 
+fn fault(report: &Report) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (at, line) in identity::fault(report).iter().enumerate() {
+        let label = if at == 0 { "fault    " } else { "         " };
+        lines.extend(wrap(&format!("{label}{line}"), WIDTH, "         "));
+    }
+    if !lines.is_empty() {
+        lines.insert(0, String::new());
+    }
+    lines
+}
+
 fn checks(checks: &[Check]) -> Vec<String> {
     if checks.is_empty() {
         return Vec::new();
     }
     let ids = checks.iter().map(|c| width(&words::one_line(&c.id))).max();
     let ids = ids.unwrap_or(0).min(24);
-    let mut lines = vec![String::new()];
+    let mut groups: Vec<Vec<&Check>> = Vec::new();
     for check in checks {
-        let (tone, word) = match check.status {
-            CheckStatus::Pass => (Tone::Good, "pass"),
-            CheckStatus::Fail => (Tone::Bad, "FAIL"),
-            CheckStatus::Skip => (Tone::Dim, "skip"),
-            CheckStatus::Inconclusive => (Tone::Warn, "open"),
+        let alike = |group: &&mut Vec<&Check>| {
+            let first = group[0];
+            let pass = check.status == CheckStatus::Pass;
+            first.id == check.id
+                && first.status == check.status
+                && (pass || reason(first) == reason(check))
         };
-        let id = pad(&clip(&words::one_line(&check.id), ids), ids);
-        let measured = measured(check);
-        let room = WIDTH - 4 - ids - width(&measured) - 6;
-        let subject = clip(&words::one_line(&check.subject), room);
-        lines.push(format!("{}  {id}  {subject}  {measured}", mark(tone, word)));
-        if check.status != CheckStatus::Pass && !check.message.is_empty() {
-            let message = format!("      {}", words::one_line(&check.message));
-            lines.extend(wrap(&message, WIDTH, "      "));
+        match groups.iter_mut().find(alike) {
+            Some(group) => group.push(check),
+            None => groups.push(vec![check]),
+        }
+    }
+    let mut lines = vec![String::new()];
+    for group in &groups {
+        match group.as_slice() {
+            [check] => lines.extend(alone(check, ids)),
+            several => lines.extend(together(several, ids)),
         }
     }
     lines
 }
 
-/// `1.1e-16 <= 3.0e-13`
-fn measured(check: &Check) -> String {
-    match (check.measured, check.bound) {
-        (Some(m), Some(b)) if m <= b => format!("{} <= {}", words::sci(m), words::sci(b)),
-        (Some(m), Some(b)) => format!("{} > {}", words::sci(m), words::sci(b)),
-        (Some(m), None) => words::sci(m),
-        _ => String::new(),
+/// What a check says, without whom it is about.
+fn reason(check: &Check) -> &str {
+    let said = check.message.strip_prefix(check.subject.as_str());
+    said.and_then(|said| said.strip_prefix(": "))
+        .unwrap_or(&check.message)
+}
+
+/// `pass  order`
+fn head(check: &Check, ids: usize) -> String {
+    let (tone, word) = match check.status {
+        CheckStatus::Pass => (Tone::Good, "pass"),
+        CheckStatus::Fail => (Tone::Bad, "FAIL"),
+        CheckStatus::Skip => (Tone::Dim, "skip"),
+        CheckStatus::Inconclusive => (Tone::Warn, "open"),
+    };
+    let id = pad(&clip(&words::one_line(&check.id), ids), ids);
+    format!("{}  {id}", mark(tone, word))
+}
+
+fn alone(check: &Check, ids: usize) -> Vec<String> {
+    let measured = words::measured(check);
+    let room = WIDTH - 4 - ids - width(&measured) - 6;
+    let subject = clip(&words::one_line(&check.subject), room);
+    let mut lines = vec![format!("{}  {subject}  {measured}", head(check, ids))];
+    if check.status != CheckStatus::Pass && !check.message.is_empty() {
+        let message = format!("      {}", words::one_line(&check.message));
+        lines.extend(wrap(&message, WIDTH, "      "));
     }
+    lines
+}
+
+/// Several with the same result: whom it is about, what was measured, and what there is to say.
+fn together(checks: &[&Check], ids: usize) -> Vec<String> {
+    let first = checks[0];
+    let texts: Vec<String> = checks
+        .iter()
+        .map(|check| {
+            let measured = check.measured.map(words::quantity).unwrap_or_default();
+            let text = format!("{} {measured}", words::one_line(&check.subject));
+            text.trim_end().to_owned()
+        })
+        .collect();
+    let line = format!("{}  {}", head(first, ids), texts.join(", "));
+    let mut lines = wrap(&line, WIDTH, &" ".repeat(8 + ids));
+    if first.status != CheckStatus::Pass {
+        let message = format!("      {}", words::one_line(reason(first)));
+        lines.extend(wrap(&message, WIDTH, "      "));
+    }
+    lines
 }

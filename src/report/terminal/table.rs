@@ -87,6 +87,9 @@ fn columns(report: &Report, fold: char) -> Vec<Column> {
     }
     columns.push(column("force\nevals", Right, 2, &|o| (forces(o), None)));
     columns.push(column("time", Right, 0, &|o| (words::wall_time(o), None)));
+    // A trajectory from a file has neither.
+    let empty = |c: &Column| !c.cells.is_empty() && c.cells.iter().all(|(text, _)| text == NOTHING);
+    columns.retain(|column| !empty(column));
     columns
 }
 

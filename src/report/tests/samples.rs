@@ -190,6 +190,7 @@ pub fn empty(name: &str) -> Report {
             twin("twin_forces", CheckStatus::Pass),
             twin("twin_converged", CheckStatus::Pass),
         ],
+        fault: None,
         figures: Figures {
             plane: [0, 2],
             fixed: vec![[0.0, 0.0]],

@@ -1,70 +1,9 @@
-//! Numbers measured of rapier itself, and closed forms of the schemes it runs.
+//! What rapier computes: closed forms of the schemes it runs, and what its worlds depend on. Numbers
+//! published elsewhere are in `tests/golden.rs`.
 
 use super::{apart, build, mutated, ours, scenes, theirs};
-use springcheck::engines::{Engine, find, rapier::Settings, rapier_with};
+use springcheck::engines::{find, rapier::Settings, rapier_with};
 use springcheck::scene::Scene;
-use springcheck::system::{ParticleSystem, System};
-
-fn energy(scene: &Scene, engine: &dyn Engine) -> f64 {
-    let (system, s) = (ParticleSystem::new(scene), engine.state());
-    system.kinetic(&s.v) + system.potential(s.t, &s.x)
-}
-
-/// E/E0 of an undamped oscillator under rapier's defaults with `n` substeps.
-fn energy_ratio(scene: &Scene, dt: f64, n: u32, steps: u32) -> f64 {
-    let settings = Settings {
-        iterations: n,
-        ..Settings::DEFAULT
-    };
-    let mut engine = build(&rapier_with(settings), scene, dt);
-    let start = energy(scene, &*engine);
-    for _ in 0..steps {
-        engine.step().expect("a step");
-    }
-    energy(scene, &*engine) / start
-}
-
-/// (1 + h² k/m)^-(steps n): implicit Euler's factor, which an undamped spring of rapier's loses
-/// energy by.
-#[test]
-fn an_undamped_spring_loses_energy_as_implicit_euler_does() {
-    let scene = scenes::oscillator(20.0, 0.2, 0.3, 0.0, 1.0 / 60.0);
-    let dt = 1.0 / 60.0;
-    for (n, published) in [(1, 0.037_333), (4, 0.434_912), (8, 0.659_300)] {
-        let measured = energy_ratio(&scene, dt, n, 120);
-        let h = dt / f64::from(n);
-        let law = (1.0 + h * h * 20.0 / 0.2).powi(-120 * n as i32);
-        // Six digits were published.
-        assert!((measured - published).abs() < 5e-7, "n = {n}: {measured}");
-        // 120 n substeps of a few roundings in energy: 4 eps each.
-        let rounding = 4.0 * f64::EPSILON * 120.0 * f64::from(n);
-        assert!((measured / law - 1.0).abs() < rounding, "n = {n}");
-        // One substep more or one step fewer is another number.
-        assert!((energy_ratio(&scene, dt, n + 1, 120) - published).abs() > 1e-2);
-        assert!((energy_ratio(&scene, dt, n, 119) - published).abs() > 5e-4);
-    }
-}
-
-/// k = 50, m = 1, displaced by 0.5 for 5 s: largest distance from A cos(w t), and what is left of
-/// the energy.
-#[test]
-fn the_classic_oscillator_under_rapiers_defaults() {
-    for (dt, error, left) in [(1.0 / 60.0, 2.0e-1, 0.353), (1e-3, 1.5e-2, 0.939)] {
-        let scene = scenes::oscillator(50.0, 1.0, 0.5, 0.0, dt);
-        let mut engine = theirs(&scene, "rapier", dt);
-        let mut worst = 0.0_f64;
-        let steps = (5.0 / dt).round() as u32;
-        for step in 1..=steps {
-            engine.step().expect("a step");
-            let truth = 0.5 * (50_f64.sqrt() * f64::from(step) * dt).cos();
-            worst = worst.max((engine.state().x[3] - truth).abs());
-        }
-        let ratio = energy_ratio(&scene, dt, 4, steps);
-        // Published to two and three digits.
-        assert!((worst / error - 1.0).abs() < 0.03, "dt = {dt}: {worst}");
-        assert!((ratio - left).abs() < 6e-4, "dt = {dt}: {ratio}");
-    }
-}
 
 /// Symplectic Euler at h = dt / n falls g h² N (N + 1) / 2 in N substeps from rest.
 #[test]

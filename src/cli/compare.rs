@@ -1,0 +1,123 @@
+//! `springcheck compare FILE --scene SCENE`
+
+use super::cache::Cache;
+use super::host::host;
+use super::output::Place;
+use super::progress::Progress;
+use super::run::{HUMAN, Truth, formats};
+use anyhow::{Context, bail};
+use springcheck::crosscheck::Comparison;
+use springcheck::integrators;
+use springcheck::outcome::{Figures, Report, Undecided};
+use springcheck::report;
+use springcheck::scene;
+use springcheck::trajectory::{self, Expected, limits};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// What some program computed: CSV (`t,id,x,y,z[,vx,vy,vz]`), NPZ (`t`, `x`, `v`) or NPY.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+
+    /// The scene it simulates (YAML).
+    #[arg(long, value_name = "SCENE")]
+    scene: PathBuf,
+
+    /// The step it took, seconds; rows may lie several of them apart. Default: the scene's.
+    #[arg(long, value_name = "H")]
+    timestep: Option<f64>,
+
+    /// What errors are measured against, as in `run`.
+    #[arg(long, value_enum, default_value_t = Truth::Auto, value_name = "KIND")]
+    truth: Truth,
+
+    /// What goes to stdout.
+    #[arg(long, default_value = HUMAN, value_parser = formats())]
+    format: String,
+
+    /// Where a report goes. Default: nowhere.
+    #[arg(long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+/// No scheme, or more than one, explains the file.
+const UNDECIDED: u8 = 3;
+
+/// Runs the verb.
+pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
+    let mut scene = scene::read(&args.scene, &integrators::ids())?;
+    let timestep = args.timestep.unwrap_or(scene.solver.timestep);
+    if !(timestep.is_finite() && timestep > 0.0) {
+        bail!("--timestep {timestep}: expected a positive number of seconds");
+    }
+    let name = args.file.display().to_string();
+    let bytes = read(&args.file).with_context(|| format!("cannot read {name}"))?;
+    let rows = trajectory::read(&bytes, &name, None, &Expected::new(&scene, timestep))?;
+    drop(bytes);
+    // The file says how long it is.
+    scene.duration = rows
+        .steps
+        .last()
+        .map_or(scene.duration, |n| *n as f64 * timestep);
+    let comparison = Comparison {
+        scene: &scene,
+        rows: Arc::new(rows),
+        name: args
+            .file
+            .file_name()
+            .map_or(name, |n| n.to_string_lossy().into_owned()),
+        demand: args.truth.demand(),
+    };
+    let steps = comparison.rows.steps.last().copied().unwrap_or(0);
+    let progress = Progress::new(steps, 0.0, quiet);
+    let mut report = comparison.execute(&host(&progress, None, &Cache::new()))?;
+    progress.finish();
+    let place = args
+        .output
+        .as_ref()
+        .map(|output| Place::new(output, &args.file));
+    if let Some(place) = &place {
+        place.create()?;
+        place.write(&report)?;
+    } else {
+        // No files, so no links to them.
+        report.figures = Figures::default();
+    }
+    if args.format == HUMAN {
+        let written = place.map_or_else(String::new, |place| {
+            let file = place.report().display().to_string();
+            format!("report: {}\n", file.replace(char::is_control, "?"))
+        });
+        super::print(&format!("{}{written}", report::terminal::render(&report)))?;
+    } else {
+        let format = report::format(&args.format).context("a format without a row")?;
+        super::print(&(format.render)(std::slice::from_ref(&report)))?;
+    }
+    Ok(ExitCode::from(code(&report)))
+}
+
+/// The file, no further than the reader would look at it.
+fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let limit = limits::FILE_BYTES as u64 + 1;
+    File::open(path)?.take(limit).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// 0: it follows a scheme throughout; 1: it has a fault; 3: which scheme it follows is open.
+fn code(report: &Report) -> u8 {
+    if report.fault.as_ref().is_some_and(Option::is_some) {
+        return 1;
+    }
+    let found = report.outcomes.first().and_then(|o| o.identified.as_ref());
+    match found.map(|found| found.undecided) {
+        // Which of several names one map has is no question the data could answer.
+        Some(None | Some(Undecided::SameMap)) => 0,
+        _ => UNDECIDED,
+    }
+}

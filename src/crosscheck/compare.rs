@@ -1,0 +1,61 @@
+//! One trajectory that somebody else computed, against the truth and the laws.
+
+use super::plan::{Choice, ChosenProgram, Plan};
+use super::{Host, identity};
+use crate::engines::external::{Failure, Program, Recording, Task};
+use crate::outcome::Report;
+use crate::scene::Scene;
+use crate::trajectory::{Rows, SaveError};
+use crate::truth::Demand;
+use std::sync::Arc;
+
+/// A trajectory and the scene it simulates, whose duration is the trajectory's.
+#[derive(Debug, Clone)]
+pub struct Comparison<'a> {
+    pub scene: &'a Scene,
+    pub rows: Arc<Rows>,
+    /// What the report calls it.
+    pub name: String,
+    /// What errors are measured against.
+    pub demand: Demand,
+}
+
+/// Rows that are there already.
+struct Recorded(Arc<Rows>);
+
+impl Program for Recorded {
+    fn record(&self, _task: &Task) -> Result<Recording, Failure> {
+        Ok(Recording {
+            rows: Rows::clone(&self.0),
+            seconds: None,
+        })
+    }
+}
+
+impl Comparison<'_> {
+    /// Errors, energy, identity over every step, and the first fault: a report with one outcome.
+    ///
+    /// # Errors
+    /// Only when the host cannot write a trajectory it wants saved.
+    pub fn execute(&self, host: &dyn Host) -> Result<Report, SaveError> {
+        let choice = Choice {
+            methods: Vec::new(),
+            engines: Vec::new(),
+            programs: vec![ChosenProgram {
+                name: self.name.clone(),
+                program: Arc::new(Recorded(Arc::clone(&self.rows))),
+            }],
+            timesteps: vec![self.rows.timestep],
+            truth: self.demand,
+            order: false,
+        };
+        let plan = Plan::new(self.scene, &choice);
+        let mut report = plan.execute(host)?;
+        let (identified, fault) = identity::of_rows(&plan, &self.rows);
+        for outcome in &mut report.outcomes {
+            outcome.identified.clone_from(&identified);
+        }
+        report.fault = Some(fault);
+        Ok(report)
+    }
+}

@@ -1,0 +1,79 @@
+//! Which scheme each trajectory follows.
+
+use super::execute::Ran;
+use super::plan::{Case, Plan};
+use crate::integrators::Settings;
+use crate::measure::identify::{Question, first_fault, identify, moved_anchor};
+use crate::outcome::{Fault, Identified, Kind};
+use crate::system::ParticleSystem;
+use crate::trajectory::Rows;
+use std::borrow::Cow;
+
+/// Steps replayed of a run: enough to name it, few enough to be quick. A file is replayed whole.
+const TRANSITIONS: usize = 16;
+
+/// The scheme of a run, by some of its steps.
+pub(super) fn of_run(plan: &Plan, case: &Case, run: &Ran) -> Option<Identified> {
+    let rows = Rows::from(&run.trajectory);
+    let question = Question {
+        transitions: Some(TRANSITIONS),
+        hint: expected(plan, case),
+        ..question(plan, &rows)
+    };
+    identify(&question)?.report()
+}
+
+/// What a run should turn out to be.
+fn expected(plan: &Plan, case: &Case) -> Option<(&'static str, u32)> {
+    let joints = case.kind == Kind::Rapier && plan.scene.springs.len() > 1;
+    let rapier = joints.then_some(("linearized_implicit_material", case.substeps));
+    case.method.map(|method| (method.id, 1)).or(rapier)
+}
+
+/// The scheme of rows, by all of their steps, and the first of these that leaves it.
+pub(super) fn of_rows(plan: &Plan, rows: &Rows) -> (Option<Identified>, Option<Fault>) {
+    let rows = &from_the_start(plan, rows);
+    let question = question(plan, rows);
+    // Whatever scheme it is, what is fixed must not move.
+    let moved = moved_anchor(plan.scene, rows);
+    let Some(identity) = identify(&question) else {
+        return (None, moved);
+    };
+    let fault = moved.or_else(|| first_fault(&question, &identity));
+    (identity.report(), fault)
+}
+
+/// With the scene's start in front where rows begin a few steps later: those steps count, too.
+fn from_the_start<'a>(plan: &Plan, rows: &'a Rows) -> Cow<'a, Rows> {
+    let longest = rows.steps.windows(2).map(|pair| pair[1] - pair[0]).max();
+    let first = rows.steps.first().copied().unwrap_or(0);
+    if first == 0 || first > longest.unwrap_or(0) {
+        return Cow::Borrowed(rows);
+    }
+    let start = ParticleSystem::initial_state(plan.scene);
+    let mut rows = rows.clone();
+    rows.steps.insert(0, 0);
+    rows.x.splice(0..0, start.x);
+    if let Some(v) = &mut rows.v {
+        v.splice(0..0, start.v);
+    }
+    Cow::Owned(rows)
+}
+
+fn question<'a>(plan: &'a Plan, rows: &'a Rows) -> Question<'a> {
+    Question {
+        scene: plan.scene,
+        system: &plan.system,
+        rows,
+        settings: settings(plan),
+        transitions: None,
+        hint: None,
+    }
+}
+
+fn settings(plan: &Plan) -> Settings {
+    let tolerance = plan.scene.solver.tolerance;
+    Settings {
+        tolerance: tolerance.unwrap_or(Settings::default().tolerance),
+    }
+}

@@ -1,0 +1,192 @@
+//! The race: few transitions for everybody, all for those that may still win.
+
+use super::candidate::Candidate;
+use super::replay::{Defect, FIT, Replay};
+use super::sweep;
+use super::transition::{Transition, spread};
+use rayon::prelude::*;
+
+/// Out is who is so many times worse than the best.
+const OUT: f64 = 1e3;
+/// So many last digits off is no fault of the data: rounding, times what a stiff scene makes of it.
+const SOUND: f64 = 100.0 * FIT;
+/// Of those that fit nowhere yet, so many stay.
+const RUNNERS_UP: usize = 3;
+/// The first round goes over so many transitions.
+const FIRST: usize = 4;
+/// The second over as many as this buys, in [`Replay::effort`]: well below a second.
+pub(super) const BUDGET: u64 = 5_000_000;
+/// But no fewer.
+const FEWEST: usize = 8;
+
+/// A candidate and its defects at the transitions of a sample.
+#[derive(Clone)]
+pub(super) struct Entry {
+    pub(super) candidate: Candidate,
+    pub(super) defects: Vec<Defect>,
+}
+
+impl Entry {
+    pub(super) fn fits(&self) -> usize {
+        self.defects.iter().filter(|d| d.fits()).count()
+    }
+
+    /// The defect that a share `kept` of the transitions does not exceed.
+    pub(super) fn quantile(&self, kept: f64) -> f64 {
+        quantile(&self.defects, kept)
+    }
+}
+
+/// The value that a share `kept` of these does not exceed; infinite of nothing.
+pub(super) fn quantile(defects: &[Defect], kept: f64) -> f64 {
+    let mut units: Vec<f64> = defects.iter().map(|d| d.units).collect();
+    units.sort_by(f64::total_cmp);
+    let at = (units.len() as f64 * kept).ceil() as usize;
+    units
+        .get(at.saturating_sub(1))
+        .copied()
+        .unwrap_or(f64::INFINITY)
+}
+
+/// What a look at one transition may cost, in [`Replay::effort`]: some seconds at most.
+const LOOK: u64 = 100_000_000;
+/// Where only some transitions are asked for, an answer is wanted soon: a fraction of a second.
+const GLANCE: u64 = 2_000_000;
+
+/// Those that there is time for: in a large scene, or where rows lie far apart in it, only those of
+/// few substeps, and the one that is expected.
+pub(super) fn affordable(
+    replay: &Replay,
+    candidates: Vec<Candidate>,
+    brief: bool,
+    hint: Option<(&str, u32)>,
+    at: &Transition,
+) -> Vec<Candidate> {
+    let effort = |most: u32| {
+        let tried = candidates.iter().filter(|c| c.substeps <= most);
+        tried
+            .map(|c| replay.effort(c, at))
+            .fold(0, u64::saturating_add)
+    };
+    let enough = if brief { GLANCE } else { LOOK };
+    let most = [16, 8, 4, 2]
+        .into_iter()
+        .find(|&most| effort(most) <= enough);
+    let expected = |c: &Candidate| hint == Some((c.id.as_str(), c.substeps));
+    let wanted = |c: &Candidate| c.substeps <= most.unwrap_or(1) || expected(c);
+    candidates.into_iter().filter(wanted).collect()
+}
+
+/// Who is still of interest after a look at the probes and a few more transitions, with the defects
+/// at all of the sample.
+pub(super) fn race(
+    replay: &Replay,
+    candidates: Vec<Candidate>,
+    probes: &[Transition],
+    sample: &[Transition],
+    brief: bool,
+) -> Race {
+    let near = nearest(replay, &candidates, probes, brief);
+    let best = near.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut order: Vec<usize> = (0..candidates.len()).collect();
+    order.sort_by(|&a, &b| near[a].total_cmp(&near[b]));
+    let bound = OUT * best.max(FIT);
+    let within = near.iter().filter(|near| **near <= bound).count();
+    let mut kept = vec![false; candidates.len()];
+    for &i in order.iter().take(within + RUNNERS_UP) {
+        kept[i] = near[i].is_finite();
+    }
+    let few = spread(sample, FIRST);
+    let entries = candidates.into_iter().zip(kept);
+    let entries: Vec<Candidate> = entries.filter(|(_, kept)| *kept).map(|(c, _)| c).collect();
+    let entries = enter(replay, entries, &few);
+    let entries = survivors(entries);
+    let candidates = entries.into_iter().map(|entry| entry.candidate);
+    let candidates: Vec<Candidate> = candidates.collect();
+    let each: u64 = match sample.first() {
+        Some(first) => candidates.iter().map(|c| replay.effort(c, first)).sum(),
+        None => 0,
+    };
+    let affordable = usize::try_from(BUDGET / each.max(1)).unwrap_or(usize::MAX);
+    let sample = spread(sample, affordable.max(FEWEST));
+    let entries = enter(replay, candidates, &sample);
+    Race { entries, sample }
+}
+
+/// What a race leaves: who may have won, with the defects at a sample of the transitions.
+pub(super) struct Race {
+    pub(super) entries: Vec<Entry>,
+    pub(super) sample: Vec<Transition>,
+}
+
+/// The least distance of each candidate over the probes: some may be faults, and what a trajectory
+/// follows early need not be what it follows. `brief` ends with the first that somebody about
+/// follows.
+fn nearest(
+    replay: &Replay,
+    candidates: &[Candidate],
+    probes: &[Transition],
+    brief: bool,
+) -> Vec<f64> {
+    let mut near = vec![f64::INFINITY; candidates.len()];
+    let mut open: Vec<usize> = (0..candidates.len()).collect();
+    for probe in probes {
+        let distances = sweep::distances(replay, candidates, &open, probe);
+        for (near, distance) in near.iter_mut().zip(&distances) {
+            *near = near.min(*distance);
+        }
+        if !brief {
+            continue;
+        }
+        let best = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        if best <= SOUND {
+            break;
+        }
+        // A fault makes all alike; who is far behind here need not be tried again.
+        open.retain(|&i| distances[i] <= OUT * best);
+    }
+    near
+}
+
+pub(super) fn enter(replay: &Replay, candidates: Vec<Candidate>, at: &[Transition]) -> Vec<Entry> {
+    let run = |candidate: Candidate| Entry {
+        defects: defects(replay, &candidate, at),
+        candidate,
+    };
+    candidates.into_par_iter().map(run).collect()
+}
+
+fn defects(replay: &Replay, candidate: &Candidate, at: &[Transition]) -> Vec<Defect> {
+    let mut replayer = candidate.replayer(&replay.settings);
+    at.iter().map(|t| replay.defect(&mut replayer, t)).collect()
+}
+
+/// Transitions one replayer takes: few enough that threads share the work, many enough that its
+/// scratch memory pays.
+const CHUNK: usize = 64;
+
+/// The same over many transitions, in parallel.
+pub(super) fn defects_of_all(
+    replay: &Replay,
+    candidate: &Candidate,
+    at: &[Transition],
+) -> Vec<Defect> {
+    at.par_chunks(CHUNK)
+        .flat_map_iter(|chunk| defects(replay, candidate, chunk))
+        .collect()
+}
+
+/// Those that fit about as often as the best, and the nearest of the rest.
+fn survivors(entries: Vec<Entry>) -> Vec<Entry> {
+    let most = entries.iter().map(Entry::fits).max().unwrap_or(0);
+    let fits = |entry: &Entry| most > 0 && entry.fits() + 1 >= most.max(2);
+    let mut rest: Vec<usize> = (0..entries.len()).filter(|&i| !fits(&entries[i])).collect();
+    let median = |i: &usize| entries[*i].quantile(0.5);
+    rest.sort_by(|a, b| median(a).total_cmp(&median(b)));
+    rest.truncate(RUNNERS_UP);
+    let kept: Vec<bool> = (0..entries.len())
+        .map(|i| fits(&entries[i]) || rest.contains(&i))
+        .collect();
+    let entries = entries.into_iter().zip(kept);
+    entries.filter(|(_, kept)| *kept).map(|(e, _)| e).collect()
+}

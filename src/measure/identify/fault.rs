@@ -1,0 +1,124 @@
+//! The first fault: the first transition that leaves the scheme, and which change explains it.
+//!
+//! Rows that end early are no fault here; whether a file is whole is for its reader to say.
+
+mod anchor;
+mod edits;
+mod explain;
+mod fit;
+mod guesses;
+mod spot;
+mod within;
+mod words;
+
+pub use anchor::moved_anchor;
+
+use super::candidate::{Candidate, Replayer};
+use super::replay::{BEYOND, Replay};
+use super::transition::Transition;
+use super::{Identity, Question, Sameness, candidates};
+use crate::integrators;
+use crate::outcome::Fault;
+use crate::trajectory::Rows;
+use rayon::prelude::*;
+use spot::Spot;
+
+/// Transitions one replayer takes.
+const CHUNK: usize = 64;
+/// Directions in which inputs are moved by their rounding before a departure is called one. Two
+/// equal roundings cancel in half of the directions; in a file of a million transitions they must
+/// not in all.
+const NUDGES: u64 = 32;
+/// So far off, no direction makes a difference.
+const CLEARLY: f64 = 64.0 * BEYOND;
+
+/// The first transition that does not follow the identity; for a mistake, the method it was meant
+/// to be. None where all follow, and where nothing was identified. All rows are looked at, whatever
+/// `question.transitions` is.
+pub fn first_fault(question: &Question, identity: &Identity) -> Option<Fault> {
+    if identity.same == Sameness::NothingFits || followed_everywhere(question.rows, identity) {
+        return None;
+    }
+    let named = |c: &Candidate| c.id == identity.method && c.substeps == identity.substeps;
+    let all = candidates(question.scene, question.system);
+    first_departure(question, all.iter().find(|c| named(c))?)
+}
+
+/// Whether the replay that found the identity has seen that every row follows it already.
+fn followed_everywhere(rows: &Rows, identity: &Identity) -> bool {
+    let all = identity.transitions + 1 == rows.len();
+    all && identity.followed == identity.transitions && identity.mistake.is_none()
+}
+
+/// The same for a candidate of the caller's choice.
+pub fn first_departure(question: &Question, candidate: &Candidate) -> Option<Fault> {
+    let Question {
+        scene,
+        system,
+        rows,
+        settings,
+        ..
+    } = *question;
+    let replay = Replay::new(scene, system, rows, settings)?;
+    let method = || integrators::find(candidate.meant);
+    let followed = match candidate.mistake {
+        None => candidate.clone(),
+        Some(_) => Candidate::method(system, method()?, candidate.substeps),
+    };
+    let transitions = transitions(rows);
+    let departures = departures(&replay, &followed, &transitions);
+    // A closer look at one may find that rounding explains it after all.
+    let spot = (0..departures.len())
+        .find_map(|k| Spot::new(question, &replay, &followed, &transitions, &departures[k..]))?;
+    Some(match candidate.mistake {
+        None => spot.explained(),
+        Some(says) => spot.fault(spot.step(), says.to_owned()),
+    })
+}
+
+/// Between neighbouring rows, wherever a replay can start.
+fn transitions(rows: &Rows) -> Vec<Transition> {
+    let finite: Vec<bool> = (0..rows.len()).map(|k| is_finite(rows, k)).collect();
+    let all = (0..rows.len().saturating_sub(1)).map(|from| Transition {
+        before: from.checked_sub(1).filter(|&k| finite[k]),
+        from,
+        to: from + 1,
+    });
+    all.filter(|t| finite[t.from] && (rows.v.is_some() || t.before.is_some()))
+        .collect()
+}
+
+fn is_finite(rows: &Rows, k: usize) -> bool {
+    let v = rows.v(k).unwrap_or(&[]);
+    rows.x(k).iter().chain(v).all(|c| c.is_finite())
+}
+
+/// The places of those that do not follow the candidate, in order.
+fn departures(replay: &Replay, followed: &Candidate, transitions: &[Transition]) -> Vec<usize> {
+    let places: Vec<usize> = (0..transitions.len()).collect();
+    let chunks = places.par_chunks(CHUNK).flat_map_iter(|chunk| {
+        let mut replayer = followed.replayer(&replay.settings);
+        let leaves = |&&place: &&usize| departs(replay, &mut replayer, &transitions[place]);
+        chunk.iter().filter(leaves).copied().collect::<Vec<_>>()
+    });
+    chunks.collect()
+}
+
+/// Whether rounding does not explain it. Where the scheme itself cannot step, nothing is claimed.
+fn departs(replay: &Replay, replayer: &mut Replayer, transition: &Transition) -> bool {
+    if !is_finite(replay.rows, transition.to) {
+        return replay.predict(replayer, transition).is_ok();
+    }
+    let units = replay.defect(replayer, transition).units;
+    if units <= BEYOND {
+        return false;
+    }
+    // Infinite also where the data leaves no room at all.
+    let Ok(predicted) = replay.predict(replayer, transition) else {
+        return false;
+    };
+    units > CLEARLY || {
+        let units = replay.units(replayer, transition, &predicted, NUDGES);
+        units.is_ok_and(|units| replay.farthest(transition, &predicted, &units) > BEYOND)
+    }
+}

@@ -1,0 +1,232 @@
+//! One transition that left the scheme: who is off, by how much, and where another would arrive.
+
+use super::super::Question;
+use super::super::candidate::Candidate;
+use super::super::replay::{BEYOND, Replay};
+use super::super::transition::Transition;
+use super::NUDGES;
+use super::words;
+use crate::outcome::{Fault, Quantity};
+use crate::system::State;
+
+/// Two errors within this share of each other are equally large.
+const TIE: f64 = 1e-3;
+
+/// The first transition that departs.
+pub(super) struct Spot<'a> {
+    pub(super) question: &'a Question<'a>,
+    pub(super) replay: &'a Replay<'a>,
+    pub(super) followed: &'a Candidate,
+    pub(super) at: Transition,
+    /// By the scheme.
+    pub(super) predicted: State,
+    /// What rounding explains of each number: positions, then velocities.
+    pub(super) units: Vec<f64>,
+    /// How far the scheme is off, in units.
+    pub(super) defect: f64,
+    /// The particles that are off, in order.
+    pub(super) off: Vec<usize>,
+    /// The one that is off farthest.
+    pub(super) worst: usize,
+    pub(super) quantity: Quantity,
+    pub(super) transitions: &'a [Transition],
+    /// Places of those that depart, from this one on.
+    pub(super) departures: &'a [usize],
+}
+
+impl<'a> Spot<'a> {
+    /// At the first of these departures; None without any, or if rounding explains it.
+    pub(super) fn new(
+        question: &'a Question<'a>,
+        replay: &'a Replay<'a>,
+        followed: &'a Candidate,
+        transitions: &'a [Transition],
+        departures: &'a [usize],
+    ) -> Option<Self> {
+        let at = *transitions.get(*departures.first()?)?;
+        let mut replayer = followed.replayer(&replay.settings);
+        let predicted = replay.predict(&mut replayer, &at).ok()?;
+        let units = replay.units(&mut replayer, &at, &predicted, NUDGES).ok()?;
+        let mut spot = Self {
+            question,
+            replay,
+            followed,
+            at,
+            defect: replay.farthest(&at, &predicted, &units),
+            predicted,
+            units,
+            off: Vec::new(),
+            worst: 0,
+            quantity: Quantity::Velocity,
+            transitions,
+            departures,
+        };
+        spot.find_worst();
+        (!spot.off.is_empty()).then_some(spot)
+    }
+
+    /// Velocities are where forces act: they speak first.
+    fn find_worst(&mut self) {
+        let particles = self.replay.rows.dim / 3;
+        let is_off = |i: usize, quantity| (0..3).any(|axis| self.is_off(quantity, 3 * i + axis));
+        let moving: Vec<usize> = (0..particles)
+            .filter(|&i| is_off(i, Quantity::Velocity))
+            .collect();
+        let quantity = if moving.is_empty() {
+            Quantity::Position
+        } else {
+            Quantity::Velocity
+        };
+        let distance = |i: usize| {
+            let axes = (0..3).map(|axis| self.difference(quantity, 3 * i + axis));
+            let squares: f64 = axes.map(|d| d * d).sum();
+            if squares.is_nan() {
+                f64::INFINITY
+            } else {
+                squares.sqrt()
+            }
+        };
+        let of_quantity: Vec<usize> = (0..particles).filter(|&i| is_off(i, quantity)).collect();
+        let most = of_quantity.iter().map(|&i| distance(i)).fold(0.0, f64::max);
+        let worst = of_quantity
+            .iter()
+            .copied()
+            .find(|&i| distance(i) >= (1.0 - TIE) * most);
+        let off = (0..particles)
+            .filter(|&i| is_off(i, Quantity::Velocity) || is_off(i, Quantity::Position));
+        self.off = off.collect();
+        self.worst = worst.unwrap_or(0);
+        self.quantity = quantity;
+    }
+
+    /// The recorded number minus the predicted one; 0 of velocities that are not recorded.
+    pub(super) fn difference(&self, quantity: Quantity, i: usize) -> f64 {
+        match quantity {
+            Quantity::Position => self.found(quantity, i) - self.predicted.x[i],
+            Quantity::Velocity if self.replay.rows.v.is_none() => 0.0,
+            Quantity::Velocity => self.found(quantity, i) - self.predicted.v[i],
+        }
+    }
+
+    /// What rounding explains of it.
+    pub(super) fn unit(&self, quantity: Quantity, i: usize) -> f64 {
+        let place = match quantity {
+            Quantity::Position => i,
+            Quantity::Velocity => self.replay.rows.dim + i,
+        };
+        self.units.get(place).copied().unwrap_or(f64::INFINITY)
+    }
+
+    pub(super) fn is_off(&self, quantity: Quantity, i: usize) -> bool {
+        let difference = self.difference(quantity, i).abs();
+        difference.is_nan() || difference > BEYOND * self.unit(quantity, i)
+    }
+
+    /// As recorded at the end of the transition.
+    pub(super) fn found(&self, quantity: Quantity, i: usize) -> f64 {
+        let rows = self.replay.rows;
+        let row = match quantity {
+            Quantity::Position => rows.x(self.at.to),
+            Quantity::Velocity => rows.v(self.at.to).unwrap_or(&[]),
+        };
+        row.get(i).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The first step of the transition.
+    pub(super) fn step(&self) -> u64 {
+        self.replay.rows.steps[self.at.from]
+    }
+
+    pub(super) fn span(&self) -> u64 {
+        self.at.span(self.replay.rows)
+    }
+
+    /// Largest difference of a state from the recorded row, in units; infinite of none.
+    pub(super) fn distance(&self, state: Option<&State>) -> f64 {
+        let Some(state) = state else {
+            return f64::INFINITY;
+        };
+        self.replay.farthest(&self.at, state, &self.units)
+    }
+
+    /// The state at the end by `candidate`, in `steps` steps; None where it cannot take them. Without
+    /// velocities, `leg` leads to the start.
+    pub(super) fn arrive(
+        &self,
+        leg: &Candidate,
+        candidate: &Candidate,
+        steps: u64,
+    ) -> Option<State> {
+        let rows = self.replay.rows;
+        let settings = &self.replay.settings;
+        let start = self.step();
+        let mut state = self.replay.state(self.at.from, None);
+        let mut before = self.at.before.map(|k| (k, self.replay.state(k, None)));
+        if rows.v.is_none() {
+            let (k, earlier) = before.as_mut()?;
+            let mut replayer = leg.replayer(settings);
+            let way = self.replay.leg(*k, self.at.from);
+            way.find(&mut replayer, earlier, &mut state).ok()?;
+        }
+        let one_back = before.filter(|(k, _)| rows.steps[*k] + 1 == start);
+        let one_back = one_back.map(|(_, state)| state);
+        let mut replayer = candidate.replayer(settings);
+        let h = rows.timestep;
+        let stepped = replayer.advance(start, steps, h, one_back.as_ref(), &mut state);
+        stepped.ok().filter(|()| state.is_finite()).map(|()| state)
+    }
+
+    /// Departures after this one that are not its own.
+    pub(super) fn again(&self) -> usize {
+        let first = self.departures.first().copied().unwrap_or(0);
+        // Without velocities a transition is seen from three rows, so one fault shows up to thrice.
+        let echo = if self.replay.rows.v.is_some() { 0 } else { 2 };
+        let own = |&&place: &&usize| place <= first + echo;
+        self.departures.len() - self.departures.iter().filter(own).count()
+    }
+
+    /// How long a change lasts that does: to the end, or to the last step of an unbroken row of
+    /// departures.
+    pub(super) fn how_long(&self) -> String {
+        let first = self.departures.first().copied().unwrap_or(0);
+        let mut unbroken = (first..).zip(self.departures).take_while(|(a, b)| a == *b);
+        let last = unbroken.by_ref().last().map_or(first, |(place, _)| place);
+        let follows = self.transitions.len() - 1 - last;
+        let whole = last - first + 1 == self.departures.len();
+        match self.transitions.get(last) {
+            Some(end) if whole && follows > 0 && last > first => {
+                let until = self.replay.rows.steps[end.to].saturating_sub(1);
+                format!("from this step to step {until}")
+            }
+            _ => words::from_here_on(self.span()),
+        }
+    }
+
+    /// When it happens, as the beginning of a sentence.
+    pub(super) fn how_often(&self) -> String {
+        let first = self.departures.first().copied().unwrap_or(0);
+        let after = self.transitions.len().saturating_sub(first + 1);
+        words::how_often(self.span(), self.again(), after)
+    }
+
+    /// With this step and explanation; how many particles are off is added.
+    pub(super) fn fault(&self, step: u64, says: String) -> Fault {
+        let at = 3 * self.worst;
+        let row = match self.quantity {
+            Quantity::Position => &self.predicted.x,
+            Quantity::Velocity => &self.predicted.v,
+        };
+        let found =
+            |axis: usize| Some(self.found(self.quantity, at + axis)).filter(|c| c.is_finite());
+        let particles = self.replay.rows.dim / 3;
+        Fault {
+            step,
+            t_s: step as f64 * self.replay.rows.timestep,
+            particle: self.worst,
+            quantity: self.quantity,
+            expected: [0, 1, 2].map(|axis| row.get(at + axis).copied().unwrap_or(0.0)),
+            found: [0, 1, 2].map(found),
+            explanation: words::with_count(says, self.off.len(), particles),
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Scenes computed wrongly: forces or masses that are not the scene's. None where it makes no
+//! difference.
+
+use crate::scene::{DampingModel, Scene, Wind};
+use crate::system::ParticleSystem;
+
+/// The scene changed by `change`, if `there` is something to change.
+fn changed(scene: &Scene, there: bool, change: impl FnOnce(&mut Scene)) -> Option<ParticleSystem> {
+    there.then(|| {
+        let mut wrong = scene.clone();
+        change(&mut wrong);
+        ParticleSystem::new(&wrong)
+    })
+}
+
+/// Gravity times this.
+fn gravity(scene: &Scene, factor: f64) -> Option<ParticleSystem> {
+    changed(scene, falls(scene), |wrong| wrong.solver.gravity *= factor)
+}
+
+pub(super) fn gravity_forgotten(scene: &Scene) -> Option<ParticleSystem> {
+    gravity(scene, 0.0)
+}
+
+pub(super) fn gravity_twice(scene: &Scene) -> Option<ParticleSystem> {
+    gravity(scene, 2.0)
+}
+
+pub(super) fn gravity_upward(scene: &Scene) -> Option<ParticleSystem> {
+    gravity(scene, -1.0)
+}
+
+/// The same g newtons on every particle: what a wind along `up` would do.
+pub(super) fn gravity_without_mass(scene: &Scene) -> Option<ParticleSystem> {
+    changed(scene, falls(scene) && weighs(scene), |wrong| {
+        let mut force = match &scene.wind {
+            Some(wind) => wind.direction.map(|d| d * wind.strength),
+            None => [0.0; 3],
+        };
+        force[scene.up.index()] += scene.solver.gravity;
+        wrong.solver.gravity = 0.0;
+        wrong.wind = Some(Wind {
+            direction: force,
+            strength: 1.0,
+        });
+    })
+}
+
+pub(super) fn damping_sign(scene: &Scene) -> Option<ParticleSystem> {
+    damping(scene, -1.0)
+}
+
+pub(super) fn damping_forgotten(scene: &Scene) -> Option<ParticleSystem> {
+    damping(scene, 0.0)
+}
+
+/// Dampers and drag times this.
+fn damping(scene: &Scene, factor: f64) -> Option<ParticleSystem> {
+    let dragged = scene.particles.iter().any(|p| !p.fixed && p.drag != 0.0);
+    changed(scene, dragged || has_dampers(scene), |wrong| {
+        for spring in &mut wrong.springs {
+            spring.damping *= factor;
+        }
+        for particle in &mut wrong.particles {
+            particle.drag *= factor;
+        }
+    })
+}
+
+pub(super) fn damping_isotropic(scene: &Scene) -> Option<ParticleSystem> {
+    model(scene, DampingModel::Isotropic)
+}
+
+pub(super) fn damping_axial(scene: &Scene) -> Option<ParticleSystem> {
+    model(scene, DampingModel::Axial)
+}
+
+fn model(scene: &Scene, model: DampingModel) -> Option<ParticleSystem> {
+    let there = has_dampers(scene) && scene.damping_model != model;
+    changed(scene, there, |wrong| wrong.damping_model = model)
+}
+
+pub(super) fn rest_length_ignored(scene: &Scene) -> Option<ParticleSystem> {
+    let long = scene.springs.iter().any(|s| s.rest_length != 0.0);
+    changed(scene, long, |wrong| {
+        for spring in &mut wrong.springs {
+            spring.rest_length = 0.0;
+        }
+    })
+}
+
+pub(super) fn springs_twice(scene: &Scene) -> Option<ParticleSystem> {
+    changed(scene, !scene.springs.is_empty(), |wrong| {
+        for spring in &mut wrong.springs {
+            spring.stiffness *= 2.0;
+            spring.damping *= 2.0;
+        }
+    })
+}
+
+/// Forces undivided, but gravity the acceleration it is.
+pub(super) fn mass_ignored(scene: &Scene) -> Option<ParticleSystem> {
+    changed(scene, weighs(scene), |wrong| {
+        for pair in &mut wrong.gravitational {
+            // The attraction itself stays G m1 m2.
+            let [a, b] = pair.ends.map(|end| scene.particles[end].mass);
+            pair.g *= a * b;
+        }
+        for particle in &mut wrong.particles {
+            particle.mass = 1.0;
+        }
+    })
+}
+
+/// Forces undivided, weight among them. Without gravity this is `mass_ignored`.
+pub(super) fn force_as_acceleration(scene: &Scene) -> Option<ParticleSystem> {
+    (falls(scene) && weighs(scene)).then(|| ParticleSystem::new(scene).undivided())
+}
+
+fn falls(scene: &Scene) -> bool {
+    scene.solver.gravity != 0.0
+}
+
+/// Some free particle's mass is not 1.
+fn weighs(scene: &Scene) -> bool {
+    scene.particles.iter().any(|p| !p.fixed && p.mass != 1.0)
+}
+
+fn has_dampers(scene: &Scene) -> bool {
+    scene.springs.iter().any(|s| s.damping != 0.0)
+}

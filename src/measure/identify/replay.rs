@@ -1,0 +1,363 @@
+//! One replay: what a candidate makes of a row, and how far that is from the next row in units of
+//! rounding.
+
+use super::candidate::{Candidate, Replayer};
+use super::defect::{CLEAR, HOPELESS, NUDGES, largest_ratio};
+use super::transition::Transition;
+use super::velocity;
+use crate::integrators::{Settings, StepError};
+use crate::scene::Scene;
+use crate::system::{ParticleSystem, State, System};
+use crate::trajectory::Rows;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+pub use super::defect::{BEYOND, Defect, FIT};
+
+/// A velocity is found from positions in about so many tries.
+const FIND: u64 = 8;
+/// A step that solves costs as much as so many that do not: 20 to 100, on a chain of 20.
+const SOLVE: u64 = 100;
+
+/// Replays the rows of a trajectory.
+pub struct Replay<'a> {
+    pub(super) rows: &'a Rows,
+    pub(super) settings: Settings,
+    /// Where the fixed coordinates stand; None for the free.
+    fixed: Vec<Option<f64>>,
+    /// The longest rest length, m: forces are rounded by as much even where positions are small.
+    pub(super) length: f64,
+    /// The rows themselves are known no better than an iterative solve's tolerance.
+    pub(super) iterated: bool,
+    steps: AtomicU64,
+}
+
+impl<'a> Replay<'a> {
+    /// None if the rows are not of this scene: another number of coordinates, or columns of
+    /// different lengths.
+    pub fn new(
+        scene: &Scene,
+        system: &ParticleSystem,
+        rows: &'a Rows,
+        settings: Settings,
+    ) -> Option<Self> {
+        let values = rows.len().checked_mul(rows.dim)?;
+        let shaped = rows.dim == system.dim()
+            && rows.dim == 3 * scene.particles.len()
+            && rows.x.len() == values
+            && rows.v.as_ref().is_none_or(|v| v.len() == values)
+            && rows.steps.windows(2).all(|pair| pair[0] < pair[1]);
+        let start = ParticleSystem::initial_state(scene);
+        let fixed = start.x.iter().zip(system.inverse_mass());
+        let lengths = scene.springs.iter().map(|s| s.rest_length);
+        shaped.then(|| Self {
+            rows,
+            settings,
+            fixed: fixed.map(|(x, w)| (*w == 0.0).then_some(*x)).collect(),
+            length: lengths.fold(0.0, f64::max),
+            iterated: false,
+            steps: AtomicU64::new(0),
+        })
+    }
+
+    /// Steps replayed so far, substeps included.
+    pub fn steps(&self) -> u64 {
+        self.steps.load(Ordering::Relaxed)
+    }
+
+    /// The state at `transition.to` by the candidate, from the data up to `transition.from`.
+    ///
+    /// Without velocities it is the state whose position the scheme reaches from `before` through
+    /// `from`.
+    ///
+    /// # Errors
+    /// [`StepError`] where the candidate cannot take the steps or leaves the finite numbers.
+    pub fn predict(
+        &self,
+        replayer: &mut Replayer,
+        transition: &Transition,
+    ) -> Result<State, StepError> {
+        self.predict_nudged(replayer, transition, None)
+    }
+
+    /// What rounding explains of each coordinate at `transition.to`: positions, then velocities
+    /// (none where there are none). `predicted` is what [`predict`](Self::predict) gave.
+    ///
+    /// Half a unit of the recorded number; what half units of the inputs and the candidate's own
+    /// roundings become, measured by replaying from inputs moved by as much in `nudges` random
+    /// directions; and for iterative schemes the tolerance of their solve.
+    ///
+    /// # Errors
+    /// As [`predict`](Self::predict).
+    pub fn units(
+        &self,
+        replayer: &mut Replayer,
+        transition: &Transition,
+        predicted: &State,
+        nudges: u64,
+    ) -> Result<Vec<f64>, StepError> {
+        let mut grown = vec![0.0; self.recorded(transition).count()];
+        for pattern in 0..nudges {
+            self.grow(replayer, transition, predicted, pattern, &mut grown)?;
+        }
+        Ok(self.with_own(replayer, transition, predicted, &grown))
+    }
+
+    /// Predicted minus recorded, each in units of the last digits of the numbers it came from, and
+    /// of the largest of its kind in doubles: near the true units, and free.
+    pub(super) fn last_digits_off(&self, transition: &Transition, predicted: &State) -> Vec<f64> {
+        let rows = self.rows;
+        let [v0, v1] = [transition.from, transition.to].map(|k| rows.v(k).unwrap_or(&[]));
+        let (x0, x1) = (rows.x(transition.from), rows.x(transition.to));
+        let mut off = Vec::new();
+        for (from, recorded, predicted, precision) in [
+            (x0, x1, &predicted.x, rows.precision),
+            (v0, v1, &predicted.v, rows.precision_v),
+        ] {
+            let round = |value: f64| precision.half_unit(value);
+            let size = recorded.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+            let least = (0.5 * f64::EPSILON * size).max(f64::MIN_POSITIVE);
+            let triples = from.iter().zip(recorded).zip(predicted);
+            off.extend(triples.map(|((from, recorded), predicted)| {
+                (predicted - recorded) / (round(*recorded) + round(*from) + least)
+            }));
+        }
+        off
+    }
+
+    /// The defect of a candidate at a transition.
+    pub fn defect(&self, replayer: &mut Replayer, transition: &Transition) -> Defect {
+        self.try_defect(replayer, transition)
+            .unwrap_or(Defect::IMPOSSIBLE)
+    }
+
+    fn try_defect(
+        &self,
+        replayer: &mut Replayer,
+        transition: &Transition,
+    ) -> Result<Defect, StepError> {
+        let predicted = self.predict(replayer, transition)?;
+        let off: Vec<f64> = self
+            .recorded(transition)
+            .zip(predicted.x.iter().chain(&predicted.v))
+            .map(|(recorded, predicted)| (predicted - recorded).abs())
+            .collect();
+        if off.iter().all(|d| *d == 0.0) {
+            return Ok(Defect {
+                units: 0.0,
+                exact: true,
+                relative: 0.0,
+            });
+        }
+        let mut grown = vec![0.0; off.len()];
+        let mut pattern = 0;
+        loop {
+            self.grow(replayer, transition, &predicted, pattern, &mut grown)?;
+            pattern += 1;
+            let units = self.with_own(replayer, transition, &predicted, &grown);
+            let defect = largest_ratio(&off, &units);
+            let clear = defect <= CLEAR || defect > HOPELESS;
+            if clear || pattern == NUDGES {
+                let moved: Vec<f64> = self.moved(transition).collect();
+                let motion = largest_ratio(&moved, &units);
+                return Ok(Defect {
+                    units: defect,
+                    exact: false,
+                    relative: if motion > 0.0 {
+                        defect / motion
+                    } else {
+                        f64::INFINITY
+                    },
+                });
+            }
+        }
+    }
+
+    /// The largest distance of a state from what is recorded at the end, in these units.
+    pub(super) fn farthest(&self, transition: &Transition, state: &State, units: &[f64]) -> f64 {
+        let numbers = state.x.iter().chain(&state.v).zip(units);
+        let ratios = self.recorded(transition).zip(numbers);
+        let ratios = ratios.map(|(recorded, (state, unit))| match state - recorded {
+            0.0 => 0.0,
+            off if off.is_nan() => f64::INFINITY,
+            off => off.abs() / unit,
+        });
+        ratios.fold(0.0, f64::max)
+    }
+
+    /// Raises `grown` to what inputs moved in this direction end away.
+    fn grow(
+        &self,
+        replayer: &mut Replayer,
+        transition: &Transition,
+        predicted: &State,
+        pattern: u64,
+        grown: &mut [f64],
+    ) -> Result<(), StepError> {
+        let nudged = self.predict_nudged(replayer, transition, Some(pattern))?;
+        let here = predicted.x.iter().chain(&predicted.v);
+        let there = nudged.x.iter().chain(&nudged.v);
+        let apart: Vec<f64> = here.zip(there).map(|(a, b)| (a - b).abs()).collect();
+        // By particle: of three axes one is not moved by chance.
+        for (grown, apart) in grown.chunks_mut(3).zip(apart.chunks(3)) {
+            let most = apart.iter().fold(0.0, |most: f64, d| most.max(*d));
+            for grown in grown {
+                *grown = grown.max(most);
+            }
+        }
+        Ok(())
+    }
+
+    /// What inputs have grown to, plus the rounding of the recorded number and the solve's
+    /// tolerance.
+    fn with_own(
+        &self,
+        replayer: &Replayer,
+        transition: &Transition,
+        predicted: &State,
+        grown: &[f64],
+    ) -> Vec<f64> {
+        let seconds = transition.span(self.rows) as f64 * self.rows.timestep;
+        let dim = self.rows.dim;
+        let solve = if self.iterated || replayer.candidate().iterates() {
+            let kick = |(i, v): (usize, &f64)| match self.rows.v(transition.from) {
+                Some(from) => (v - from[i]).abs(),
+                None => v.abs(),
+            };
+            let kicks = predicted.v.iter().enumerate().map(kick);
+            self.settings.tolerance * kicks.fold(0.0, f64::max)
+        } else {
+            0.0
+        };
+        let from = self.from(transition);
+        let own = self.recorded(transition).zip(from).enumerate();
+        let own = own.map(|(i, (value, from))| {
+            let solve = if i < dim { seconds * solve } else { solve };
+            // What ends near 0 was larger in between.
+            let bit = f64::EPSILON * from.abs();
+            self.rows.half_unit(i, value) + bit + solve
+        });
+        grown.iter().zip(own).map(|(g, own)| g + own).collect()
+    }
+
+    /// What is recorded at the end: positions, then velocities where there are any.
+    pub(super) fn recorded(&self, transition: &Transition) -> impl Iterator<Item = f64> + '_ {
+        let v = self.rows.v(transition.to).unwrap_or(&[]);
+        self.rows.x(transition.to).iter().chain(v).copied()
+    }
+
+    /// What is recorded at its start.
+    fn from(&self, transition: &Transition) -> impl Iterator<Item = f64> + '_ {
+        let v = self.rows.v(transition.from).unwrap_or(&[]);
+        self.rows.x(transition.from).iter().chain(v).copied()
+    }
+
+    /// How far each recorded number moves.
+    fn moved(&self, transition: &Transition) -> impl Iterator<Item = f64> + '_ {
+        let pairs = self.from(transition).zip(self.recorded(transition));
+        pairs.map(|(from, to)| (to - from).abs())
+    }
+
+    fn predict_nudged(
+        &self,
+        replayer: &mut Replayer,
+        transition: &Transition,
+        pattern: Option<u64>,
+    ) -> Result<State, StepError> {
+        let rows = self.rows;
+        let span = transition.span(rows);
+        let step = rows.steps[transition.from];
+        let total = span.saturating_mul(u64::from(replayer.candidate().roundings()));
+        let nudge = pattern.map(|pattern| (pattern, total as f64));
+        let mut state = self.state(transition.from, nudge);
+        let mut before = transition.before.map(|k| (k, self.state(k, nudge)));
+        if rows.v.is_none() {
+            let Some((k, earlier)) = &mut before else {
+                return Err(StepError::NotFinite);
+            };
+            let leg = self.leg(*k, transition.from);
+            // A thousandth of what the data is rounded to is as good as exact.
+            let enough = |x: f64| 1e-3 * rows.precision.half_unit(x);
+            let taken = leg.find_within(replayer, earlier, &mut state, enough)?;
+            self.count(replayer, taken);
+        }
+        let one_back = before
+            .filter(|(k, _)| rows.steps[*k] + 1 == step)
+            .map(|(_, state)| state);
+        replayer.advance(step, span, rows.timestep, one_back.as_ref(), &mut state)?;
+        self.count(replayer, span);
+        if state.x.iter().chain(&state.v).all(|c| c.is_finite()) {
+            Ok(state)
+        } else {
+            Err(StepError::NotFinite)
+        }
+    }
+
+    /// What replaying it costs, in steps of one particle under explicit forces, about.
+    pub(super) fn effort(&self, candidate: &Candidate, transition: &Transition) -> u64 {
+        let each = if candidate.solves() { SOLVE } else { 1 };
+        let each = each * if self.rows.v.is_some() { 1 } else { FIND };
+        let steps = transition.reach(self.rows);
+        let substeps = u64::from(candidate.substeps.max(1));
+        let particles = (self.rows.dim / 3).max(1) as u64;
+        steps
+            .saturating_mul(each * substeps)
+            .saturating_mul(particles)
+    }
+
+    /// From row `k` of positions alone to row `from`.
+    pub(super) fn leg(&self, k: usize, from: usize) -> velocity::Leg {
+        let rows = self.rows;
+        velocity::Leg {
+            step: rows.steps[k],
+            span: rows.steps[from].saturating_sub(rows.steps[k]),
+            timestep: rows.timestep,
+            roundings: f64::EPSILON * self.length,
+        }
+    }
+
+    fn count(&self, replayer: &Replayer, steps: u64) {
+        let substeps = u64::from(replayer.candidate().substeps.max(1));
+        self.steps
+            .fetch_add(steps.saturating_mul(substeps), Ordering::Relaxed);
+    }
+
+    /// The state of row `k`, velocities 0 where they are unknown; each free number moved by its
+    /// rounding and that of as many operations in the direction of the pattern.
+    pub(super) fn state(&self, k: usize, nudge: Option<(u64, f64)>) -> State {
+        let rows = self.rows;
+        let mut x = rows.x(k).to_vec();
+        let mut v = rows
+            .v(k)
+            .map_or_else(|| vec![0.0; x.len()], <[f64]>::to_vec);
+        let dim = rows.dim;
+        for (i, fixed) in self.fixed.iter().enumerate() {
+            if let Some(place) = *fixed {
+                // Better known from the scene than from a rounded file.
+                if (x[i] - place).abs() <= 1.01 * rows.half_unit(i, place) {
+                    x[i] = place;
+                }
+            } else if let Some((pattern, roundings)) = nudge {
+                let own = 0.5 * f64::EPSILON * roundings;
+                let row = (k as u64, pattern);
+                let round = [rows.half_unit(i, x[i]), rows.half_unit(dim + i, v[i])];
+                x[i] += sign(row, 2 * i) * (round[0] + own * (x[i].abs() + self.length));
+                v[i] += sign(row, 2 * i + 1) * (round[1] + own * v[i].abs());
+            }
+        }
+        let mut state = State::new(x, v);
+        state.t = rows.time(k);
+        state
+    }
+}
+
+/// 1 or -1, the same in every run (SplitMix64's mixing, Steele et al. 2014).
+fn sign((row, pattern): (u64, u64), at: usize) -> f64 {
+    let mut z = row
+        .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+        .wrapping_add(pattern << 40)
+        .wrapping_add(at as u64)
+        .wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    if (z ^ (z >> 31)) & 1 == 0 { 1.0 } else { -1.0 }
+}

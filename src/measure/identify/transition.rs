@@ -1,0 +1,166 @@
+//! Which pairs of rows are replayed.
+
+use crate::system::{ParticleSystem, System};
+use crate::trajectory::Rows;
+
+/// A replay from one row to a later one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Transition {
+    /// The row before `from`: without velocities the two of them tell it; with velocities it helps
+    /// schemes that look back, where it lies exactly one step before.
+    pub before: Option<usize>,
+    pub from: usize,
+    pub to: usize,
+}
+
+impl Transition {
+    /// Steps from `from` to `to`.
+    pub fn span(&self, rows: &Rows) -> u64 {
+        rows.steps[self.to].saturating_sub(rows.steps[self.from])
+    }
+
+    /// The longest stretch a replay has to cover, steps.
+    pub(super) fn reach(&self, rows: &Rows) -> u64 {
+        let back = match (&rows.v, self.before) {
+            (None, Some(before)) => rows.steps[self.from].saturating_sub(rows.steps[before]),
+            _ => 0,
+        };
+        self.span(rows).max(back)
+    }
+}
+
+/// Longer replays take too long, for several hundred candidates.
+const LONGEST: u64 = 20_000;
+/// Data moves less than this many of its roundings: nothing can be told there.
+const STILL: f64 = 16.0;
+
+/// A transition and how far it moves, in roundings of the data.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Weighed {
+    pub(super) transition: Transition,
+    pub(super) motion: f64,
+}
+
+/// The transitions to use, in order: between neighbouring rows, the shortest there are, without
+/// those that are not finite and, if any move, those where nothing does. At most `limit` of them,
+/// evenly spread.
+pub(super) fn choose(rows: &Rows, system: &ParticleSystem, limit: Option<usize>) -> Vec<Weighed> {
+    let finite: Vec<bool> = (0..rows.len()).map(|k| is_finite(rows, k)).collect();
+    let first = if rows.v.is_some() { 0 } else { 1 };
+    let all: Vec<Transition> = (first..rows.len().saturating_sub(1))
+        .map(|from| Transition {
+            before: from.checked_sub(1).filter(|&k| finite[k]),
+            from,
+            to: from + 1,
+        })
+        .filter(|t| finite[t.from] && finite[t.to] && (rows.v.is_some() || t.before.is_some()))
+        .collect();
+    // Beside the short ones of a thinned record its long ones are no use; where all are about
+    // alike, all are. A lone short one at the end of a file is no measure: hence the quartile.
+    let mut spans: Vec<u64> = all.iter().map(|t| t.reach(rows)).collect();
+    spans.sort_unstable();
+    let Some(&short) = spans.get(spans.len() / 4) else {
+        return Vec::new();
+    };
+    let short = all
+        .into_iter()
+        .filter(|t| t.reach(rows) <= LONGEST && 2 * t.reach(rows) <= short.saturating_mul(3))
+        .map(|transition| Weighed {
+            transition,
+            motion: motion(rows, system, &transition),
+        });
+    let short: Vec<Weighed> = short.collect();
+    let moving: Vec<Weighed> = short.iter().copied().filter(|w| w.motion > STILL).collect();
+    let used = if moving.is_empty() { short } else { moving };
+    spread(&used, limit.unwrap_or(usize::MAX))
+}
+
+fn is_finite(rows: &Rows, k: usize) -> bool {
+    let v = rows.v(k).unwrap_or(&[]);
+    rows.x(k).iter().chain(v).all(|c| c.is_finite())
+}
+
+/// Stretches of so many rows, one after the other, at most `limit` of them.
+pub(super) fn stretches(rows: &Rows, apart: usize, limit: usize) -> Vec<Transition> {
+    let back = if rows.v.is_some() { 0 } else { apart };
+    let starts = (back..rows.len()).step_by((apart + back).max(1));
+    let stretches: Vec<Transition> = starts
+        .map(|from| Transition {
+            before: from.checked_sub(back.max(1)),
+            from,
+            to: from + apart,
+        })
+        .filter(|t| t.to < rows.len() && t.reach(rows) <= LONGEST)
+        .filter(|t| is_finite(rows, t.from) && is_finite(rows, t.to))
+        .filter(|t| back == 0 || t.before.is_some_and(|k| is_finite(rows, k)))
+        .collect();
+    spread(&stretches, limit)
+}
+
+/// How far the data moves here, or by its velocities and forces should, in roundings.
+fn motion(rows: &Rows, system: &ParticleSystem, t: &Transition) -> f64 {
+    let seconds = t.span(rows) as f64 * rows.timestep;
+    let (x0, x1) = (rows.x(t.from), rows.x(t.to));
+    let (v0, v1) = (rows.v(t.from), rows.v(t.to));
+    let rest = vec![0.0; x0.len()];
+    let mut a = vec![0.0; x0.len()];
+    system.acceleration(0.0, x0, v0.unwrap_or(&rest), &mut a);
+    let round = |value: f64| rows.precision.half_unit(value).max(f64::MIN_POSITIVE);
+    let round_v = |value: f64| rows.precision_v.half_unit(value).max(f64::MIN_POSITIVE);
+    let mut most = 0.0_f64;
+    for i in 0..x0.len() {
+        let unit = round(x0[i]) + round(x1[i]);
+        let mut way = (x1[i] - x0[i]).abs().max((seconds * seconds * a[i]).abs());
+        if let (Some(v0), Some(v1)) = (v0, v1) {
+            way = way.max((seconds * v0[i]).abs());
+            let gain = (v1[i] - v0[i]).abs().max((seconds * a[i]).abs());
+            most = most.max(gain / (round_v(v0[i]) + round_v(v1[i])));
+        }
+        most = most.max(way / unit);
+    }
+    // A force that is not finite here is for the replay to find.
+    if most.is_finite() { most } else { f64::MAX }
+}
+
+/// At most `limit` of them, evenly spread, both ends included.
+pub(super) fn spread<T: Copy>(all: &[T], limit: usize) -> Vec<T> {
+    let n = all.len();
+    match limit {
+        0 => Vec::new(),
+        _ if n <= limit => all.to_vec(),
+        1 => all[n / 2..=n / 2].to_vec(),
+        _ => (0..limit).map(|i| all[i * (n - 1) / (limit - 1)]).collect(),
+    }
+}
+
+/// Of these, in order, `half` evenly spread and as many of the livelier ones: where much moves,
+/// schemes differ most.
+pub(super) fn sample(all: &[Weighed], half: usize) -> Vec<Weighed> {
+    if all.len() <= 2 * half {
+        return all.to_vec();
+    }
+    let mut motions: Vec<f64> = all.iter().map(|w| w.motion).collect();
+    motions.sort_by(f64::total_cmp);
+    let lively = motions[motions.len() * 3 / 4];
+    let lively: Vec<Weighed> = all.iter().copied().filter(|w| w.motion >= lively).collect();
+    let mut picked = spread(all, half);
+    picked.extend(spread(&lively, half));
+    picked.sort_by_key(|w| w.transition.from);
+    picked.dedup_by_key(|w| w.transition.from);
+    picked
+}
+
+/// One transition from each third, livelier than three quarters of it: never the liveliest, which
+/// in a faulty trajectory is the fault.
+pub(super) fn probes(sample: &[Weighed]) -> Vec<Transition> {
+    let third = sample.len().div_ceil(3).max(1);
+    sample
+        .chunks(third)
+        .filter_map(|part| {
+            let mut part = part.to_vec();
+            part.sort_by(|a, b| a.motion.total_cmp(&b.motion));
+            part.get((part.len() * 3 / 4).min(part.len() - 1)).copied()
+        })
+        .map(|w| w.transition)
+        .collect()
+}

@@ -1,0 +1,179 @@
+//! The velocity that positions imply: with which a scheme leads from one row to the next.
+
+use super::candidate::Replayer;
+use crate::integrators::StepError;
+use crate::system::State;
+
+/// From one row of positions to the next.
+pub(super) struct Leg {
+    /// Step number of the first.
+    pub(super) step: u64,
+    /// Steps between them.
+    pub(super) span: u64,
+    /// Seconds a step.
+    pub(super) timestep: f64,
+    /// What forces are known to no better than, as a length, m.
+    pub(super) roundings: f64,
+}
+
+/// Steps of the iteration. It converges at once where a scheme drifts with a velocity that positions
+/// fix, and else as fast as (w h)² is small; beyond w h = 1 Broyden's updates do the work.
+const MOST: usize = 60;
+/// Without progress for so long, what is left is rounding.
+const PATIENCE: usize = 4;
+
+impl Leg {
+    /// Sets the velocities of `from` so that the scheme leads to the positions of `to`, and those
+    /// of `to` to what it arrives with. Returns the steps taken.
+    ///
+    /// Broyden's good method (1965) on Φ_x(x0, v) = x1, started from the mean velocity and the
+    /// slope span h, which is that of a free flight.
+    ///
+    /// # Errors
+    /// [`StepError`] of the scheme, or where no such velocity is found.
+    pub(super) fn find(
+        &self,
+        replayer: &mut Replayer,
+        from: &mut State,
+        to: &mut State,
+    ) -> Result<u64, StepError> {
+        self.find_within(replayer, from, to, |_| 0.0)
+    }
+
+    /// The same, to the last bits or, of a position of this value, to `enough` metres.
+    pub(super) fn find_within(
+        &self,
+        replayer: &mut Replayer,
+        from: &mut State,
+        to: &mut State,
+        enough: impl Fn(f64) -> f64,
+    ) -> Result<u64, StepError> {
+        let seconds = self.span as f64 * self.timestep;
+        let mut v: Vec<f64> =
+            to.x.iter()
+                .zip(&from.x)
+                .map(|(to, from)| (to - from) / seconds)
+                .collect();
+        let mut inverse = Inverse::default();
+        let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
+        let mut last: Option<(Vec<f64>, Vec<f64>)> = None;
+        let (mut taken, mut idle) = (0, 0);
+        while taken < MOST && idle < PATIENCE {
+            let mut end = from.clone();
+            end.v.clone_from(&v);
+            replayer.advance(self.step, self.span, self.timestep, None, &mut end)?;
+            taken += 1;
+            let miss: Vec<f64> = end
+                .x
+                .iter()
+                .zip(&to.x)
+                .map(|(end, to)| (end - to) / seconds)
+                .collect();
+            let off = self.roundings_off(&miss, to, seconds, &enough);
+            if !off.is_finite() {
+                break;
+            }
+            if best.as_ref().is_none_or(|(least, ..)| off < 0.5 * least) {
+                idle = 0;
+            } else {
+                idle += 1;
+            }
+            if best.as_ref().is_none_or(|(least, ..)| off < *least) {
+                best = Some((off, v.clone(), end.v));
+            }
+            if off <= 0.5 {
+                break;
+            }
+            if let Some((step, before)) = last.take() {
+                let change: Vec<f64> = miss.iter().zip(&before).map(|(a, b)| a - b).collect();
+                inverse.learn(&step, &change);
+            }
+            let step: Vec<f64> = inverse.times(&miss).iter().map(|s| -s).collect();
+            for (v, s) in v.iter_mut().zip(&step) {
+                *v += s;
+            }
+            last = Some((step, miss));
+        }
+        match best {
+            // A few roundings are as near as doubles come.
+            Some((off, v, arrived)) if off <= 16.0 => {
+                from.v = v;
+                to.v = arrived;
+                Ok(taken as u64 * self.span)
+            }
+            best => Err(StepError::NotConverged {
+                iterations: taken as u32,
+                residual: best.map_or(f64::MAX, |(off, ..)| off * f64::EPSILON),
+                tolerance: f64::EPSILON,
+            }),
+        }
+    }
+
+    /// How many last bits of the positions the end misses them by, or how often `enough`.
+    fn roundings_off(
+        &self,
+        miss: &[f64],
+        to: &State,
+        seconds: f64,
+        enough: impl Fn(f64) -> f64,
+    ) -> f64 {
+        miss.iter().zip(&to.x).fold(0.0, |most, (miss, x)| {
+            let off = (miss * seconds).abs();
+            // NaN must not be lost in a maximum.
+            if off == 0.0 {
+                most
+            } else if off.is_finite() {
+                let bit = f64::EPSILON * x.abs() + self.roundings;
+                f64::max(most, off / bit.max(enough(*x)))
+            } else {
+                f64::INFINITY
+            }
+        })
+    }
+}
+
+/// The inverse Jacobian 1 + Σ a bᵀ.
+#[derive(Default)]
+struct Inverse {
+    terms: Vec<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Inverse {
+    fn times(&self, y: &[f64]) -> Vec<f64> {
+        let mut out = y.to_vec();
+        for (a, b) in &self.terms {
+            add(&mut out, dot(b, y), a);
+        }
+        out
+    }
+
+    fn transposed_times(&self, y: &[f64]) -> Vec<f64> {
+        let mut out = y.to_vec();
+        for (a, b) in &self.terms {
+            add(&mut out, dot(a, y), b);
+        }
+        out
+    }
+
+    /// Makes it map `change` to `step`, by Sherman and Morrison's formula.
+    fn learn(&mut self, step: &[f64], change: &[f64]) {
+        let image = self.times(change);
+        let scale = dot(step, &image);
+        if scale == 0.0 || !scale.is_finite() {
+            return;
+        }
+        let a = step.iter().zip(&image).map(|(s, i)| (s - i) / scale);
+        let term = (a.collect(), self.transposed_times(step));
+        self.terms.push(term);
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn add(y: &mut [f64], factor: f64, x: &[f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += factor * x;
+    }
+}

@@ -1,0 +1,441 @@
+//! `compare`: trajectories come back as what they are, and what is wrong with them is found.
+
+use super::{json_of, keys, output, set, springcheck};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+const SCENE: &str = "scenes/pa1/scene04.yml";
+const METHODS: &str = "explicit_euler,symplectic_euler,midpoint,velocity_verlet,rk4,implicit_euler";
+
+/// Runs the scene for half a second and saves every `every`-th step; the report and the folder.
+fn saved(folder: &Path, kind: &str, every: &str) -> (Value, PathBuf) {
+    let out = folder.to_str().expect("UTF-8");
+    let (code, report) = json_of(&[
+        "run",
+        SCENE,
+        "--duration",
+        "0.5",
+        "--integrators",
+        METHODS,
+        "--engines",
+        "none",
+        "--save",
+        kind,
+        "--every",
+        every,
+        "--output",
+        out,
+        "--format",
+        "json",
+    ]);
+    assert_eq!(code, 0);
+    (report, folder.join("pa1/scene04"))
+}
+
+fn compared(file: &Path, more: &[&str]) -> (i32, Value) {
+    let file = file.to_str().expect("UTF-8");
+    let args = [
+        &["compare", file, "--scene", SCENE, "--format", "json"],
+        more,
+    ]
+    .concat();
+    json_of(&args)
+}
+
+/// The file of one method, its bytes changed.
+fn changed(file: &Path, change: impl Fn(&str) -> String) -> PathBuf {
+    let text = std::fs::read_to_string(file).expect("a saved CSV");
+    let other = file.with_extension("changed.csv");
+    std::fs::write(&other, change(&text)).expect("a folder to write to");
+    other
+}
+
+#[test]
+fn what_run_saves_comes_back_as_itself() {
+    for (kind, every) in [("npz", "1"), ("csv", "1"), ("npz", "7")] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (report, place) = saved(folder.path(), kind, every);
+        for ran in report["outcomes"].as_array().expect("outcomes") {
+            let method = ran["engine"].as_str().expect("an id");
+            let (code, back) = compared(&place.join(format!("{method}@0.0005.{kind}")), &[]);
+            let found = &back["outcomes"][0];
+            let identified = &found["identified"];
+            let what = format!("{method}, every {every} as {kind}: {identified:#}");
+            assert_eq!(code, 0, "{what}");
+            assert_eq!(identified["method"], method, "{what}");
+            assert_eq!(identified["substeps"], 1, "{what}");
+            assert_eq!(identified["decisive"], true, "{what}");
+            assert!(back["fault"].is_null(), "{what}");
+            if every == "1" {
+                // The same numbers, to the last bit; so a replay has nothing to explain.
+                assert_eq!(identified["defect"], 0.0, "{what}");
+                for key in ["position_error_m", "velocity_error_m_s"] {
+                    assert_eq!(found[key], ran[key], "{what}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn comparisons_have_the_contracts_keys() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, place) = saved(folder.path(), "csv", "1");
+    let file = place.join("rk4@0.0005.csv");
+    let (_, clean) = compared(&file, &[]);
+    assert_eq!(
+        keys(&clean),
+        set(&[
+            "schema_version",
+            "scene",
+            "truth",
+            "outcomes",
+            "checks",
+            "fault"
+        ])
+    );
+    assert_eq!(
+        keys(&clean["outcomes"][0]["identified"]),
+        set(&[
+            "method",
+            "substeps",
+            "defect",
+            "runner_up",
+            "runner_up_defect",
+            "decisive",
+            "equivalent",
+            "undecided"
+        ])
+    );
+    assert_eq!(clean["outcomes"][0]["kind"], "external");
+    assert!(clean["outcomes"][0]["work"]["wall_s"].is_null());
+    let (code, faulty) = compared(&doubled(&file), &[]);
+    assert_eq!(code, 1);
+    assert_eq!(
+        keys(&faulty["fault"]),
+        set(&[
+            "step",
+            "t_s",
+            "particle",
+            "quantity",
+            "expected",
+            "found",
+            "explanation"
+        ])
+    );
+}
+
+/// Particle 3's vz after step 400 doubled, which particles 2 to 4 feel from step 400 on.
+fn doubled(file: &Path) -> PathBuf {
+    changed(file, |text| {
+        let lines = text.lines().map(|line| {
+            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if fields[1] == "3"
+                && fields[0]
+                    .parse::<f64>()
+                    .is_ok_and(|t| (t - 0.2).abs() < 1e-9)
+            {
+                let v: f64 = fields[7].parse().expect("a number");
+                fields[7] = format!("{:?}", 2.0 * v);
+            }
+            fields.join(",")
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    })
+}
+
+#[test]
+fn the_first_fault_is_named_by_step_and_particle() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, place) = saved(folder.path(), "csv", "1");
+    let (code, report) = compared(&doubled(&place.join("rk4@0.0005.csv")), &[]);
+    assert_eq!(code, 1);
+    assert_eq!(report["outcomes"][0]["identified"]["method"], "rk4");
+    // Row 400, at t = 0.2 s, is the end of step 399.
+    assert_eq!(report["fault"]["step"], 399, "{:#}", report["fault"]);
+    assert_eq!(report["fault"]["particle"], 3, "{:#}", report["fault"]);
+    assert_eq!(report["fault"]["quantity"], "velocity_m_s");
+}
+
+#[test]
+fn positions_alone_name_the_scheme() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    // Coarse steps, in which the schemes differ by more than positions are rounded.
+    let (code, _) = json_of(&[
+        "run",
+        SCENE,
+        "--timestep",
+        "0.02",
+        "--duration",
+        "1",
+        "--integrators",
+        "rk4",
+        "--engines",
+        "none",
+        "--save",
+        "csv",
+        "--output",
+        out,
+        "--format",
+        "json",
+    ]);
+    assert_eq!(code, 0);
+    let file = changed(&folder.path().join("pa1/scene04/rk4@0.02.csv"), |text| {
+        let cut = |line: &str| line.split(',').take(5).collect::<Vec<_>>().join(",");
+        text.lines().map(cut).collect::<Vec<_>>().join("\n")
+    });
+    let (code, report) = compared(&file, &["--timestep", "0.02"]);
+    let outcome = &report["outcomes"][0];
+    assert_eq!(outcome["identified"]["method"], "rk4", "{outcome:#}");
+    assert_eq!(code, 0, "{outcome:#}");
+    assert!(outcome["energy"].is_null() && outcome["velocity_error_m_s"].is_null());
+    assert!(!outcome["position_error_m"].is_null());
+}
+
+#[test]
+fn what_no_scheme_explains_is_undecided() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, place) = saved(folder.path(), "csv", "1");
+    // A limp in every step: vx a thousandth larger.
+    let file = changed(&place.join("rk4@0.0005.csv"), |text| {
+        let lines = text.lines().enumerate().map(|(at, line)| {
+            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if let Ok(v) = fields[5].parse::<f64>() {
+                fields[5] = format!("{:?}", v * (1.0 + 1e-3 * (at as f64).sin()));
+            }
+            fields.join(",")
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    });
+    let (code, report) = compared(&file, &[]);
+    let identified = &report["outcomes"][0]["identified"];
+    assert_eq!(code, 3, "{identified:#}");
+    assert_eq!(identified["decisive"], false);
+    assert!(report["fault"].is_null());
+}
+
+#[test]
+fn the_step_can_be_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, place) = saved(folder.path(), "csv", "2");
+    let file = place.join("symplectic_euler@0.0005.csv");
+    // Rows two steps apart, read as steps of their own: two substeps.
+    let (code, report) = compared(&file, &["--timestep", "0.001"]);
+    let identified = &report["outcomes"][0]["identified"];
+    assert_eq!(
+        (code, &identified["method"]),
+        (0, &"symplectic_euler".into())
+    );
+    assert_eq!(identified["substeps"], 2, "{identified:#}");
+    let (code, _, err) = output(&[
+        "compare",
+        file.to_str().expect("UTF-8"),
+        "--scene",
+        SCENE,
+        "--timestep",
+        "0.0007",
+    ]);
+    assert_eq!(code, 2);
+    assert!(err.contains("symplectic_euler@0.0005.csv:"), "{err}");
+}
+
+#[test]
+fn the_table_says_who_it_is_and_what_is_wrong() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, place) = saved(folder.path(), "csv", "1");
+    let file = doubled(&place.join("midpoint@0.0005.csv"));
+    let file = file.to_str().expect("UTF-8");
+    let out = folder.path().join("reports");
+    let (code, table, err) = output(&[
+        "compare",
+        file,
+        "--scene",
+        SCENE,
+        "--output",
+        out.to_str().expect("UTF-8"),
+    ]);
+    assert_eq!((code, err.as_str()), (1, ""));
+    for line in table.lines() {
+        assert!(line.chars().count() <= 100, "{line}");
+    }
+    for part in [
+        "midpoint",
+        "step 399",
+        "particle 3",
+        "expected",
+        "found",
+        "report: ",
+    ] {
+        assert!(table.contains(part), "{part} in\n{table}");
+    }
+    let wrong = springcheck()
+        .args(["compare", "no such file", "--scene", SCENE])
+        .output()
+        .expect("it runs");
+    assert_eq!(wrong.status.code(), Some(2));
+}
+
+/// The fields of each row changed, given its time.
+fn rows(text: &str, change: impl Fn(f64, &mut Vec<String>)) -> String {
+    let lines = text.lines().map(|line| {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let Ok(t) = fields[0].parse() {
+            change(t, &mut fields);
+        }
+        fields.join(",")
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn what_is_fixed_must_not_move() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, place) = saved(folder.path(), "csv", "1");
+    let file = changed(&place.join("rk4@0.0005.csv"), |text| {
+        rows(text, |t, fields| {
+            if fields[1] == "1" && t > 0.0999 {
+                fields[2] = "0.001".to_owned();
+            }
+        })
+    });
+    let (code, report) = compared(&file, &[]);
+    let fault = &report["fault"];
+    assert_eq!(code, 1);
+    // Row 200, at t = 0.1 s, is the end of step 199.
+    assert_eq!(
+        (&fault["step"], &fault["particle"]),
+        (&199.into(), &1.into())
+    );
+    assert!(
+        fault["explanation"]
+            .as_str()
+            .is_some_and(|e| e.contains("fixed in the scene"))
+    );
+}
+
+#[test]
+fn rows_that_begin_late_are_judged_from_the_start() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, place) = saved(folder.path(), "csv", "1");
+    let file = place.join("rk4@0.0005.csv");
+    // Without the first instant it is what it was.
+    let late = changed(&file, |text| {
+        let lines = text.lines().filter(|line| !line.starts_with("0.0,"));
+        lines.collect::<Vec<_>>().join("\n")
+    });
+    let (code, report) = compared(&late, &[]);
+    assert_eq!(code, 0, "{:#}", report["fault"]);
+    // Every state under the time of the next: the first step stands still.
+    let shifted = changed(&file, |text| {
+        rows(text, |t, fields| fields[0] = format!("{:?}", t + 0.0005))
+    });
+    let (code, report) = compared(&shifted, &[]);
+    assert_eq!((code, &report["fault"]["step"]), (1, &0.into()));
+}
+
+#[test]
+fn what_a_file_follows_early_need_not_be_what_it_follows() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, place) = saved(folder.path(), "csv", "1");
+    // A tenth of the rows by one scheme, then another's from there: gravity lost at step 100.
+    let scene = std::fs::read_to_string(SCENE).expect("a shipped scene");
+    let weightless = folder.path().join("scene04.yml");
+    let first = std::fs::read_to_string(place.join("symplectic_euler@0.0005.csv")).expect("saved");
+    let head: Vec<&str> = first.lines().take(1 + 5 * 101).collect();
+    // The scene again, without gravity, from where the first part ends.
+    let states: Vec<Vec<&str>> = head[head.len() - 5..]
+        .iter()
+        .map(|l| l.split(',').collect())
+        .collect();
+    let mut later = scene.replace("  timestep: 0.0005", "  timestep: 0.0005\n  gravity: 0");
+    let from = later.find("particles:").expect("particles");
+    let to = later.find("springs:").expect("springs");
+    let particles: String = states
+        .iter()
+        .enumerate()
+        .map(|(id, s)| {
+            let fixed = if id < 2 { "true" } else { "false" };
+            let v = if id < 2 {
+                "0, 0, 0".to_owned()
+            } else {
+                s[5..8].join(", ")
+            };
+            format!(
+                "  - {{pos: [{}], vel: [{v}], fixed: {fixed}, mass: 0.1}}\n",
+                s[2..5].join(", ")
+            )
+        })
+        .collect();
+    later.replace_range(from..to, &format!("particles:\n{particles}\n"));
+    // Rest lengths are those of the scene as it begins.
+    let lengths = rest_lengths(&scene);
+    for length in lengths {
+        later = later.replacen(
+            "damping: 0.01}",
+            &format!("damping: 0.0100, rest_length: {length:?}}}"),
+            1,
+        );
+    }
+    std::fs::write(&weightless, later).expect("written");
+    let out = folder.path().join("later");
+    let (code, _) = json_of(&[
+        "run",
+        weightless.to_str().expect("UTF-8"),
+        "--duration",
+        "0.45",
+        "--integrators",
+        "symplectic_euler",
+        "--engines",
+        "none",
+        "--save",
+        "csv",
+        "--output",
+        out.to_str().expect("UTF-8"),
+        "--format",
+        "json",
+    ]);
+    assert_eq!(code, 0);
+    let second = find(&out, "symplectic_euler@0.0005.csv");
+    let second = std::fs::read_to_string(second).expect("saved");
+    let tail = rows(&second, |t, fields| fields[0] = format!("{:?}", t + 0.05));
+    let tail = tail.lines().skip(1 + 5);
+    let joined: Vec<&str> = head.iter().copied().chain(tail).collect();
+    let file = folder.path().join("joined.csv");
+    std::fs::write(&file, joined.join("\n")).expect("written");
+    let (code, report) = compared(&file, &[]);
+    assert_eq!(code, 1, "{:#}", report["outcomes"][0]["identified"]);
+    assert_eq!(
+        report["outcomes"][0]["identified"]["method"],
+        "gravity_forgotten(symplectic_euler)"
+    );
+    assert_eq!(report["fault"]["step"], 100);
+}
+
+/// Initial distances of the spring's ends, in the order of the file.
+fn rest_lengths(yaml: &str) -> Vec<f64> {
+    let scene =
+        springcheck::scene::parse(yaml.as_bytes(), "scene", &springcheck::integrators::ids());
+    let scene = scene.expect("a scene");
+    scene
+        .springs
+        .iter()
+        .map(|spring| spring.rest_length)
+        .collect()
+}
+
+/// The file of this name somewhere below a folder.
+fn find(folder: &Path, name: &str) -> PathBuf {
+    let mut open = vec![folder.to_owned()];
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.file_name().is_some_and(|own| own == name) {
+                return path;
+            }
+        }
+    }
+    panic!("no {name}");
+}
