@@ -6,3 +6,4 @@ mod injected;
 mod mistaken;
 mod record;
 mod shipped;
+mod written;
