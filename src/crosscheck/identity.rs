@@ -65,15 +65,8 @@ fn question<'a>(plan: &'a Plan, rows: &'a Rows) -> Question<'a> {
         scene: plan.scene,
         system: &plan.system,
         rows,
-        settings: settings(plan),
+        settings: Settings::stated(plan.scene.solver.tolerance),
         transitions: None,
         hint: None,
-    }
-}
-
-fn settings(plan: &Plan) -> Settings {
-    let tolerance = plan.scene.solver.tolerance;
-    Settings {
-        tolerance: tolerance.unwrap_or(Settings::default().tolerance),
     }
 }

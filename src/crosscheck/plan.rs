@@ -255,12 +255,7 @@ fn integrator_case<'a>(
     timestep: f64,
 ) -> Case<'a> {
     let system = system.clone();
-    let settings = Settings {
-        tolerance: scene
-            .solver
-            .tolerance
-            .unwrap_or(Settings::default().tolerance),
-    };
+    let settings = Settings::stated(scene.solver.tolerance);
     Case {
         label: label(scene, method.id, timestep),
         kind: Kind::Integrator,

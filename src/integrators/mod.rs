@@ -161,6 +161,13 @@ pub struct Settings {
     pub tolerance: f64,
 }
 
+impl Settings {
+    /// With the tolerance a scene states, if it states one.
+    pub fn stated(tolerance: Option<f64>) -> Self {
+        tolerance.map_or_else(Self::default, |tolerance| Self { tolerance })
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self { tolerance: 1e-12 }

@@ -107,9 +107,7 @@ impl<'a> Ladder<'a> {
         };
         let start = ParticleSystem::initial_state(scene);
         let mut ladder = Self::new(system, start, motion, scene.solver.timestep, until);
-        if let Some(tolerance) = scene.solver.tolerance {
-            ladder.settings.tolerance = tolerance;
-        }
+        ladder.settings = Settings::stated(scene.solver.tolerance);
         ladder
     }
 
