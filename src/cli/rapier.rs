@@ -33,20 +33,21 @@ impl FromStr for Custom {
                     "{key}: expected a whole number from {least} to {MOST}, found `{value}`"
                 )),
             };
+            let positive = |unit: &str| {
+                let number = value.parse::<f64>().ok();
+                let number = number.filter(|x| x.is_finite() && *x > 0.0);
+                number.ok_or_else(|| format!("{key}: expected positive {unit}, found `{value}`"))
+            };
             match key {
-                "dt" => {
-                    let seconds = value.parse::<f64>();
-                    let seconds = seconds.ok().filter(|s| s.is_finite() && *s > 0.0);
-                    custom.timestep = Some(seconds.ok_or_else(|| {
-                        format!("dt: expected positive seconds, found `{value}`")
-                    })?);
-                }
+                "dt" => custom.timestep = Some(positive("seconds")?),
+                "speed" => custom.settings.speed = Some(positive("metres per second")?),
                 "iterations" => custom.settings.iterations = count(1)?,
                 "pgs" => custom.settings.pgs = count(1)?,
                 "stabilization" => custom.settings.stabilization = count(0)?,
                 _ => {
                     return Err(format!(
-                        "unknown key `{key}`; known: dt, iterations, pgs, stabilization"
+                        "unknown key `{key}`; known: dt, iterations, pgs, stabilization, \
+                         speed"
                     ));
                 }
             }

@@ -49,7 +49,11 @@ impl Comparison<'_> {
             truth: self.demand,
             order: false,
         };
-        let plan = Plan::new(self.scene, &choice);
+        let plan = Plan {
+            // Every step of the rows is replayed below, not some of those recorded.
+            identify: false,
+            ..Plan::new(self.scene, &choice)
+        };
         let mut report = plan.execute(host)?;
         let (identified, fault) = identity::of_rows(&plan, &self.rows);
         for outcome in &mut report.outcomes {

@@ -54,7 +54,9 @@ fn one(
                 .map(|series| measure::judge(series, scale, diverged));
             outcome.momentum = measure::momentum(plan.scene, &plan.system, &ran.trajectory);
             outcome.deviation_m = deviations(plan, runs, index);
-            outcome.identified = identity::of_run(plan, case, ran);
+            if plan.identify {
+                outcome.identified = identity::of_run(plan, case, ran);
+            }
             if let Some(errors) = truths.errors(case.label.timestep, &ran.trajectory) {
                 outcome.position_error_m = Some(errors.position);
                 outcome.velocity_error_m_s = errors.velocity;

@@ -165,6 +165,8 @@ pub struct Plan<'a> {
     pub demand: Demand,
     /// As [`Choice::order`].
     pub order: bool,
+    /// Whether outcomes say which scheme they follow.
+    pub(super) identify: bool,
 }
 
 impl<'a> Plan<'a> {
@@ -194,6 +196,7 @@ impl<'a> Plan<'a> {
             cases,
             demand: choice.truth,
             order: choice.order,
+            identify: true,
         }
     }
 

@@ -49,7 +49,8 @@ impl<'a> RowRecorder<'a> {
                 rows.timestep,
                 rows.v.is_some(),
                 [room, room],
-            ),
+            )
+            .given_to([rows.precision, rows.precision_v]),
         }
     }
 

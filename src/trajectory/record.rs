@@ -1,5 +1,6 @@
 //! The record every measure reads: bounded in memory however long the run.
 
+use super::Precision;
 use crate::engines::Observer;
 use crate::system::{State, Work};
 
@@ -26,6 +27,8 @@ pub struct Trajectory {
     next_v: Vec<f64>,
     /// Whether `v` and `next_v` are the run's own, not differences of its positions.
     has_velocities: bool,
+    /// How exactly positions and velocities are given: [`Precision::Double`] but for other programs.
+    precision: [Precision; 2],
 }
 
 /// The most instants a run of `particles` particles is recorded at.
@@ -58,6 +61,7 @@ impl Trajectory {
             next_x: Vec::with_capacity(successors * dim),
             next_v: Vec::with_capacity(successors * dim),
             has_velocities,
+            precision: [Precision::Double; 2],
         }
     }
 
@@ -99,6 +103,17 @@ impl Trajectory {
     /// [`v`](Self::v) then holds differences, from which no energy is to be read.
     pub fn has_velocities(&self) -> bool {
         self.has_velocities
+    }
+
+    /// How exactly positions and velocities are given.
+    pub fn precision(&self) -> [Precision; 2] {
+        self.precision
+    }
+
+    /// The same states, given only so exactly.
+    pub(super) fn given_to(mut self, precision: [Precision; 2]) -> Self {
+        self.precision = precision;
+        self
     }
 
     /// Velocities at instant `k`.

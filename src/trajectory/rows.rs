@@ -94,16 +94,17 @@ impl Rows {
 }
 
 impl From<&Trajectory> for Rows {
-    /// The instants and their successors, in order, to the last bit.
+    /// The instants and their successors, in order, as exactly as they are given.
     fn from(run: &Trajectory) -> Self {
+        let [precision, precision_v] = run.precision();
         let mut rows = Self {
             timestep: run.timestep(),
             dim: run.dim(),
             steps: Vec::new(),
             x: Vec::new(),
             v: None,
-            precision: Precision::Double,
-            precision_v: Precision::Double,
+            precision,
+            precision_v,
         };
         let mut velocities = Vec::new();
         let mut push = |step: u64, x: &[f64], v: &[f64]| {

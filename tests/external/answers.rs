@@ -3,7 +3,7 @@
 use springcheck::crosscheck::{Choice, ChosenProgram, Plan, Quiet};
 use springcheck::engines::external::{Failure, Program, Recording, Task};
 use springcheck::integrators::{self, Settings};
-use springcheck::outcome::{EnergyClass, Kind, Outcome, Status};
+use springcheck::outcome::{EnergyClass, Kind, Outcome, Status, Undecided};
 use springcheck::scene::{self, Scene};
 use springcheck::system::ParticleSystem;
 use springcheck::trajectory::{Precision, Rows};
@@ -194,4 +194,26 @@ fn the_start_is_the_scenes_or_its_difference_is_said() {
     let energies = [&same, &later].map(|o| o.energy.as_ref().and_then(|e| e.initial_j));
     assert_eq!(energies[0], energies[1]);
     assert_eq!(later.status, Status::Completed);
+}
+
+#[test]
+fn a_programs_scheme_is_told_from_the_digits_it_gives() {
+    let rounded = |precision: Precision| {
+        outcome(&damped(0.01), move |task| {
+            let mut rows = rows(task, "explicit_euler", 1);
+            let digit = |c: &f64| (c * 1e6).round() / 1e6;
+            rows.x = rows.x.iter().map(digit).collect();
+            rows.v = rows.v.map(|v| v.iter().map(digit).collect());
+            (rows.precision, rows.precision_v) = (precision, precision);
+            rows
+        })
+    };
+    let told = rounded(Precision::Decimals(6)).identified.expect("rows");
+    assert_eq!(
+        (told.method.as_str(), told.undecided),
+        ("explicit_euler", None)
+    );
+    // Taken for doubles the same rows are nobody's.
+    let untold = rounded(Precision::Double).identified.expect("rows");
+    assert_eq!(untold.undecided, Some(Undecided::NothingFits));
 }

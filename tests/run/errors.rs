@@ -21,7 +21,7 @@ fn usage_and_scene_errors_exit_with_2_and_write_nothing() {
         (&["run", SCENE, "--timestep", "7"], "duration"),
         (&["run", SCENE, "--duration", "inf"], "positive"),
         (&["run", SCENE, "--rapier", "iterations=0"], "iterations"),
-        (&["run", SCENE, "--rapier", "speed=3"], "pgs"),
+        (&["run", SCENE, "--rapier", "velocity=3"], "pgs"),
         (&["run", SCENE, "--every", "3"], "--save"),
         (&["run"], "SCENE"),
     ];

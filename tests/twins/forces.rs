@@ -1,6 +1,7 @@
 //! rapier-forces is symplectic Euler, bit for bit.
 
 use super::{apart, mutated, ours, scenes, theirs};
+use springcheck::engines::rapier::Settings;
 use springcheck::engines::{Counts, Engine, IntegratorEngine};
 use springcheck::integrators::{self, StepError};
 use springcheck::scene::Scene;
@@ -174,6 +175,19 @@ fn fast_particles_stay_fast() {
         engine.step().expect("a step");
         assert_eq!(engine.state().v[0], 5000.0, "{id}");
     }
+    // As rapier ships, where somebody asks for it.
+    let capped = springcheck::engines::rapier_with(Settings {
+        speed: Some(400.0),
+        ..Settings::DEFAULT
+    });
+    assert_eq!(capped.id, "rapier(speed=400)");
+    let mut engine = capped
+        .build(&scene, ParticleSystem::new(&scene), 0.01)
+        .expect("it takes the scene");
+    engine.step().expect("a step");
+    let squares: f64 = engine.state().v.iter().map(|v| v * v).sum();
+    // A few roundings of the scaling.
+    assert!((squares.sqrt() - 400.0).abs() < 1e-12);
 }
 
 #[test]

@@ -39,6 +39,7 @@ fn swept(iterations: u32, pgs: u32) -> EngineRow {
         iterations,
         pgs,
         stabilization: 0,
+        ..Settings::DEFAULT
     })
 }
 

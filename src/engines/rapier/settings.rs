@@ -2,9 +2,8 @@
 
 /// What rapier's solver is told, beside the timestep.
 ///
-/// rapier's speed cap (400 m/s) and its continuous collision detection are always off here: the
-/// first hides divergence, the second has nothing to do without contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// rapier's continuous collision detection is always off here: it has nothing to do without contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// `num_solver_iterations`, n: *substeps* of h = dt / n, each with a solve of its own. Not to
     /// be confused with sweeps of one solve, which are `pgs`. At least 1; 0 is taken for 1.
@@ -15,6 +14,9 @@ pub struct Settings {
     /// `num_internal_stabilization_iterations`: sweeps *after* the drift of each substep, over
     /// joints already met, which changes velocities once more.
     pub stabilization: u32,
+    /// `normalized_max_linear_velocity`, m/s: faster bodies are slowed down to it in every substep.
+    /// rapier ships with 400; None, the default here, switches it off, since it hides divergence.
+    pub speed: Option<f64>,
 }
 
 impl Settings {
@@ -23,6 +25,7 @@ impl Settings {
         iterations: 4,
         pgs: 1,
         stabilization: 1,
+        speed: None,
     };
 
     /// Enough sweeps for the joint solve of a soft network to converge to rounding, and none after
@@ -31,6 +34,7 @@ impl Settings {
         iterations: 4,
         pgs: 64,
         stabilization: 0,
+        speed: None,
     };
 
     /// No joints: one substep, nothing to sweep.
@@ -38,21 +42,23 @@ impl Settings {
         iterations: 1,
         pgs: 1,
         stabilization: 0,
+        speed: None,
     };
 
-    /// What differs from rapier's defaults, as the command line writes it: `pgs=4,stabilization=0`,
-    /// or `defaults`.
+    /// What differs from [`DEFAULT`](Self::DEFAULT), as the command line writes it:
+    /// `pgs=4,stabilization=0`, or `defaults`.
     pub fn changes(&self) -> String {
         let usual = Self::DEFAULT;
-        let changes: Vec<String> = [
+        let counts = [
             ("iterations", self.iterations, usual.iterations),
             ("pgs", self.pgs, usual.pgs),
             ("stabilization", self.stabilization, usual.stabilization),
-        ]
-        .iter()
-        .filter(|(_, own, usual)| own != usual)
-        .map(|(key, own, _)| format!("{key}={own}"))
-        .collect();
+        ];
+        let changed = counts.iter().filter(|(_, own, usual)| own != usual);
+        let changes: Vec<String> = changed
+            .map(|(key, own, _)| format!("{key}={own}"))
+            .chain(self.speed.map(|speed| format!("speed={speed}")))
+            .collect();
         if changes.is_empty() {
             "defaults".to_owned()
         } else {

@@ -47,7 +47,7 @@ impl World {
         parameters.num_internal_pgs_iterations = settings.pgs.max(1) as usize;
         parameters.num_internal_stabilization_iterations = settings.stabilization as usize;
         // The default cap of 400 m/s keeps an exploding run finite and wrong.
-        parameters.normalized_max_linear_velocity = f64::MAX;
+        parameters.normalized_max_linear_velocity = settings.speed.unwrap_or(f64::MAX);
         parameters.max_ccd_substeps = 0;
 
         let mut bodies = Vec::with_capacity(scene.particles.len());
