@@ -1,6 +1,7 @@
 //! What a step costs, and what recording and measuring add. Compare figures of one run only.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use springcheck::crosscheck;
 use springcheck::engines::{IntegratorEngine, Limits, Observer, simulate};
 use springcheck::integrators::{self, Settings};
 use springcheck::measure::{self, EnergySeries};
@@ -11,7 +12,7 @@ use std::fmt::Write;
 use std::hint::black_box;
 
 fn read(yaml: &str) -> Scene {
-    scene::parse(yaml.as_bytes(), "bench.yml", &integrators::ids()).expect("a valid scene")
+    scene::parse(yaml.as_bytes(), "bench.yml", crosscheck::names()).expect("a valid scene")
 }
 
 /// One spring and gravity: two effects on one free particle.

@@ -5,11 +5,11 @@
 //! Exits with 1 if the honest one is accused or the one that lies is believed.
 
 use springcheck::conformance::{Claims, check};
-use springcheck::crosscheck::{Choice, Plan, Quiet};
+use springcheck::crosscheck::{self, Choice, Plan, Quiet};
 use springcheck::integrators::{Integrator, PerStep, StepError};
 use springcheck::outcome::CheckStatus;
+use springcheck::scene;
 use springcheck::system::{State, System};
-use springcheck::{integrators, scene};
 use std::process::ExitCode;
 
 /// Kicks and drifts with these coefficients, in turn.
@@ -69,7 +69,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         caught.push(findings.iter().any(|f| f.status == CheckStatus::Fail));
     }
 
-    let scene = scene::read("scenes/oscillator/circle.yml".as_ref(), &integrators::ids())?;
+    let scene = scene::read("scenes/oscillator/circle.yml".as_ref(), crosscheck::names())?;
     let mut plan = Plan::new(&scene, &Choice::default_for(&scene));
     for (name, coefficients, _) in rows {
         let build = move || -> Box<dyn Integrator> { Box::new(KickDrift(coefficients)) };

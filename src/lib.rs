@@ -21,8 +21,8 @@
 //! - [`conformance`] holds any integrator, ours or yours, to the facts it claims.
 //!
 //! ```
-//! use springcheck::crosscheck::{Choice, Plan, Quiet};
-//! use springcheck::{integrators, outcome::EnergyClass, scene};
+//! use springcheck::crosscheck::{self, Choice, Plan, Quiet};
+//! use springcheck::{outcome::EnergyClass, scene};
 //!
 //! let yaml = b"solver: {type: explicit_euler, timestep: 0.01, gravity: 0}
 //! particles:
@@ -30,7 +30,7 @@
 //! - {pos: [0.5, 0, 0], mass: 1}
 //! springs: [{particle_ids: [0, 1], stiffness: 50, rest_length: 0}]
 //! ";
-//! let scene = scene::parse(yaml, "oscillator.yml", &integrators::ids())?;
+//! let scene = scene::parse(yaml, "oscillator.yml", crosscheck::names())?;
 //! let plan = Plan::new(&scene, &Choice::default_for(&scene));
 //! let report = plan.execute(&Quiet)?;
 //! let energy = report.outcomes[0].energy.as_ref().expect("it ran");

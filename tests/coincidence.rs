@@ -12,6 +12,7 @@ fn coincident(model: DampingModel, rest_length: f64) -> Scene {
     scene.springs.truncate(1);
     scene.springs[0].ends = [1, 2];
     scene.springs[0].rest_length = rest_length;
+    scene.springs[0].cubic = 3.0;
     scene.gravitational = vec![GravitationalPair {
         ends: [1, 2],
         g: 2.0,
@@ -66,7 +67,7 @@ const CASES: [(DampingModel, f64); 4] = [
 fn coincident_ends_have_no_force_and_no_nan() {
     for (model, rest_length) in CASES {
         let scene = coincident(model, rest_length);
-        for id in ["springs", "gravitational"] {
+        for id in ["springs", "cubic_springs", "gravitational"] {
             let acts = model == DampingModel::Isotropic && id == "springs";
             coincidence_law(effect(id, &scene).as_ref(), &scene, acts)
                 .unwrap_or_else(|error| panic!("{id}: {error}"));

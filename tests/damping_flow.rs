@@ -35,6 +35,7 @@ fn chain(damping: f64, model: DampingModel) -> Scene {
         .map(|i| Spring {
             ends: [i, i + 1],
             stiffness: 100.0,
+            cubic: 0.0,
             damping,
             rest_length: 0.1,
         })

@@ -1,9 +1,8 @@
 //! Distances from a reference engine: of what has no size, and at which timestep.
 
 mod common;
-use springcheck::crosscheck::{Choice, Plan, Quiet};
+use springcheck::crosscheck::{self, Choice, Plan, Quiet};
 use springcheck::effects;
-use springcheck::integrators;
 use springcheck::outcome::{Deviation, Report};
 use springcheck::scene::{self, DampingModel, Scene};
 use springcheck::system::{ParticleSystem, State, System};
@@ -30,7 +29,7 @@ fn a_lone_particle_is_measured_by_the_way_the_reference_goes() {
         b"solver: {type: rk4, timestep: 0.01}\nduration: 1\n\
           particles: [{pos: [0, 0, 3], mass: 2}]\n",
         "lone.yml",
-        &integrators::ids(),
+        crosscheck::names(),
     );
     let report = report(&lone.expect("a valid scene"), &[0.01]);
     let found = deviations(&report)[0].1[0];
@@ -82,10 +81,13 @@ fn what_is_fixed_at_both_ends_is_no_member() {
         (row.expect("a row").build)(scene).map(|effect| effect.members())
     };
     scene.particles[2].drag = 0.5;
+    scene.springs[0].cubic = 8.0;
+    scene.springs[1].cubic = 8.0;
     assert_eq!(
         (count(&scene, "springs"), count(&scene, "drag")),
         (Some(4), Some(1))
     );
+    assert_eq!(count(&scene, "cubic_springs"), Some(2));
     // Particle 0 is fixed already; with 1 the first spring is, and its stretch counts no more.
     let energy = |scene: &Scene| {
         let start = ParticleSystem::initial_state(scene);
@@ -98,10 +100,14 @@ fn what_is_fixed_at_both_ends_is_no_member() {
         (count(&scene, "springs"), count(&scene, "drag")),
         (Some(3), Some(1))
     );
+    assert_eq!(count(&scene, "cubic_springs"), Some(1));
     let stretch = (0.01_f64 + 1.0).sqrt() - 0.9;
     let gone = before - energy(&scene);
     // A difference of energies of order 1: measured 2.8e-17.
-    assert!((gone - 20.0 * stretch * stretch).abs() < 1e-16, "{gone}");
+    assert!(
+        (gone - 20.0 * stretch * stretch - 2.0 * stretch.powi(4)).abs() < 1e-16,
+        "{gone}"
+    );
     // With everything fixed nothing acts at all, however it is stretched and blown along.
     for particle in &mut scene.particles {
         particle.fixed = true;
@@ -111,6 +117,7 @@ fn what_is_fixed_at_both_ends_is_no_member() {
         (count(&scene, "springs"), count(&scene, "drag")),
         (None, None)
     );
+    assert_eq!(count(&scene, "cubic_springs"), None);
     assert_eq!(energy(&scene), 0.0);
     let system = ParticleSystem::new(&scene);
     let State { x, .. } = ParticleSystem::initial_state(&scene);

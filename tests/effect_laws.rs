@@ -163,6 +163,7 @@ enum Fault {
     DampingSign,
     PowerOfDamping,
     NoGeometricStiffness,
+    MaterialIsExact,
     JacobianSign,
     VelocityJacobianSign,
     PowerOfWind,
@@ -223,11 +224,18 @@ impl Effect for Faulty {
         let w: Vec<f64> = w.iter().map(|w| sign * w).collect();
         self.0.add_damping(x, &w, f);
     }
-    fn add_jacobian(&self, t: f64, x: &[f64], v: &[f64], _: Linearization, out: &mut Jacobian) {
-        let linearization = if self.1 == Fault::NoGeometricStiffness {
-            Linearization::Material
-        } else {
-            Linearization::Exact
+    fn add_jacobian(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        linearization: Linearization,
+        out: &mut Jacobian,
+    ) {
+        let linearization = match self.1 {
+            Fault::NoGeometricStiffness => Linearization::Material,
+            Fault::MaterialIsExact => Linearization::Exact,
+            _ => linearization,
         };
         self.0.add_jacobian(t, x, v, linearization, out);
         if self.1 == Fault::JacobianSign {
@@ -275,6 +283,18 @@ fn the_effect_law_kills_mutants() {
             "{fault:?}"
         );
     }
+    for fault in [
+        Fault::ForceSign,
+        Fault::PotentialScale,
+        Fault::NoGeometricStiffness,
+        Fault::JacobianSign,
+    ] {
+        let cubic = (row("cubic_springs").build)(&scene).expect("cubic springs");
+        assert!(
+            effect_law(&Faulty(cubic, fault), &x, &v).is_err(),
+            "{fault:?}"
+        );
+    }
     for fault in [Fault::PowerOfWind, Fault::WindAlongDisplacement] {
         let wind = (row("wind").build)(&scene).expect("wind");
         assert!(
@@ -285,6 +305,61 @@ fn the_effect_law_kills_mutants() {
     // Quadratic drag dissipates what it should and passes for itself: only linearity is broken.
     let law = effect_law(&QuadraticDrag, &x, &v);
     assert!(law.is_err_and(|error| error.starts_with("linear in v")));
+}
+
+/// What `Material` keeps of a spring at rest: the exact block along it, nothing across.
+fn material_law(effect: &dyn Effect, scene: &Scene, x: &[f64]) -> Result<(), String> {
+    let [i, j] = scene.springs[0].ends;
+    let d = [0, 1, 2].map(|axis| x[3 * j + axis] - x[3 * i + axis]);
+    let length = d.iter().map(|d| d * d).sum::<f64>().sqrt();
+    let n = d.map(|d| d / length);
+    let block = |linearization| {
+        let mut out = Jacobian::default();
+        effect.add_jacobian(0.0, x, &vec![0.0; x.len()], linearization, &mut out);
+        let mut block = [[0.0; 3]; 3];
+        for (row, column, value) in out.position {
+            if row / 3 == i && column / 3 == j {
+                block[row % 3][column % 3] += value;
+            }
+        }
+        block
+    };
+    let (exact, material) = (block(Linearization::Exact), block(Linearization::Material));
+    let along = |block: &[[f64; 3]; 3]| -> f64 {
+        let row = |(r, b): (&f64, &[f64; 3])| r * b.iter().zip(&n).map(|(b, n)| b * n).sum::<f64>();
+        n.iter().zip(block).map(row).sum()
+    };
+    let k = along(&exact);
+    for (r, row) in material.iter().enumerate() {
+        for (c, value) in row.iter().enumerate() {
+            // A dozen roundings of half a last bit.
+            close(
+                "k n nᵀ",
+                *value,
+                k * n[r] * n[c],
+                k.abs(),
+                6.0 * f64::EPSILON,
+            )?;
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn the_material_stiffness_is_what_acts_along_the_spring() {
+    let mut scene = everything(DampingModel::Axial);
+    scene.springs.truncate(1);
+    scene.springs[0].cubic = 7.0;
+    let mut random = Random(5);
+    for row in effects::REGISTRY.iter().filter(|row| row.elastic) {
+        let build = || (row.build)(&scene).expect("built");
+        for _ in 0..5 {
+            let (x, _) = sample(&scene, &mut random);
+            material_law(build().as_ref(), &scene, &x).unwrap();
+            let mixed = Faulty(build(), Fault::MaterialIsExact);
+            assert!(material_law(&mixed, &scene, &x).is_err(), "{}", row.id);
+        }
+    }
 }
 
 /// f = -|v| v by coordinate: everything right but that it is not linear.
@@ -337,6 +412,16 @@ fn only_what_the_scene_calls_for_is_built() {
     scene.gravitational.clear();
     for particle in &mut scene.particles {
         particle.drag = 0.0;
+    }
+    assert_eq!(ids(&scene), ["springs", "cubic_springs"]);
+    // A spring that is all cubic is not a linear one of stiffness 0; one of nothing stays in the list.
+    for spring in &mut scene.springs {
+        (spring.stiffness, spring.damping) = (0.0, 0.0);
+    }
+    scene.springs.retain(|spring| spring.cubic > 0.0);
+    assert_eq!(ids(&scene), ["cubic_springs"]);
+    for spring in &mut scene.springs {
+        spring.cubic = 0.0;
     }
     assert_eq!(ids(&scene), ["springs"]);
     scene.springs.clear();

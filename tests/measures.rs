@@ -2,7 +2,7 @@
 
 mod common;
 use common::{free_triangle, swinging_triangle};
-use springcheck::crosscheck::{Choice, Plan, Quiet};
+use springcheck::crosscheck::{self, Choice, Plan, Quiet};
 use springcheck::engines::{IntegratorEngine, Limits, simulate};
 use springcheck::integrators::{self, Settings};
 use springcheck::measure::{self, deviation};
@@ -13,7 +13,7 @@ use springcheck::trajectory::{Recorder, Trajectory};
 use springcheck::truth::Demand;
 
 fn read(yaml: &str) -> Scene {
-    scene::parse(yaml.as_bytes(), "test.yml", &integrators::ids()).expect("a valid scene")
+    scene::parse(yaml.as_bytes(), "test.yml", crosscheck::names()).expect("a valid scene")
 }
 
 /// The oscillator k = 50, m = 1, A = 0.5 at rest length 0, without gravity.

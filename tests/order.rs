@@ -5,8 +5,9 @@ use common::gauss::Gauss;
 use common::line::{Line, released};
 use common::mutants::{self, Step, mutant};
 use common::{built, method, own};
+use springcheck::crosscheck;
 use springcheck::integrators::{
-    self, DampingTreatment, Integrator, REGISTRY, Splitting, Stage, StepError,
+    DampingTreatment, Integrator, REGISTRY, Splitting, Stage, StepError,
 };
 use springcheck::measure::order::{Ladder, Measured, RATIOS, Reason, Verdict, check, observed};
 use springcheck::outcome::CheckStatus;
@@ -18,7 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 fn shipped(path: &str) -> Scene {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    scene::read(&root.join(path), &integrators::ids()).expect("a valid scene")
+    scene::read(&root.join(path), crosscheck::names()).expect("a valid scene")
 }
 
 /// The scenes that say in their description that they are made for this.

@@ -1,13 +1,13 @@
 //! A row of the caller's own in a plan.
 
-use springcheck::crosscheck::{Choice, Plan, Quiet};
+use springcheck::crosscheck::{self, Choice, Plan, Quiet};
 use springcheck::integrators::{self, Settings};
 use springcheck::outcome::{Kind, Outcome, Report};
 use springcheck::scene::{self, Scene};
 
 fn circle() -> Scene {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/oscillator/circle.yml");
-    scene::read(path.as_ref(), &integrators::ids()).expect("a scene")
+    scene::read(path.as_ref(), crosscheck::names()).expect("a scene")
 }
 
 /// The default rows and `mine`, which is this method.

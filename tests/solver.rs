@@ -29,6 +29,7 @@ fn strip(rows: usize) -> Scene {
     let spring = |ends: [usize; 2]| Spring {
         ends,
         stiffness: 200.0,
+        cubic: 0.0,
         damping: 0.7,
         rest_length: 0.5,
     };

@@ -6,12 +6,11 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use springcheck::scene;
-
-const METHODS: &[&str] = &["explicit_euler", "symplectic_euler", "midpoint", "rk4"];
+use springcheck::crosscheck::names;
+use springcheck::scene::{self, Wanted};
 
 fuzz_target!(|bytes: &[u8]| {
-    let scene = match scene::parse(bytes, "fuzz.yml", METHODS) {
+    let scene = match scene::parse(bytes, "fuzz.yml", names()) {
         Ok(scene) => scene,
         Err(error) => {
             assert!(error.line.is_some() && error.column.is_some());
@@ -33,6 +32,16 @@ fuzz_target!(|bytes: &[u8]| {
         numbers.extend(wind.direction.iter().chain([&wind.strength]));
     }
     numbers.extend(scene.plot.iter().filter_map(|plot| plot.y_range).flatten());
+    for expectation in &scene.expect {
+        match &expectation.wanted {
+            Wanted::Words(words) => assert!(!words.is_empty()),
+            Wanted::Contains(text) => assert!(!text.is_empty()),
+            Wanted::Bounds { above, below } => {
+                assert!(above.is_some() || below.is_some());
+                numbers.extend(above.iter().chain(below));
+            }
+        }
+    }
     numbers.push(scene.size());
     assert!(numbers.iter().all(|x| x.is_finite()), "{scene:?}");
     assert!(scene.steps(scene.solver.timestep) >= 1);

@@ -6,7 +6,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use springcheck::scene;
+use springcheck::scene::{self, Names};
 use springcheck::trajectory::{self, Expected, Layout};
 use std::sync::LazyLock;
 
@@ -15,7 +15,11 @@ static EXPECTED: LazyLock<Expected> = LazyLock::new(|| {
     let yaml = b"solver: {type: midpoint, timestep: 0.25}\n\
         particles: [{pos: [0, 0, 2], fixed: true}, {pos: [0, 0, 1], mass: 2}]\n\
         springs: [{particle_ids: [0, 1], stiffness: 20}]";
-    let scene = scene::parse(yaml, "fuzz.yml", &["midpoint"]).expect("a scene");
+    let names = Names {
+        methods: vec!["midpoint"],
+        ..Names::default()
+    };
+    let scene = scene::parse(yaml, "fuzz.yml", &names).expect("a scene");
     Expected::new(&scene, scene.solver.timestep)
 });
 

@@ -6,8 +6,7 @@ use super::output::Place;
 use super::progress::Progress;
 use super::run::{HUMAN, Truth, formats};
 use anyhow::{Context, bail};
-use springcheck::crosscheck::Comparison;
-use springcheck::integrators;
+use springcheck::crosscheck::{self, Comparison};
 use springcheck::outcome::{Figures, Report, Undecided};
 use springcheck::report;
 use springcheck::scene;
@@ -50,7 +49,7 @@ const UNDECIDED: u8 = 3;
 
 /// Runs the verb.
 pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
-    let mut scene = scene::read(&args.scene, &integrators::ids())?;
+    let mut scene = scene::read(&args.scene, crosscheck::names())?;
     let timestep = args.timestep.unwrap_or(scene.solver.timestep);
     if !(timestep.is_finite() && timestep > 0.0) {
         bail!("--timestep {timestep}: expected a positive number of seconds");

@@ -9,10 +9,10 @@ use super::rapier::Custom;
 use super::save::{FileKind, Files};
 use anyhow::{Context, bail};
 use clap::builder::PossibleValuesParser;
-use springcheck::crosscheck::{Choice, ChosenEngine, Estimate, Plan};
+use springcheck::crosscheck::{self, Choice, ChosenEngine, Estimate, Orders, Plan, expect};
 use springcheck::engines;
 use springcheck::integrators;
-use springcheck::outcome::{CheckStatus, Figures, Report};
+use springcheck::outcome::{Check, CheckStatus, Figures, Report};
 use springcheck::report;
 use springcheck::scene::{self, Scene};
 use springcheck::truth::Demand;
@@ -127,8 +127,8 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     distinct(args)?;
     external::distinct(&args.external)?;
     let mut reports = Vec::new();
-    for (scene, path) in scenes.iter().zip(&args.scenes) {
-        let report = one(args, quiet, scene, path)?;
+    for (read, path) in scenes.iter().zip(&args.scenes) {
+        let report = one(args, quiet, read, path)?;
         if args.format == HUMAN {
             let several = if reports.is_empty() { "" } else { "\n" };
             super::print(&format!("{several}{}", human(args, path, &report)))?;
@@ -150,8 +150,9 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
 }
 
 /// Reads a scene and applies the flags that change it.
-fn read(args: &Args, path: &std::path::Path) -> anyhow::Result<Scene> {
-    let mut scene = scene::read(path, &integrators::ids())?;
+fn read(args: &Args, path: &std::path::Path) -> anyhow::Result<Read> {
+    let mut scene = scene::read(path, crosscheck::names())?;
+    let stated = scene.duration;
     if let Some(duration) = args.duration {
         scene.duration = duration;
     }
@@ -166,10 +167,18 @@ fn read(args: &Args, path: &std::path::Path) -> anyhow::Result<Scene> {
         scene::check_times(timestep, scene.duration)
             .with_context(|| format!("{}: timestep {timestep}", path.display()))?;
     }
-    Ok(scene)
+    Ok(Read { scene, stated })
 }
 
-fn one(args: &Args, quiet: bool, scene: &Scene, path: &std::path::Path) -> anyhow::Result<Report> {
+/// A scene as it will run.
+struct Read {
+    scene: Scene,
+    /// The duration its file states, s.
+    stated: f64,
+}
+
+fn one(args: &Args, quiet: bool, read: &Read, path: &std::path::Path) -> anyhow::Result<Report> {
+    let scene = &read.scene;
     let place = place(args, path);
     let files = match (args.save, &place) {
         (None, _) => None,
@@ -189,12 +198,28 @@ fn one(args: &Args, quiet: bool, scene: &Scene, path: &std::path::Path) -> anyho
     }
     let steps = plan.cases.iter().map(|case| case.label.steps).sum();
     let progress = Progress::new(steps, expected, quiet);
-    let report = plan.execute(&host(&progress, files.as_ref(), &Cache::new()))?;
+    let mut report = plan.execute(&host(&progress, files.as_ref(), &Cache::new()))?;
+    report.checks.extend(expectations(args, read, &report));
     progress.finish();
     if let Some(place) = &place {
         place.write(&report)?;
     }
     Ok(report)
+}
+
+/// What the scene expects of what ran, unless flags changed what it is about.
+fn expectations(args: &Args, read: &Read, report: &Report) -> Vec<Check> {
+    let changed = if read.scene.duration != read.stated {
+        format!("they are about {:?} s", read.stated)
+    } else if args.truth.demand() != Demand::Auto {
+        "they are about errors and energies against the truth, and --truth changed it".to_owned()
+    } else {
+        return expect::check(&read.scene, report);
+    };
+    let any = !read.scene.expect.is_empty();
+    any.then(|| expect::not_judged(&changed))
+        .into_iter()
+        .collect()
 }
 
 /// Two scenes must not write into one folder.
@@ -285,7 +310,9 @@ fn quoted(path: &std::path::Path) -> Option<String> {
 fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
     let mut choice = Choice::default_for(scene);
     choice.truth = args.truth.demand();
-    choice.order = args.order;
+    if args.order {
+        choice.order = Orders::Always;
+    }
     if args.integrators == ["all"] {
         choice.methods = Choice::all_methods(scene);
     } else if !args.integrators.is_empty() {

@@ -1,6 +1,6 @@
 //! One trajectory that somebody else computed, against the truth and the laws.
 
-use super::plan::{Choice, ChosenProgram, Plan};
+use super::plan::{Choice, ChosenProgram, Orders, Plan};
 use super::{Host, identity};
 use crate::engines::external::{Failure, Program, Recording, Task};
 use crate::outcome::Report;
@@ -47,7 +47,7 @@ impl Comparison<'_> {
             }],
             timesteps: vec![self.rows.timestep],
             truth: self.demand,
-            order: false,
+            order: Orders::Never,
         };
         let plan = Plan {
             // Every step of the rows is replayed below, not some of those recorded.

@@ -1,10 +1,12 @@
 //! The main job: every chosen engine on one scene, side by side, and what came of it.
 //!
-//! [`Plan`] says what will run, [`Plan::execute`] runs it in parallel and measures it. Results do
-//! not depend on the number of threads; only wall times do.
+//! [`Plan`] says what will run, [`Plan::execute`] runs it in parallel and measures it, and
+//! [`expect::check`] says whether that is what the scene expects. Results do not depend on the
+//! number of threads; only wall times do.
 
 mod compare;
 mod execute;
+pub mod expect;
 mod figures;
 mod identity;
 mod ledger;
@@ -17,7 +19,10 @@ mod truths;
 
 pub use compare::Comparison;
 pub use execute::{Host, Quiet, Saver};
-pub use plan::{Build, Case, Choice, ChosenEngine, ChosenProgram, Estimate, Label, Plan, Source};
+pub use expect::names;
+pub use plan::{
+    Build, Case, Choice, ChosenEngine, ChosenProgram, Estimate, Label, Orders, Plan, Source,
+};
 
 use crate::engines::Limits;
 use crate::measure;

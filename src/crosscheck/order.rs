@@ -1,6 +1,6 @@
 //! The order each integrator shows on the scene.
 
-use super::plan::Plan;
+use super::plan::{Orders, Plan};
 use crate::integrators::Method;
 use crate::measure::order::{Ladder, check};
 use crate::outcome::{Check, CheckStatus};
@@ -29,8 +29,11 @@ pub(super) fn checks(plan: &Plan, truth: &Truth) -> Vec<Check> {
     }
     let steps = scene.steps(scene.solver.timestep);
     let cost = steps.saturating_mul(plan.system.dim() as u64);
-    if methods.is_empty() || (cost > UNASKED && !plan.order) {
-        return (!methods.is_empty()).then(skipped).into_iter().collect();
+    if methods.is_empty() || plan.order == Orders::Never {
+        return Vec::new();
+    }
+    if cost > UNASKED && plan.order != Orders::Always {
+        return vec![skipped()];
     }
     let until = truth.horizon.min(scene.duration);
     let budget = RUNS.saturating_mul(cost).max(LEAST);

@@ -22,8 +22,19 @@ pub struct Choice {
     pub timesteps: Vec<f64>,
     /// What errors are measured against.
     pub truth: Demand,
-    /// Measure every method's order, however long the run.
-    pub order: bool,
+    /// Whether every method's order is measured.
+    pub order: Orders,
+}
+
+/// When orders are measured, which costs about two more runs of each method.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Orders {
+    Never,
+    /// Where the scene's own run is short.
+    #[default]
+    WhereCheap,
+    /// However long the run.
+    Always,
 }
 
 /// A reference engine, or one more rapier row with settings of the user's own.
@@ -84,7 +95,7 @@ impl Choice {
             programs: Vec::new(),
             timesteps: vec![scene.solver.timestep],
             truth: Demand::Auto,
-            order: false,
+            order: Orders::WhereCheap,
         }
     }
 
@@ -164,7 +175,7 @@ pub struct Plan<'a> {
     pub cases: Vec<Case<'a>>,
     pub demand: Demand,
     /// As [`Choice::order`].
-    pub order: bool,
+    pub order: Orders,
     /// Whether outcomes say which scheme they follow.
     pub(super) identify: bool,
 }

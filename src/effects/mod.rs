@@ -6,6 +6,7 @@
 //! [`IntegratorEngine`](crate::engines::IntegratorEngine) after its integrator, not members of this
 //! trait.
 
+mod cubic;
 mod drag;
 mod gravitational;
 mod gravity;
@@ -13,6 +14,7 @@ mod scaled;
 mod springs;
 mod wind;
 
+pub use cubic::CubicSprings;
 pub use drag::Drag;
 pub use gravitational::Gravitational;
 pub use gravity::Gravity;
@@ -101,6 +103,7 @@ impl std::fmt::Debug for EffectRow {
 pub static REGISTRY: &[EffectRow] = &[
     gravity::ROW,
     springs::ROW,
+    cubic::ROW,
     drag::ROW,
     wind::ROW,
     gravitational::ROW,

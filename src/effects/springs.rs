@@ -16,7 +16,7 @@ pub(super) const ROW: EffectRow = EffectRow {
 
 /// Lengths are not taken below this, m: at coincidence the direction d / l is then 0 and so is the
 /// force, with no branch and no NaN. A rest length of 0 stays exactly linear through the point.
-const SHORTEST: f64 = 1e-150;
+pub(super) const SHORTEST: f64 = 1e-150;
 
 /// One spring: 40 bytes.
 #[derive(Debug, Clone, Copy)]
@@ -31,7 +31,8 @@ pub struct Spring {
     pub rest_length: f64,
 }
 
-/// All springs of a scene.
+/// All springs of a scene: their linear part, and their dampers. What `cubic` adds is
+/// [`CubicSprings`](super::CubicSprings)'.
 ///
 /// Coincident ends: no force from a spring or an axial damper, since neither has a direction there;
 /// an isotropic damper still acts.
@@ -53,13 +54,15 @@ const AXIAL: u8 = Damping::Axial as u8;
 const ISOTROPIC: u8 = Damping::Isotropic as u8;
 
 impl Springs {
-    /// None when the scene has no springs.
+    /// None when the scene has no springs but purely cubic ones.
     pub fn new(scene: &Scene) -> Option<Self> {
         let springs: Vec<_> = scene
             .springs
             .iter()
             // Between two fixed particles a spring moves nothing, and what is fixed has no energy.
             .filter(|s| !s.ends.iter().all(|&end| scene.particles[end].fixed))
+            // All that such a spring does is `cubic_springs`'.
+            .filter(|s| s.stiffness != 0.0 || s.damping != 0.0 || s.cubic == 0.0)
             .map(|s| Spring {
                 ends: s.ends.map(|end| end as u32),
                 stiffness: s.stiffness,
@@ -228,12 +231,12 @@ impl Effect for Springs {
 
 /// From particle at offset `i` to the one at offset `j`.
 #[inline(always)]
-fn difference(x: &[f64], i: usize, j: usize) -> [f64; 3] {
+pub(super) fn difference(x: &[f64], i: usize, j: usize) -> [f64; 3] {
     let (from, to) = (&x[i..i + 3], &x[j..j + 3]);
     [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
 }
 
 #[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -93,7 +93,10 @@ impl Limits {
         }
         let energy = self.system.kinetic(&state.v) + self.system.elastic(state.t, &state.x);
         if !energy.is_finite() {
-            return Some("the energy is no longer finite".to_owned());
+            let fastest = fastest(&state.v);
+            return Some(format!(
+                "the energy is no longer finite, fastest at particle {fastest}"
+            ));
         }
         let limit = self.limit?;
         (energy > limit).then(|| {

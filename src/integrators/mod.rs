@@ -4,11 +4,13 @@ mod implicit;
 mod newton;
 mod runge_kutta;
 mod splitting;
+mod tr_bdf2;
 mod velocity_flow;
 
 pub use implicit::{Implicit, Scheme};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
+pub use tr_bdf2::TrBdf2;
 
 use crate::system::{State, System};
 
@@ -90,7 +92,7 @@ impl std::fmt::Debug for Method {
 pub enum PerStep {
     Exactly(u32),
     /// One for each Newton iteration, and `plus` that do not iterate: one to see that the last
-    /// iteration has converged, and the explicit half of a method that has one.
+    /// iteration of each stage has converged, and the explicit part of a method that has one.
     PerIteration {
         plus: u32,
     },
@@ -192,6 +194,7 @@ pub static REGISTRY: &[Method] = &[
     implicit::LINEARIZED_IMPLICIT_MATERIAL,
     implicit::IMPLICIT_MIDPOINT,
     implicit::TRAPEZOIDAL,
+    tr_bdf2::TR_BDF2,
 ];
 
 /// The method of this id.

@@ -16,6 +16,13 @@ pub const STEPS: f64 = 1e9;
 /// The longest name, in characters.
 pub const NAME_CHARS: usize = 200;
 
+/// The most entries of `expect`, of one engine in it, and of one list of words there: an alias could
+/// multiply them.
+pub const EXPECTED: usize = 64;
+
+/// The longest key or word under `expect`, in bytes.
+pub const WORD_BYTES: usize = 200;
+
 /// What a number stands for, and the values it may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
@@ -59,6 +66,8 @@ pub const RADIUS: Quantity = not_negative(1e12, "m");
 pub const DRAG: Quantity = not_negative(1e18, "N s/m");
 /// A spring's stiffness.
 pub const STIFFNESS: Quantity = not_negative(1e18, "N/m");
+/// A spring's cubic stiffness.
+pub const CUBIC: Quantity = not_negative(1e18, "N/m³");
 /// A spring's damping.
 pub const DAMPING: Quantity = not_negative(1e18, "N s/m");
 /// A spring's rest length.
@@ -77,5 +86,7 @@ pub const DURATION: Quantity = positive(1e-30, 1e12, "s");
 pub const GRAVITY: Quantity = signed(1e12, "m/s²");
 /// The implicit methods' relative residual.
 pub const TOLERANCE: Quantity = positive(1e-300, 1.0, "relative");
+/// What a number is expected to stay below or above.
+pub const BOUND: Quantity = signed(f64::MAX, "in the key's unit");
 /// The smallest distance two attracting particles may start at: at 0 the force is infinite.
 pub const ATTRACTION_DISTANCE: f64 = 1e-12;

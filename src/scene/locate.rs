@@ -93,14 +93,22 @@ impl<'de> Visitor<'de> for Walk<'_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        if let [Step::Key(wanted), rest @ ..] = self.0 {
-            while let Some(key) = map.next_key::<String>()? {
-                if key == *wanted {
-                    map.next_value_seed(Walk(rest))?;
-                } else {
+        match self.0 {
+            [Step::Key(wanted), rest @ ..] => {
+                while let Some(key) = map.next_key::<String>()? {
+                    if key == *wanted {
+                        map.next_value_seed(Walk(rest))?;
+                    } else {
+                        map.next_value::<IgnoredAny>()?;
+                    }
+                }
+            }
+            [Step::Name(wanted), ..] => {
+                while map.next_key_seed(Until(wanted))?.is_some() {
                     map.next_value::<IgnoredAny>()?;
                 }
             }
+            _ => {}
         }
         Err(A::Error::custom(HERE))
     }
@@ -113,5 +121,31 @@ impl<'de> Visitor<'de> for Walk<'_> {
             list.next_element_seed(Walk(rest))?;
         }
         Err(A::Error::custom(HERE))
+    }
+}
+
+/// Reads keys, and fails at the one looked for.
+struct Until<'s>(&'s str);
+
+impl<'de> DeserializeSeed<'de> for Until<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<(), D::Error> {
+        from.deserialize_str(self)
+    }
+}
+
+impl Visitor<'_> for Until<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a key")
+    }
+
+    fn visit_str<E: Error>(self, key: &str) -> Result<(), E> {
+        if key == self.0 {
+            return Err(E::custom(HERE));
+        }
+        Ok(())
     }
 }

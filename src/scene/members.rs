@@ -84,6 +84,7 @@ pub(super) fn spring(raw: RawSpring, particles: &[Particle], at: At) -> Result<S
             "a spring needs its stiffness in N/m",
         )
         .and_then(|k| quantity(k, limits::STIFFNESS, stiffness))?,
+        cubic: quantity_or(raw.cubic, 0.0, limits::CUBIC, at.key("cubic"))?,
         damping: quantity_or(raw.damping, 0.0, limits::DAMPING, at.key("damping"))?,
         rest_length: match raw.rest_length {
             Some(length) => quantity(length, limits::REST_LENGTH, at.key("rest_length"))?,

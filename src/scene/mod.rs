@@ -7,13 +7,17 @@
 //! number: ids are valid, quantities are finite and within [`limits`].
 
 mod check;
+mod entries;
 mod error;
+mod expect;
+mod expectation;
 mod keys;
 mod leaf;
 pub mod limits;
 mod locate;
 mod members;
 mod model;
+mod names;
 mod number;
 mod path;
 mod raw;
@@ -25,10 +29,11 @@ mod times;
 mod validate;
 
 pub use error::SceneError;
+pub use expectation::{Expectation, Wanted, Whom};
 pub use model::{
     Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, Solver, Spring, Wind, steps,
 };
-
+pub use names::{Key, KeyKind, Names};
 pub use times::{TimesError, check_times};
 
 use std::fs::File;
@@ -37,12 +42,13 @@ use std::path::Path;
 
 /// Reads a scene from the bytes of a YAML file.
 ///
-/// `file` names the source in errors and, without a `name` in the file, the scene. `methods` are the
-/// integrator ids `solver.type` may take. A UTF-8 BOM and CRLF line ends are fine.
+/// `file` names the source in errors and, without a `name` in the file, the scene. `names` are the
+/// words of other stages it may use: [`crosscheck::names`](crate::crosscheck::names). A UTF-8 BOM and
+/// CRLF line ends are fine.
 ///
 /// # Errors
 /// The first thing wrong, with its line and column. No input panics.
-pub fn parse(bytes: &[u8], file: &str, methods: &[&str]) -> Result<Scene, SceneError> {
+pub fn parse(bytes: &[u8], file: &str, names: &Names) -> Result<Scene, SceneError> {
     if bytes.len() > limits::FILE_BYTES {
         let cap = limits::FILE_BYTES >> 20;
         return Err(SceneError::of_file(
@@ -54,7 +60,7 @@ pub fn parse(bytes: &[u8], file: &str, methods: &[&str]) -> Result<Scene, SceneE
     let text = text::check(bytes)
         .map_err(|fault| SceneError::at(file, &String::from_utf8_lossy(bytes), fault))?;
     let raw = raw::document(text).map_err(|fault| SceneError::at(file, text, fault))?;
-    validate::scene(raw, file, methods)
+    validate::scene(raw, file, names)
         .map_err(|problem| SceneError::at(file, text, problem.locate(text)))
 }
 
@@ -63,7 +69,7 @@ pub fn parse(bytes: &[u8], file: &str, methods: &[&str]) -> Result<Scene, SceneE
 /// # Errors
 /// A missing or unreadable file, a directory and a file above [`limits::FILE_BYTES`] are errors
 /// without a line; the others are those of [`parse`].
-pub fn read(path: &Path, methods: &[&str]) -> Result<Scene, SceneError> {
+pub fn read(path: &Path, names: &Names) -> Result<Scene, SceneError> {
     let file = path.display().to_string();
     let refuse = |message: String| Err(SceneError::of_file(&file, message));
     if path.is_dir() {
@@ -76,7 +82,7 @@ pub fn read(path: &Path, methods: &[&str]) -> Result<Scene, SceneError> {
             .read_to_end(&mut bytes)
     });
     match opened {
-        Ok(_) => parse(&bytes, &file, methods),
+        Ok(_) => parse(&bytes, &file, names),
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
             refuse("there is no such file".into())
         }

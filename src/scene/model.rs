@@ -1,5 +1,6 @@
 //! The scene as the file states it, checked and complete: every default resolved, every id valid.
 
+use super::expectation::Expectation;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use serde::Serialize;
@@ -23,6 +24,8 @@ pub struct Scene {
     pub springs: Vec<Spring>,
     pub gravitational: Vec<GravitationalPair>,
     pub wind: Option<Wind>,
+    /// What engines must do, in the order of the file. Changes no run.
+    pub expect: Vec<Expectation>,
 }
 
 /// What the file asks for under `solver`.
@@ -84,6 +87,8 @@ pub struct Spring {
     pub ends: [usize; 2],
     /// N/m, not negative.
     pub stiffness: f64,
+    /// N/m³, not negative: adds cubic (l - L)³ to the pull. Default 0.
+    pub cubic: f64,
     /// N s/m, not negative. Default 0.
     pub damping: f64,
     /// Metres, not negative. Default: the initial distance of the ends.

@@ -6,20 +6,28 @@ use std::fmt;
 #[derive(Debug, Clone, Copy)]
 pub(super) enum At<'a> {
     Root,
-    Key(&'a At<'a>, &'static str),
+    Key(&'a At<'a>, &'a str),
     Index(&'a At<'a>, usize),
+    /// The key itself, not its value.
+    Name(&'a At<'a>, &'a str),
 }
 
 /// One step down from the root.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Step {
-    Key(&'static str),
+    Key(String),
     Index(usize),
+    Name(String),
 }
 
 impl<'a> At<'a> {
-    pub(super) fn key(&'a self, key: &'static str) -> At<'a> {
+    pub(super) fn key(&'a self, key: &'a str) -> At<'a> {
         At::Key(self, key)
+    }
+
+    /// Where the key stands, for what is wrong with the key itself.
+    pub(super) fn name(&'a self, key: &'a str) -> At<'a> {
+        At::Name(self, key)
     }
 
     pub(super) fn index(&'a self, index: usize) -> At<'a> {
@@ -30,8 +38,9 @@ impl<'a> At<'a> {
     pub(super) fn steps(&self) -> Vec<Step> {
         match *self {
             At::Root => Vec::new(),
-            At::Key(parent, key) => [parent.steps(), vec![Step::Key(key)]].concat(),
+            At::Key(parent, key) => [parent.steps(), vec![Step::Key(key.to_owned())]].concat(),
             At::Index(parent, index) => [parent.steps(), vec![Step::Index(index)]].concat(),
+            At::Name(parent, key) => [parent.steps(), vec![Step::Name(key.to_owned())]].concat(),
         }
     }
 }
@@ -43,6 +52,8 @@ impl fmt::Display for At<'_> {
             At::Key(At::Root, key) => f.write_str(key),
             At::Key(parent, key) => write!(f, "{parent}.{key}"),
             At::Index(parent, index) => write!(f, "{parent}[{index}]"),
+            // The message names the key.
+            At::Name(parent, _) => parent.fmt(f),
         }
     }
 }

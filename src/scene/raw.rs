@@ -2,6 +2,7 @@
 //!
 //! Never through a free-form value, whose aliases and nesting a hostile file can multiply.
 
+use super::entries::{Entries, RawWanted, Word};
 use super::keys::{Keys, mapping};
 use super::leaf::{Items, Numbers, Text, Truth};
 use super::locate::{self, Fault};
@@ -23,7 +24,8 @@ mapping! {
     "springs" => springs: Items<RawSpring>,
     "gravitational" => gravitational: Items<RawPair>,
     "wind" => wind: RawWind,
-    later &["air", "bending", "colliders", "driven", "expect", "magnetic", "objects", "rods", "strain_limit"]
+    "expect" => expect: Entries<Entries<RawWanted>>,
+    later &["air", "bending", "colliders", "driven", "magnetic", "objects", "rods", "strain_limit"]
 }
 
 mapping! {
@@ -58,6 +60,7 @@ mapping! {
     RawSpring: "a spring: a mapping with `particle_ids` and `stiffness`";
     "particle_ids" => ends: Numbers<2>,
     "stiffness" => stiffness: Number,
+    "cubic" => cubic: Number,
     "damping" => damping: Number,
     "rest_length" => rest_length: Number,
     later &[]
@@ -75,6 +78,14 @@ mapping! {
     "direction" => direction: Numbers<3>,
     "strength" => strength: Number,
     later &["velocity", "density", "profile"]
+}
+
+mapping! {
+    RawBounds: "bounds, such as {below: 1e-3}";
+    "below" => below: Number,
+    "above" => above: Number,
+    "contains" => contains: Word,
+    later &[]
 }
 
 /// Reads the one document the file holds.

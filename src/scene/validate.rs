@@ -1,11 +1,13 @@
 //! From the file's shape to its meaning: defaults, bounds, references. The first problem ends it.
 
 use super::check::{quantity, quantity_or, required};
+use super::expect::expectations;
 use super::leaf::{Items, Text};
 use super::limits;
 use super::locate::Problem;
 use super::members;
 use super::model::{Axis, DampingModel, Scene, Solver};
+use super::names::Names;
 use super::path::At;
 use super::raw::{RawScene, RawSolver};
 use super::shown::shorten;
@@ -21,10 +23,10 @@ const DAMPING_MODELS: [(&str, DampingModel); 2] = [
 ];
 
 /// The scene `raw` describes.
-pub(super) fn scene(raw: RawScene, file: &str, methods: &[&str]) -> Result<Scene, Problem> {
+pub(super) fn scene(raw: RawScene, file: &str, names: &Names) -> Result<Scene, Problem> {
     let name = name(raw.name, file)?;
     let description = raw.description.map(description).transpose()?;
-    let solver = solver(raw.solver, methods)?;
+    let solver = solver(raw.solver, &names.methods)?;
     let duration = quantity_or(raw.duration, 5.0, limits::DURATION, ROOT.key("duration"))?;
     check_times(solver.timestep, duration).map_err(|error| {
         let solver = ROOT.key("solver");
@@ -58,6 +60,7 @@ pub(super) fn scene(raw: RawScene, file: &str, methods: &[&str]) -> Result<Scene
             .wind
             .map(|w| members::wind(w, ROOT.key("wind")))
             .transpose()?,
+        expect: expectations(raw.expect, names, ROOT.key("expect"))?,
         particles,
         springs,
         gravitational,

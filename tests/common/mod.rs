@@ -95,6 +95,8 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
 /// A scene that calls for every effect of the registry.
 pub fn everything(model: DampingModel) -> Scene {
     let mut scene = swinging_triangle(0.7, model);
+    scene.springs[1].cubic = 3.0;
+    scene.springs[3].cubic = 5.0;
     scene.particles[1].drag = 0.3;
     scene.particles[3].drag = 0.1;
     scene.wind = Some(Wind {

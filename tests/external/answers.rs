@@ -1,6 +1,6 @@
 //! The library's side, without any process: what becomes of the rows a program gives.
 
-use springcheck::crosscheck::{Choice, ChosenProgram, Plan, Quiet};
+use springcheck::crosscheck::{self, Choice, ChosenProgram, Plan, Quiet};
 use springcheck::engines::external::{Failure, Program, Recording, Task};
 use springcheck::integrators::{self, Settings};
 use springcheck::outcome::{EnergyClass, Kind, Outcome, Status, Undecided};
@@ -77,7 +77,7 @@ springs: [{{particle_ids: [0, 1], stiffness: 50, damping: 1, rest_length: 0}}]
 wind: {{direction: [1, 0, 0], strength: 2}}
 "
     );
-    scene::parse(yaml.as_bytes(), "damped.yml", &integrators::ids()).expect("a scene")
+    scene::parse(yaml.as_bytes(), "damped.yml", crosscheck::names()).expect("a scene")
 }
 
 fn balance_error(scene: &Scene, every: u64) -> f64 {
@@ -109,7 +109,7 @@ particles:
 - {pos: [0.5, 0, 0], mass: 1}
 springs: [{particle_ids: [0, 1], stiffness: 50, rest_length: 0}]
 ";
-    let scene = scene::parse(yaml, "fast.yml", &integrators::ids()).expect("a scene");
+    let scene = scene::parse(yaml, "fast.yml", crosscheck::names()).expect("a scene");
     let mine = outcome(&scene, |task| rows(task, "explicit_euler", 1));
     assert_eq!(mine.status, Status::Diverged);
     // E grows by 1 + z² = 5.5 a step from E(0) = S: past 1e12 S after ln 1e12 / ln 5.5 = 16.2 steps.

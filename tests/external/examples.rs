@@ -2,6 +2,7 @@
 
 use super::{has, outcomes, output, run, theirs};
 use serde_json::Value;
+use springcheck::crosscheck;
 use springcheck::integrators::{self, Settings};
 use springcheck::scene::{self, Scene};
 use springcheck::system::{ParticleSystem, State};
@@ -96,7 +97,7 @@ fn agrees(report: &Value, sigma: f64) {
 }
 
 fn net() -> Scene {
-    scene::read(Path::new(NET), &integrators::ids()).expect("a scene")
+    scene::read(Path::new(NET), crosscheck::names()).expect("a scene")
 }
 
 #[test]

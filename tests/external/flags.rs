@@ -18,7 +18,7 @@ damping_model: isotropic
 particles:
 - {pos: [0.1, 0, 0], fixed: true, mass: 3}
 - {pos: [1, 2, 3], vel: [4, 5, 6], mass: 0.3, drag: 0.7}
-springs: [{particle_ids: [1, 0], stiffness: 20, damping: 0.5, rest_length: 0.4}]
+springs: [{particle_ids: [1, 0], stiffness: 20, cubic: 3, damping: 0.5, rest_length: 0.4}]
 gravitational: [{particle_ids: [0, 1], G: 1.5}]
 wind: {direction: [0, 0, 2], strength: 3}
 ";
@@ -65,6 +65,7 @@ wind: {direction: [0, 0, 2], strength: 3}
         "springs": {
             "ids": [1, 0],
             "stiffness": [20.0],
+            "cubic": [3.0],
             "damping": [0.5],
             "rest_lengths": [0.4],
         },
@@ -73,7 +74,7 @@ wind: {direction: [0, 0, 2], strength: 3}
         "drag": [0.0, 0.7],
         "wind_force": [0.0, 0.0, 3.0],
         "gravitational": {"ids": [0, 1], "g": [1.5]},
-        "effects": ["gravity", "springs", "drag", "wind", "gravitational"],
+        "effects": ["gravity", "springs", "cubic_springs", "drag", "wind", "gravitational"],
         "timestep": 0.05,
         "duration": 0.75,
         "steps": 15,

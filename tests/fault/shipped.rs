@@ -2,7 +2,8 @@
 //! has one.
 
 use crate::record::{fault_of, question, rows, run, thinned};
-use springcheck::integrators::{self, REGISTRY};
+use springcheck::crosscheck;
+use springcheck::integrators::REGISTRY;
 use springcheck::measure::identify::{Candidate, first_fault, identify};
 use springcheck::scene::{self, Scene};
 use springcheck::system::{ParticleSystem, State};
@@ -17,7 +18,7 @@ fn shipped() -> Vec<Scene> {
         files.extend(entries.map(|entry| entry.expect("a scene").path()));
     }
     files.sort();
-    let read = |file: &PathBuf| scene::read(file, &integrators::ids()).expect("a scene");
+    let read = |file: &PathBuf| scene::read(file, crosscheck::names()).expect("a scene");
     files.iter().map(read).collect()
 }
 

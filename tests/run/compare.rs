@@ -415,7 +415,7 @@ fn what_a_file_follows_early_need_not_be_what_it_follows() {
 /// Initial distances of the spring's ends, in the order of the file.
 fn rest_lengths(yaml: &str) -> Vec<f64> {
     let scene =
-        springcheck::scene::parse(yaml.as_bytes(), "scene", &springcheck::integrators::ids());
+        springcheck::scene::parse(yaml.as_bytes(), "scene", springcheck::crosscheck::names());
     let scene = scene.expect("a scene");
     scene
         .springs

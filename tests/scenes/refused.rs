@@ -1,7 +1,7 @@
 //! Bad scenes, each with the exact place of its error. `»` marks the place and is taken out before
 //! parsing; the last column is what the message must say.
 
-use super::{METHODS, complete, parse};
+use super::{NAMES, complete, parse};
 use springcheck::scene::{self, SceneError, limits};
 use std::time::{Duration, Instant};
 
@@ -24,7 +24,6 @@ const PARTS: &[Row] = &[
     ("later, objects", "»objects: [{type: cloth}]", &["not supported yet"]),
     ("later, rods", "»rods: []", &["not supported yet"]),
     ("later, strain", "»strain_limit: 0.1", &["not supported yet"]),
-    ("later, expect", "»expect: {}", &["not supported yet"]),
     ("later, moving air", "wind: {direction: [1, 0, 0], »velocity: 3}", &["wind.velocity", "not supported yet"]),
     ("list as key", "»[1, 2]: 3", &["expected a key, found a list"]),
     ("empty key", "»'': 3", &["unknown key ``"]),
@@ -109,6 +108,9 @@ const PARTS: &[Row] = &[
     ("no stiffness", "springs: [»{particle_ids: [0, 1]}]", &["springs[0].stiffness", "missing"]),
     ("stiffness without value", "springs:\n- particle_ids: [0, 1]\n  stiffness:»", &["springs[0].stiffness", "missing"]),
     ("stiffness negative", "springs: [{particle_ids: [0, 1], stiffness: »-5}]", &["springs[0].stiffness", "at least 0 (N/m), found -5"]),
+    ("cubic negative", "springs: [{particle_ids: [0, 1], stiffness: 1, cubic: »-2}]", &["springs[0].cubic", "at least 0 (N/m³), found -2"]),
+    ("cubic infinite", "springs: [{particle_ids: [0, 1], stiffness: 1, cubic: ».inf}]", &["springs[0].cubic", "finite number (N/m³)"]),
+    ("cubic alone", "springs: [»{particle_ids: [0, 1], cubic: 2}]", &["springs[0].stiffness", "missing"]),
     ("damping negative", "springs: [{particle_ids: [0, 1], stiffness: 1, damping: »-1e-9}]", &["springs[0].damping", "found -1e-9"]),
     ("rest length negative", "springs: [{particle_ids: [0, 1], stiffness: 1, rest_length: »-0.1}]", &["springs[0].rest_length", "at least 0 (m)"]),
     ("the eighth", "springs:\n- &s {particle_ids: [0, 1], stiffness: 1}\n- *s\n- *s\n- {particle_ids: [0, 1], stiffness: ».inf}", &["springs[3].stiffness"]),
@@ -124,6 +126,42 @@ const PARTS: &[Row] = &[
     ("plot of nobody", "plot: {particle_id: »2, dof: 0}", &["plot.particle_id", "a particle from 0 to 1"]),
     ("plot of a fourth dimension", "plot: {particle_id: 0, dof: »3}", &["plot.dof", "0, 1 or 2, found 3"]),
     ("plot upside down", "plot: {particle_id: 0, dof: 0, y_range: »[1, -1]}", &["plot.y_range", "[lower, upper]"]),
+    // Expectations.
+    ("expect is a list", "expect: »[rk4]", &["expect", "expected a mapping such as {status: completed}, found a list"]),
+    ("unknown engine", "expect:\n  rk4: {status: completed}\n  »rapeir: {status: completed}", &["expect: unknown engine `rapeir`", "did you mean `rapier`?"]),
+    ("unknown engine, far from any", "expect: {»bullet: {status: completed}}", &["unknown engine `bullet`", "the engines here are all, rest, explicit_euler", "rapier-converged"]),
+    ("engine twice", "expect:\n  rk4: {status: completed}\n  »rk4: {energy.class: bounded}", &["expect.rk4", "given twice"]),
+    ("nothing of an engine", "expect: {rk4: »{}}", &["expect.rk4", "at least one key", "{status: completed}"]),
+    ("no value of an engine", "expect: {rk4: »~}", &["expect.rk4", "expected a mapping such as {status: completed}, found nothing"]),
+    ("a word for an engine", "expect: {rk4: »completed}", &["expect.rk4", "expected a mapping"]),
+    ("unknown expected key", "expect: {rk4: {status: completed, »energy.clas: bounded}}", &["expect.rk4: unknown key `energy.clas`", "did you mean `energy.class`?"]),
+    ("half a key", "expect: {rk4: {»energy: bounded}}", &["expect.rk4: unknown key `energy`", "the keys here are status, stopped_at_s, reason"]),
+    ("nested instead of dotted", "expect: {rk4: {energy: {»class: bounded}}}", &["expect.rk4.energy", "unknown key `class`"]),
+    ("expected key twice", "expect: {all: {status: completed, »status: failed}}", &["expect.all.status", "given twice"]),
+    ("deviation from no reference", "expect: {rk4: {»deviation_m.rk4.max: {below: 1}}}", &["unknown key `deviation_m.rk4.max`"]),
+    ("expected wall time", "expect: {rk4: {»work.wall_s.min: {below: 1}}}", &["unknown key `work.wall_s.min`"]),
+    ("unknown status", "expect: {rk4: {status: »complete}}", &["expect.rk4.status", "unknown word `complete`", "completed, diverged, failed, unsupported", "did you mean `completed`?"]),
+    ("unknown class in a list", "expect: {rk4: {energy.class: [bounded, »shrinking]}}", &["expect.rk4.energy.class[1]", "unknown word `shrinking`"]),
+    ("word twice", "expect: {rk4: {energy.class: [bounded, »bounded]}}", &["expect.rk4.energy.class[1]", "given twice"]),
+    ("no words", "expect: {rk4: {status: »[]}}", &["expect.rk4.status", "at least one word"]),
+    ("unknown scheme", "expect: {rk4: {identified.method: »rk5}}", &["unknown word `rk5`", "did you mean `rk4`?"]),
+    ("bounds of a word", "expect: {rk4: {status: »{below: 3}}}", &["expect.rk4.status", "expected completed or diverged", "found bounds"]),
+    ("a word for a number", "expect: {rk4: {energy.drift_per_s: »small}}", &["expect.rk4.energy.drift_per_s", "expected `below` or `above`"]),
+    ("a number for bounds", "expect: {rk4: {work.steps: »100}}", &["expect.rk4.work.steps", "bounds such as {below: 1e-3}, found the number `100`"]),
+    ("no value of a key", "expect: {rk4: {status: »~}}", &["expect.rk4.status", "expected a word", "found nothing"]),
+    ("no bounds", "expect: {rk4: {work.steps: »{}}}", &["expect.rk4.work.steps", "found neither"]),
+    ("unknown bound", "expect: {rk4: {work.steps: {»blow: 3}}}", &["expect.rk4.work.steps", "unknown key `blow`", "did you mean `below`?"]),
+    ("bound twice", "expect: {rk4: {work.steps: {below: 3, »below: 4}}}", &["expect.rk4.work.steps.below", "given twice"]),
+    ("bound of NaN", "expect: {rk4: {energy.drift_per_s: {below: ».nan}}}", &["expect.rk4.energy.drift_per_s.below", "finite", "found NaN"]),
+    ("bound infinite", "expect: {rest: {energy.drift_per_s: {above: »-.inf}}}", &["expect.rest.energy.drift_per_s.above", "finite"]),
+    ("bound in quotes", "expect: {rk4: {energy.drift_per_s: {below: »'3'}}}", &["expected a number", "remove the quotes"]),
+    ("bounds that leave nothing", "expect: {rk4: {work.steps: »{above: 3, below: 3}}}", &["expect.rk4.work.steps", "no number is above 3.0 and below 3.0"]),
+    ("contains on a number", "expect: {rk4: {work.steps: {below: 3, »contains: a}}}", &["expect.rk4.work.steps", "`contains` is for text"]),
+    ("below on a text", "expect: {rk4: {reason: {contains: a, »below: 3}}}", &["expect.rk4.reason", "`below` is for numbers"]),
+    ("a word for a text", "expect: {rk4: {reason: »exploded}}", &["expect.rk4.reason", "expected `contains`"]),
+    ("contains nothing", "expect: {rk4: {reason: {contains: »' '}}}", &["expect.rk4.reason.contains", "expected some text"]),
+    ("text of no bounds", "expect: {rk4: {reason: »{}}}", &["expect.rk4.reason", "expected `contains`"]),
+    ("merge in expect", "expect: {»<<: {rk4: {status: completed}}}", &["expect", "merge keys"]),
     ("plot without height", "plot: {particle_id: 0, dof: 0, y_range: »[1, 1]}", &["plot.y_range"]),
 ];
 
@@ -230,7 +268,7 @@ fn long_lines_are_cut_around_the_place() {
 
 #[test]
 fn bytes_that_are_not_utf8_have_a_place() {
-    let error = scene::parse(b"name: a\nup: \xff", "x.yml", METHODS).unwrap_err();
+    let error = scene::parse(b"name: a\nup: \xff", "x.yml", &NAMES).unwrap_err();
     assert_eq!((error.line, error.column), (Some(2), Some(5)));
     assert!(error.to_string().contains("UTF-8"), "{error}");
 }
@@ -254,6 +292,24 @@ fn hostile_files_are_refused_soon() {
             "particles:\n- &p {{pos: [0, 0, 0], mass: 1}}\n{}",
             "- *p\n".repeat(20_000)
         ),
+        // Entries of aliased keys, engines and words would multiply.
+        format!(
+            "expect:\n  all: &a {{{}}}\n{}",
+            (0..DEEP).map(|i| format!("a{i}: b, ")).collect::<String>(),
+            (0..DEEP)
+                .map(|i| format!("  b{i}: *a\n"))
+                .collect::<String>()
+        ),
+        format!(
+            "description: &n \"{}\"\nexpect: {{rk4: {{status: [{}]}}}}",
+            "x".repeat(DEEP),
+            "*n, ".repeat(DEEP)
+        ),
+        format!("expect: {{{}: {{}}}}", "x".repeat(DEEP)),
+        format!(
+            "expect: {{rk4: {{status: [{}]}}}}",
+            "completed, ".repeat(DEEP)
+        ),
         format!(
             "name: &n \"{}\"\nparticles: [{}]",
             "x".repeat(DEEP),
@@ -275,7 +331,7 @@ fn hostile_files_are_refused_soon() {
 #[test]
 fn files_that_cannot_be_read_say_why() {
     let folder = tempfile::tempdir().unwrap();
-    let read = |name: &str| scene::read(&folder.path().join(name), METHODS).unwrap_err();
+    let read = |name: &str| scene::read(&folder.path().join(name), &NAMES).unwrap_err();
     assert!(read("").to_string().contains("this is a directory"));
     assert!(
         read("nowhere.yml")

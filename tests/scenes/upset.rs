@@ -1,8 +1,10 @@
 //! Whatever the bytes, the answer is a sound scene or a located error, never a panic.
 
-use super::{METHODS, shipped};
+use super::shipped;
 use proptest::prelude::*;
-use springcheck::scene::{self, Scene};
+use springcheck::crosscheck;
+use springcheck::integrators;
+use springcheck::scene::{self, Scene, Wanted};
 
 /// Pieces that mean something in YAML or in a scene.
 const PIECES: &[&str] = &[
@@ -52,6 +54,12 @@ const PIECES: &[&str] = &[
     "pos",
     "mass",
     "stiffness: ",
+    "expect: ",
+    "rapier: ",
+    "status: ",
+    "completed",
+    "below: ",
+    "contains: ",
     "particle_ids: [0, 0]",
     "ä",
     "\u{feff}",
@@ -65,8 +73,10 @@ const RICH: &str = "name: a\ndescription: 'b'\nduration: 2\nup: x\ndamping_model
     solver: {type: rk4, timestep: 0.1, gravity: 0, tolerance: 1e-9}\n\
     plot: {particle_id: 1, dof: 2, y_range: [0, 1]}\n\
     particles:\n- &p {pos: [0, 0, 0], fixed: true, mass: 1}\n- {pos: [1, 0, 0], vel: [0, 1, 0], mass: 1, radius: 1, drag: 1}\n- *p\n\
-    springs: [{particle_ids: [0, 1], stiffness: 1, damping: 1, rest_length: 1}]\n\
-    gravitational: [{particle_ids: [0, 1], G: 1}]\nwind: {direction: [1, 0, 0], strength: 1}\n";
+    springs: [{particle_ids: [0, 1], stiffness: 1, cubic: 1, damping: 1, rest_length: 1}]\n\
+    gravitational: [{particle_ids: [0, 1], G: 1}]\nwind: {direction: [1, 0, 0], strength: 1}\n\
+    expect:\n  all: &e {status: [completed, failed], energy.drift_per_s: {above: -1, below: 1}}\n  \
+    rest: *e\n  rapier: {reason: {contains: particle 1}, energy.class: growing}\n";
 
 fn seeds() -> Vec<Vec<u8>> {
     // The sheet is large, and holds nothing the others do not.
@@ -82,7 +92,7 @@ fn assert_sound(scene: &Scene) {
     let count = scene.particles.len();
     let mut numbers = vec![scene.duration, scene.solver.timestep, scene.solver.gravity];
     assert!(scene.solver.timestep > 0.0 && scene.solver.timestep <= scene.duration);
-    assert!(METHODS.contains(&scene.solver.method.as_str()));
+    assert!(integrators::find(&scene.solver.method).is_some());
     for p in &scene.particles {
         numbers.extend(
             p.position
@@ -93,8 +103,8 @@ fn assert_sound(scene: &Scene) {
         assert!(p.mass > 0.0 && p.mass.is_finite() && p.radius >= 0.0 && p.drag >= 0.0);
     }
     for s in &scene.springs {
-        numbers.extend([s.stiffness, s.damping, s.rest_length]);
-        assert!(s.stiffness >= 0.0 && s.damping >= 0.0 && s.rest_length >= 0.0);
+        numbers.extend([s.stiffness, s.cubic, s.damping, s.rest_length]);
+        assert!(s.stiffness >= 0.0 && s.cubic >= 0.0 && s.damping >= 0.0 && s.rest_length >= 0.0);
         assert!(s.ends[0] != s.ends[1] && s.ends.iter().all(|id| *id < count));
     }
     for g in &scene.gravitational {
@@ -106,6 +116,16 @@ fn assert_sound(scene: &Scene) {
         let length = wind.direction.iter().map(|d| d * d).sum::<f64>();
         assert!((length - 1.0).abs() < 1e-14, "{length}");
     }
+    for expectation in &scene.expect {
+        match &expectation.wanted {
+            Wanted::Words(words) => assert!(!words.is_empty()),
+            Wanted::Contains(text) => assert!(!text.is_empty()),
+            Wanted::Bounds { above, below } => {
+                assert!(above.is_some() || below.is_some());
+                numbers.extend(above.iter().chain(below));
+            }
+        }
+    }
     numbers.push(scene.size());
     assert!(numbers.iter().all(|x| x.is_finite()), "{scene:?}");
     assert!(scene.particles.iter().any(|p| !p.fixed));
@@ -114,12 +134,12 @@ fn assert_sound(scene: &Scene) {
 #[test]
 fn what_is_changed_was_sound() {
     for bytes in seeds() {
-        assert_sound(&scene::parse(&bytes, "x.yml", METHODS).unwrap());
+        assert_sound(&scene::parse(&bytes, "x.yml", crosscheck::names()).unwrap());
     }
 }
 
 fn answers(bytes: &[u8]) {
-    match scene::parse(bytes, "x.yml", METHODS) {
+    match scene::parse(bytes, "x.yml", crosscheck::names()) {
         Ok(scene) => assert_sound(&scene),
         Err(error) => {
             assert!(error.line.is_some() && error.column.is_some(), "{error}");

@@ -9,7 +9,7 @@ mod times;
 mod upset;
 mod written;
 
-use springcheck::scene::{self, Scene};
+use springcheck::scene::{self, Names, Scene};
 use springcheck::trajectory::{self, Expected, ReadError, Rows};
 use std::io::Write;
 use zip::write::SimpleFileOptions;
@@ -25,7 +25,11 @@ const CHAIN: &str = "solver: {type: midpoint, timestep: 0.25}\n\
     springs: [{particle_ids: [0, 1], stiffness: 20}, {particle_ids: [1, 2], stiffness: 20}]";
 
 fn scene(yaml: &str) -> Scene {
-    scene::parse(yaml.as_bytes(), "scene.yml", &["midpoint"]).expect("a scene")
+    let names = Names {
+        methods: vec!["midpoint"],
+        ..Names::default()
+    };
+    scene::parse(yaml.as_bytes(), "scene.yml", &names).expect("a scene")
 }
 
 fn expected(yaml: &str) -> Expected {

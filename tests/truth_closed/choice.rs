@@ -118,6 +118,18 @@ fn none_where_forces_are_not_linear() {
         })),
         "attraction"
     );
+    assert!(!change(|s| s.springs[0].cubic = 1e-9), "a cubic spring");
+    // Where it can move nothing it changes nothing.
+    let mut apart = hanging.clone();
+    let mut between = apart.springs[0].clone();
+    apart.particles.push(apart.particles[0].clone());
+    apart.particles[2].position = [0.0, 0.0, 9.0];
+    (between.ends, between.cubic) = ([0, 2], 1.0);
+    apart.springs.push(between);
+    assert!(
+        form(&apart, 5.0).is_some(),
+        "a cubic spring between fixed ends"
+    );
     // The same effect in the system alone is enough.
     let mut attracted = hanging.clone();
     attracted.gravitational.push(GravitationalPair {

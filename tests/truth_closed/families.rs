@@ -1,7 +1,7 @@
 //! Scenes with a closed form, by family, from random numbers.
 
 use super::common::Random;
-use springcheck::integrators;
+use springcheck::crosscheck;
 use springcheck::scene::{self, Axis, DampingModel, Particle, Scene, Solver, Spring, Wind};
 use std::path::Path;
 
@@ -25,6 +25,7 @@ pub fn empty() -> Scene {
         springs: Vec::new(),
         gravitational: Vec::new(),
         wind: None,
+        expect: Vec::new(),
     }
 }
 
@@ -32,7 +33,7 @@ pub fn shipped(path: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenes")
         .join(path);
-    scene::read(&path, &integrators::ids()).expect("a valid scene")
+    scene::read(&path, crosscheck::names()).expect("a valid scene")
 }
 
 pub fn fixed(position: [f64; 3]) -> Particle {
@@ -59,6 +60,7 @@ pub fn spring(a: usize, b: usize, stiffness: f64, damping: f64, rest_length: f64
     Spring {
         ends: [a, b],
         stiffness,
+        cubic: 0.0,
         damping,
         rest_length,
     }

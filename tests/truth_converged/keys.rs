@@ -25,6 +25,7 @@ const DECIDES: &[(&str, Change)] = &[
     ("spring end", |s| s.springs[0].ends = [0, 2]),
     ("spring ends swapped", |s| s.springs[0].ends = [1, 0]),
     ("stiffness", |s| s.springs[1].stiffness += 1.0),
+    ("cubic", |s| s.springs[1].cubic += 1.0),
     ("damping", |s| s.springs[1].damping += 0.1),
     ("rest_length", |s| s.springs[1].rest_length += 0.1),
     ("gravitational end", |s| s.gravitational[0].ends = [0, 1]),
@@ -123,6 +124,9 @@ fn a_key_that_forgets_any_field_is_found_out() {
         }),
         ("rest_length", |s, _| {
             s.springs.iter_mut().for_each(|p| p.rest_length = 1.0)
+        }),
+        ("cubic", |s, _| {
+            s.springs.iter_mut().for_each(|p| p.cubic = 0.0)
         }),
         ("damping", |s, _| {
             s.springs.iter_mut().for_each(|p| p.damping = 0.0)

@@ -166,6 +166,7 @@ pub fn bodies(of: &[(f64, [f64; 3], [f64; 3])]) -> Scene {
             .map(|ends| GravitationalPair { ends, g: 1.0 })
             .collect(),
         wind: None,
+        expect: Vec::new(),
     }
 }
 
@@ -193,6 +194,7 @@ pub fn shot(miss: f64) -> Scene {
     scene.springs.push(Spring {
         ends: [0, 1],
         stiffness: 50.0,
+        cubic: 0.0,
         damping: 0.0,
         rest_length: 1.0,
     });

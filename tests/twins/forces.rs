@@ -19,10 +19,11 @@ fn law(ours_scene: &Scene, theirs: &mut dyn Engine) -> f64 {
     )
 }
 
-/// Every scene, unstable ones (h w = 2.12) and gravitation included.
+/// Every scene, unstable ones (h w = 2.12), gravitation and cubic springs included.
 #[test]
 fn on_every_scene() {
-    for scene in scenes::mirrored().iter().chain([&scenes::gravitational()]) {
+    let ours_alone = [scenes::gravitational(), scenes::cubic()];
+    for scene in scenes::mirrored().iter().chain(&ours_alone) {
         let mut engine = theirs(scene, "rapier-forces", scene.solver.timestep);
         assert_eq!(law(scene, &mut *engine), 0.0, "{}", scene.name);
     }

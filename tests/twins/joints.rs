@@ -120,6 +120,7 @@ fn the_rest_is_unsupported() {
     let slight = mutated(&scenes::drag(), |s| s.particles[2].drag = 1e-18);
     for (scene, words) in [
         (scenes::gravitational(), "no native `gravitational`"),
+        (scenes::cubic(), "no native `cubic_springs`"),
         (coincident, "both ends in one place"),
         (faint, "so soft"),
         (heavy, "weighs"),

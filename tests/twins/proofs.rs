@@ -38,10 +38,15 @@ fn every_scene_passes() {
 
 #[test]
 fn what_rapier_lacks_is_skipped_with_its_reason() {
-    let proofs = prove(&scenes::gravitational(), 1e-3);
-    let statuses: Vec<_> = proofs.iter().map(|p| p.status).collect();
-    assert_eq!(statuses, [Status::Pass, Status::Skip]);
-    assert!(proofs[1].message.contains("gravitational"));
+    for (scene, lacks) in [
+        (scenes::gravitational(), "gravitational"),
+        (scenes::cubic(), "cubic_springs"),
+    ] {
+        let proofs = prove(&scene, 1e-3);
+        let statuses: Vec<_> = proofs.iter().map(|p| p.status).collect();
+        assert_eq!(statuses, [Status::Pass, Status::Skip]);
+        assert!(proofs[1].message.contains(lacks));
+    }
 }
 
 /// Both proofs of each scene see each mutant, at the scene's own step.
@@ -104,6 +109,7 @@ fn no_false_alarm() {
             scene.springs.push(Spring {
                 ends: [a, b],
                 stiffness: stiff * random(),
+                cubic: 0.0,
                 damping: random(),
                 rest_length: random(),
             });

@@ -1,6 +1,6 @@
 //! The scenes the twins are proved on, built in code: the course's seven, and one per effect.
 
-use springcheck::integrators;
+use springcheck::crosscheck;
 use springcheck::scene::{
     self, Axis, DampingModel, GravitationalPair, Particle, Scene, Solver, Spring, Wind,
 };
@@ -26,6 +26,7 @@ pub fn empty(name: &str) -> Scene {
         springs: Vec::new(),
         gravitational: Vec::new(),
         wind: None,
+        expect: Vec::new(),
     }
 }
 
@@ -52,7 +53,7 @@ fn shipped(path: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenes")
         .join(path);
-    scene::read(&path, &integrators::ids()).expect("a valid scene")
+    scene::read(&path, crosscheck::names()).expect("a valid scene")
 }
 
 /// The course's scene of this number, 0 to 6.
@@ -91,6 +92,7 @@ pub fn oscillator(k: f64, m: f64, amplitude: f64, rest_length: f64, timestep: f6
     scene.springs = vec![Spring {
         ends: [0, 1],
         stiffness: k,
+        cubic: 0.0,
         damping: 0.0,
         rest_length,
     }];
@@ -151,6 +153,15 @@ pub fn gravitational() -> Scene {
         ends: [2, 3],
         g: 10.0,
     }];
+    scene
+}
+
+/// Springs that stiffen, one of them without a linear part.
+pub fn cubic() -> Scene {
+    let mut scene = lively("cubic");
+    scene.springs.iter_mut().for_each(|s| s.cubic = 40.0);
+    scene.springs[1].stiffness = 0.0;
+    scene.springs[1].damping = 0.0;
     scene
 }
 

@@ -17,6 +17,7 @@ pub fn swinging_triangle(damping: f64, model: DampingModel) -> Scene {
     let spring = |a: usize, b: usize, stiffness: f64, rest_length: f64| Spring {
         ends: [a, b],
         stiffness,
+        cubic: 0.0,
         damping,
         rest_length,
     };
@@ -48,6 +49,7 @@ pub fn swinging_triangle(damping: f64, model: DampingModel) -> Scene {
         ],
         gravitational: Vec::new(),
         wind: None,
+        expect: Vec::new(),
     }
 }
 

@@ -51,6 +51,8 @@ pub struct FlatSprings {
     pub ids: Vec<usize>,
     /// M, N/m.
     pub stiffness: Vec<f64>,
+    /// M, N/m³: adds cubic (l - L)³ to the pull.
+    pub cubic: Vec<f64>,
     /// M, N s/m.
     pub damping: Vec<f64>,
     /// M, m.
@@ -83,6 +85,7 @@ impl Flat {
             springs: FlatSprings {
                 ids: scene.springs.iter().flat_map(|s| s.ends).collect(),
                 stiffness: scene.springs.iter().map(|s| s.stiffness).collect(),
+                cubic: scene.springs.iter().map(|s| s.cubic).collect(),
                 damping: scene.springs.iter().map(|s| s.damping).collect(),
                 rest_lengths: scene.springs.iter().map(|s| s.rest_length).collect(),
             },

@@ -130,11 +130,35 @@ fn checks(checks: &[Check]) -> Vec<String> {
     let mut lines = vec![String::new()];
     for group in &groups {
         match group.as_slice() {
+            met if is_met(met[0]) => lines.extend(counted(met, ids)),
             [check] => lines.extend(alone(check, ids)),
             several => lines.extend(together(several, ids)),
         }
     }
     lines
+}
+
+/// An expectation of the scene that is met.
+fn is_met(check: &Check) -> bool {
+    check.id == "expect" && check.status == CheckStatus::Pass
+}
+
+/// How many of each engine's keys are as expected: `symplectic_euler 3, explicit_euler 1`.
+fn counted(checks: &[&Check], ids: usize) -> Vec<String> {
+    let mut counts: Vec<(&str, usize)> = Vec::new();
+    for check in checks {
+        let engine = check.subject.split(' ').next().unwrap_or_default();
+        match counts.iter_mut().find(|(known, _)| *known == engine) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((engine, 1)),
+        }
+    }
+    let texts: Vec<String> = counts
+        .iter()
+        .map(|(engine, count)| format!("{} {count}", words::one_line(engine)))
+        .collect();
+    let line = format!("{}  {}", head(checks[0], ids), texts.join(", "));
+    wrap(&line, WIDTH, &" ".repeat(8 + ids))
 }
 
 /// What a check says, without whom it is about.

@@ -89,7 +89,7 @@ pub fn free_axis(scene: &Scene) -> Option<FreeAxis> {
     let springs = scene
         .springs
         .iter()
-        .filter(|s| s.stiffness != 0.0 || s.damping != 0.0)
+        .filter(|s| s.stiffness != 0.0 || s.cubic != 0.0 || s.damping != 0.0)
         .map(|s| s.ends);
     let pairs = scene.gravitational.iter().filter(|pair| pair.g != 0.0);
     let lines = springs

@@ -23,6 +23,7 @@ pub fn key(scene: &Scene, until: f64) -> String {
         springs,
         gravitational,
         wind,
+        expect: _,
     } = scene;
     let Solver {
         method: _,
@@ -62,11 +63,12 @@ pub fn key(scene: &Scene, until: f64) -> String {
         let Spring {
             ends,
             stiffness,
+            cubic,
             damping,
             rest_length,
         } = spring;
         content.integers(ends.map(|end| end as u64));
-        content.numbers([*stiffness, *damping, *rest_length]);
+        content.numbers([*stiffness, *cubic, *damping, *rest_length]);
     }
     content.length(gravitational.len());
     for pair in gravitational {

@@ -53,6 +53,11 @@ fn knobs<'a>(spot: &'a Spot<'a>) -> Vec<Knob<'a>> {
         let k = spring.stiffness;
         let set = Box::new(move |s: &mut Scene, p| s.springs[id].stiffness = p);
         add(name("stiffness"), "N/m", k, k.max(1.0), set);
+        let q = spring.cubic;
+        if q != 0.0 {
+            let set = Box::new(move |s: &mut Scene, p| s.springs[id].cubic = p);
+            add(name("cubic stiffness"), "N/m³", q, q, set);
+        }
         let (l, size) = (spring.rest_length, scene.size());
         let set = Box::new(move |s: &mut Scene, p| s.springs[id].rest_length = p);
         add(name("rest length"), "m", l, l.max(1e-3 * size), set);

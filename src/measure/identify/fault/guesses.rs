@@ -85,14 +85,17 @@ type Change = (&'static str, fn(&mut Spring));
 const SPRING: [Change; 3] = [
     ("is missing", |s| {
         s.stiffness = 0.0;
+        s.cubic = 0.0;
         s.damping = 0.0;
     }),
     ("has the wrong sign", |s| {
         s.stiffness = -s.stiffness;
+        s.cubic = -s.cubic;
         s.damping = -s.damping;
     }),
     ("acts twice", |s| {
         s.stiffness *= 2.0;
+        s.cubic *= 2.0;
         s.damping *= 2.0;
     }),
 ];

@@ -93,6 +93,7 @@ pub(super) fn springs_twice(scene: &Scene) -> Option<ParticleSystem> {
     changed(scene, !scene.springs.is_empty(), |wrong| {
         for spring in &mut wrong.springs {
             spring.stiffness *= 2.0;
+            spring.cubic *= 2.0;
             spring.damping *= 2.0;
         }
     })

@@ -1,0 +1,88 @@
+//! What a scene says that every engine must do.
+
+use super::model::Scene;
+use std::fmt;
+
+/// Whom `expect` is about when it is about every integrator.
+pub(super) const ALL: &str = "all";
+/// Every integrator that it does not name.
+pub(super) const REST: &str = "rest";
+
+/// One key of one line of `expect`, about the outcome at the scene's own timestep.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expectation {
+    pub whom: Whom,
+    /// Dotted path into an outcome, as `energy.class`.
+    pub key: String,
+    pub wanted: Wanted,
+}
+
+/// Whom it is about.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Whom {
+    /// Every integrator, but for the keys given for it otherwise.
+    All,
+    /// Every integrator that has no line of its own.
+    Rest,
+    /// The integrator or reference engine of this id.
+    Engine(String),
+}
+
+/// What must stand under the key.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Wanted {
+    /// One of these; not empty.
+    Words(Vec<String>),
+    /// A number strictly between these, in the key's unit; at least one is given.
+    Bounds {
+        above: Option<f64>,
+        below: Option<f64>,
+    },
+    /// A text with this in it; not empty.
+    Contains(String),
+}
+
+impl Scene {
+    /// What is expected of an engine, each key once: what its own line says (or, for an integrator
+    /// without one, `rest`), then what `all` says of other keys if it is an `integrator`.
+    pub fn expected_of(&self, engine: &str, integrator: bool) -> Vec<&Expectation> {
+        let own = |e: &Expectation| matches!(&e.whom, Whom::Engine(id) if id == engine);
+        let named = self.expect.iter().any(own);
+        let rest = |e: &Expectation| integrator && !named && e.whom == Whom::Rest;
+        let mut found: Vec<&Expectation> =
+            self.expect.iter().filter(|e| own(e) || rest(e)).collect();
+        let nearer = found.len();
+        for expectation in &self.expect {
+            let open = !found[..nearer].iter().any(|e| e.key == expectation.key);
+            if integrator && open && expectation.whom == Whom::All {
+                found.push(expectation);
+            }
+        }
+        found
+    }
+}
+
+impl fmt::Display for Whom {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::All => ALL,
+            Self::Rest => REST,
+            Self::Engine(id) => id,
+        })
+    }
+}
+
+impl fmt::Display for Wanted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Words(words) => f.write_str(&words.join(" or ")),
+            Self::Bounds { above, below } => match (above, below) {
+                (Some(above), Some(below)) => write!(f, "above {above:?} and below {below:?}"),
+                (Some(above), None) => write!(f, "above {above:?}"),
+                (None, Some(below)) => write!(f, "below {below:?}"),
+                (None, None) => f.write_str("anything"),
+            },
+            Self::Contains(text) => write!(f, "text with `{text}` in it"),
+        }
+    }
+}
