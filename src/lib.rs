@@ -15,7 +15,7 @@
 //! - [`truth`] is what really happens: a closed form or a converged reference, with an error bar;
 //! - [`trajectory`] keeps a bounded record of a run, or all of it in a file, and reads other people's;
 //! - [`measure`] turns records into errors, energy verdicts, deviations, orders, the scheme they
-//!   follow, and the twin proof;
+//!   follow, the steps they are stable at, and the twin proof;
 //! - [`crosscheck`] runs everything side by side and fills a [`Report`](outcome::Report);
 //! - [`report`] writes it down;
 //! - [`conformance`] holds any integrator, ours or yours, to the facts it claims.

@@ -3,6 +3,13 @@
 //!
 //! Every number that could be missing is an `Option`; no field ever holds NaN or infinity.
 
+mod stability;
+
+pub use stability::{
+    Admissible, AdmissiblePanel, Cell, MapPanel, Stability, StabilityMap, StabilityRow,
+    TightestLimit,
+};
+
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -20,6 +27,9 @@ pub struct Report {
     /// `compare` alone: the first step that leaves the scheme, null where none does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<Option<Fault>>,
+    /// `stability` alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stability: Option<Stability>,
     /// What plots need and the JSON does not carry.
     #[serde(skip)]
     pub figures: Figures,
@@ -175,6 +185,14 @@ pub struct Energy {
     pub dissipated_j: Option<f64>,
     #[serde(skip)]
     pub injected_j: Option<f64>,
+}
+
+impl Energy {
+    /// Whether less energy is left at the end than there was, both known. Not to be confused with the
+    /// class, which judges the balance: where dampers are booked more than they took, that grows.
+    pub fn lost(&self) -> bool {
+        matches!((self.initial_j, self.final_j), (Some(initial), Some(last)) if last < initial)
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

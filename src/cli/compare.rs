@@ -4,11 +4,11 @@ use super::cache::Cache;
 use super::host::host;
 use super::output::Place;
 use super::progress::Progress;
-use super::run::{HUMAN, Truth, formats};
+use super::run::Truth;
+use super::shown::{self, HUMAN, formats};
 use anyhow::{Context, bail};
 use springcheck::crosscheck::{self, Comparison};
 use springcheck::outcome::{Figures, Report, Undecided};
-use springcheck::report;
 use springcheck::scene;
 use springcheck::trajectory::{self, Expected, limits};
 use std::fs::File;
@@ -88,14 +88,9 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         report.figures = Figures::default();
     }
     if args.format == HUMAN {
-        let written = place.map_or_else(String::new, |place| {
-            let file = place.report().display().to_string();
-            format!("report: {}\n", file.replace(char::is_control, "?"))
-        });
-        super::print(&format!("{}{written}", report::terminal::render(&report)))?;
+        super::print(&shown::table(&report, place.as_ref()))?;
     } else {
-        let format = report::format(&args.format).context("a format without a row")?;
-        super::print(&(format.render)(std::slice::from_ref(&report)))?;
+        shown::print(&args.format, std::slice::from_ref(&report))?;
     }
     Ok(ExitCode::from(code(&report)))
 }

@@ -1,6 +1,8 @@
 //! Verbs, one file each: the only place that touches files, the terminal and exit codes.
 
+mod announce;
 mod cache;
+mod chosen;
 mod compare;
 mod external;
 mod host;
@@ -10,6 +12,8 @@ mod progress;
 mod rapier;
 mod run;
 mod save;
+mod shown;
+mod stability;
 
 use anyhow::Context;
 use clap::{Parser, Subcommand, ValueEnum};
@@ -41,6 +45,8 @@ enum Verb {
     Run(run::Args),
     /// A trajectory some other program computed: is it right, and which scheme is it really?
     Compare(compare::Args),
+    /// How large a step each integrator may take: predicted, measured, and as a map.
+    Stability(stability::Args),
     /// What there is: integrators, effects, engines, mistakes, with their facts.
     List(list::Args),
 }
@@ -74,6 +80,7 @@ pub fn main() -> ExitCode {
     let done = match cli.verb {
         Verb::Run(args) => run::run(&args, cli.quiet),
         Verb::Compare(args) => compare::compare(&args, cli.quiet),
+        Verb::Stability(args) => stability::stability(&args, cli.quiet),
         Verb::List(args) => list::list(&args),
     };
     match done {

@@ -43,8 +43,8 @@ impl Place {
     }
 
     /// The file to open first.
-    pub fn report(&self) -> PathBuf {
-        self.folder.join("report.md")
+    pub fn report(&self, report: &Report) -> PathBuf {
+        self.folder.join(format!("{}.md", report::stem(report)))
     }
 
     pub fn create(&self) -> anyhow::Result<()> {
@@ -55,7 +55,7 @@ impl Place {
     /// Writes the report in every file format, and its figures.
     pub fn write(&self, report: &Report) -> anyhow::Result<()> {
         for format in report::FORMATS.iter().filter(|format| format.file) {
-            let name = format!("report.{}", format.extension);
+            let name = format!("{}.{}", report::stem(report), format.extension);
             let text = (format.render)(std::slice::from_ref(report));
             self.put(&name, text.as_bytes())?;
         }

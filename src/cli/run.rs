@@ -1,23 +1,20 @@
 //! `springcheck run SCENE...`
 
+use super::announce;
 use super::cache::Cache;
+use super::chosen;
 use super::external::{self, External, Timeout};
 use super::host::host;
-use super::output::Place;
 use super::progress::Progress;
 use super::rapier::Custom;
 use super::save::{FileKind, Files};
+use super::shown::{self, HUMAN, formats};
 use anyhow::{Context, bail};
-use clap::builder::PossibleValuesParser;
-use springcheck::crosscheck::{self, Choice, ChosenEngine, Estimate, Orders, Plan, expect};
-use springcheck::engines;
-use springcheck::integrators;
+use springcheck::crosscheck::{self, Choice, Orders, Plan, expect};
 use springcheck::outcome::{Check, CheckStatus, Figures, Report};
-use springcheck::report;
 use springcheck::scene::{self, Scene};
 use springcheck::truth::Demand;
-use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, clap::Args)]
@@ -106,16 +103,6 @@ impl Truth {
     }
 }
 
-/// The format whose texts are tables for people, with files beside them.
-pub const HUMAN: &str = "human";
-
-pub fn formats() -> PossibleValuesParser {
-    PossibleValuesParser::new(report::FORMATS.iter().map(|format| format.id))
-}
-
-/// Work expected to take longer than this is announced, seconds.
-const ANNOUNCED: f64 = 10.0;
-
 /// Runs the verb.
 pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     // All scenes are read before any runs: a typo in the last one costs nothing.
@@ -142,15 +129,14 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
                 report.figures = Figures::default();
             }
         }
-        let format = report::format(&args.format).context("a format without a row")?;
-        super::print(&(format.render)(&reports))?;
+        shown::print(&args.format, &reports)?;
     }
     let failed = |report: &Report| report.checks.iter().any(|c| c.status == CheckStatus::Fail);
     Ok(ExitCode::from(u8::from(reports.iter().any(failed))))
 }
 
 /// Reads a scene and applies the flags that change it.
-fn read(args: &Args, path: &std::path::Path) -> anyhow::Result<Read> {
+fn read(args: &Args, path: &Path) -> anyhow::Result<Read> {
     let mut scene = scene::read(path, crosscheck::names())?;
     let stated = scene.duration;
     if let Some(duration) = args.duration {
@@ -177,9 +163,9 @@ struct Read {
     stated: f64,
 }
 
-fn one(args: &Args, quiet: bool, read: &Read, path: &std::path::Path) -> anyhow::Result<Report> {
+fn one(args: &Args, quiet: bool, read: &Read, path: &Path) -> anyhow::Result<Report> {
     let scene = &read.scene;
-    let place = place(args, path);
+    let place = shown::place(args.output.as_deref(), &args.format, path);
     let files = match (args.save, &place) {
         (None, _) => None,
         (Some(kind), Some(place)) => Some(Files::new(kind, place, args.every)),
@@ -189,9 +175,13 @@ fn one(args: &Args, quiet: bool, read: &Read, path: &std::path::Path) -> anyhow:
     choice.programs = external::chosen(&args.external, path, args.external_timeout);
     let plan = Plan::new(scene, &choice);
     let estimates = plan.estimate();
-    let expected = expected(&estimates);
-    if expected > ANNOUNCED && !quiet {
-        announce(&estimates, expected);
+    let expected = announce::expected(&estimates);
+    if !quiet {
+        announce::announce(
+            &estimates,
+            expected,
+            "--duration, a larger --timestep, --integrators A,B, --engines none",
+        );
     }
     if let Some(place) = &place {
         place.create()?;
@@ -225,11 +215,11 @@ fn expectations(args: &Args, read: &Read, report: &Report) -> Vec<Check> {
 /// Two scenes must not write into one folder.
 fn distinct(args: &Args) -> anyhow::Result<()> {
     for (at, path) in args.scenes.iter().enumerate() {
-        let Some(own) = place(args, path) else {
+        let place = |path: &Path| shown::place(args.output.as_deref(), &args.format, path);
+        let Some(own) = place(path) else {
             return Ok(());
         };
-        let same =
-            |other: &&PathBuf| place(args, other).is_some_and(|p| p.folder() == own.folder());
+        let same = |other: &&PathBuf| place(other).is_some_and(|p| p.folder() == own.folder());
         if let Some(other) = args.scenes[..at].iter().find(same) {
             bail!(
                 "{} and {} would both write to {}",
@@ -242,32 +232,21 @@ fn distinct(args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Reports are files only where somebody asked for them or looks at the table.
-fn place(args: &Args, scene: &std::path::Path) -> Option<Place> {
-    match &args.output {
-        Some(output) => Some(Place::new(output, scene)),
-        None if args.format == HUMAN => Some(Place::new("reports".as_ref(), scene)),
-        None => None,
-    }
-}
-
 /// The table and, as its last three lines, verdict, report path, next command.
-fn human(args: &Args, path: &std::path::Path, report: &Report) -> String {
-    let table = report::terminal::render(report);
-    let written = place(args, path).map_or_else(String::new, |place| {
-        let file = place.report().display().to_string();
-        format!("report: {}\n", file.replace(char::is_control, "?"))
-    });
-    let next = next(args, path, report)
-        .filter(|next| next.chars().count() + "next: ".len() <= report::terminal::WIDTH)
-        .unwrap_or_else(|| "springcheck run --help".to_owned());
-    format!("{table}{written}next: {next}\n")
+fn human(args: &Args, path: &Path, report: &Report) -> String {
+    let place = shown::place(args.output.as_deref(), &args.format, path);
+    shown::human(
+        report,
+        place.as_ref(),
+        next(args, path, report),
+        "springcheck run --help",
+    )
 }
 
 /// A command worth trying next: other steps, or other integrators; None where the path cannot be
 /// written down.
-fn next(args: &Args, path: &std::path::Path, report: &Report) -> Option<String> {
-    let path = quoted(path)?;
+fn next(args: &Args, path: &Path, report: &Report) -> Option<String> {
+    let path = shown::quoted(path)?;
     if args.timestep.len() > 1 {
         return Some(format!("springcheck run {path} --integrators all"));
     }
@@ -289,51 +268,14 @@ fn next(args: &Args, path: &std::path::Path, report: &Report) -> Option<String> 
     ))
 }
 
-/// The path as a POSIX shell takes it for one word; None with what a terminal cannot show.
-fn quoted(path: &std::path::Path) -> Option<String> {
-    let text = path
-        .to_str()
-        .filter(|text| !text.contains(char::is_control))?;
-    let text = if text.starts_with('-') {
-        format!("./{text}")
-    } else {
-        text.to_owned()
-    };
-    let plain = |c: char| c.is_alphanumeric() || "/._-+,:@%".contains(c);
-    if text.chars().all(plain) {
-        Some(text)
-    } else {
-        Some(format!("'{}'", text.replace('\'', "'\\''")))
-    }
-}
-
 fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
     let mut choice = Choice::default_for(scene);
     choice.truth = args.truth.demand();
     if args.order {
         choice.order = Orders::Always;
     }
-    if args.integrators == ["all"] {
-        choice.methods = Choice::all_methods(scene);
-    } else if !args.integrators.is_empty() {
-        choice.methods = each(&args.integrators, integrators::find, || {
-            format!("integrators: {}, or all", integrators::ids().join(", "))
-        })?;
-    }
-    if args.engines == ["none"] {
-        choice.engines.clear();
-    } else if !args.engines.is_empty() {
-        let rows = each(&args.engines, engines::find, || {
-            format!("engines: {}, or none", engines::ids().join(", "))
-        })?;
-        choice.engines = rows.into_iter().map(ChosenEngine::from).collect();
-    }
-    for chosen in args.rapier.iter().map(Custom::chosen) {
-        let known = |e: &ChosenEngine| e.row.id == chosen.row.id;
-        if !choice.engines.iter().any(known) {
-            choice.engines.push(chosen);
-        }
-    }
+    choice.methods = chosen::methods(&args.integrators, scene, choice.methods)?;
+    choice.engines = chosen::engines(&args.engines, &args.rapier, choice.engines)?;
     if !args.timestep.is_empty() {
         choice.timesteps.clear();
         for &timestep in &args.timestep {
@@ -343,45 +285,4 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
         }
     }
     Ok(choice)
-}
-
-/// Looks each id up, once; an unknown one is an error that lists what there is.
-fn each<T>(
-    ids: &[String],
-    find: impl Fn(&str) -> Option<&'static T>,
-    known: impl Fn() -> String,
-) -> anyhow::Result<Vec<&'static T>> {
-    let mut rows = Vec::new();
-    for (at, id) in ids.iter().enumerate() {
-        if ids[..at].contains(id) {
-            continue;
-        }
-        rows.push(find(id).with_context(|| format!("unknown `{id}`; known {}", known()))?);
-    }
-    Ok(rows)
-}
-
-/// Wall seconds all cases will take together: no less than the longest, no less than a fair share.
-fn expected(estimates: &[Estimate]) -> f64 {
-    let sum: f64 = estimates.iter().map(|e| e.seconds).sum();
-    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let longest = estimates.iter().fold(0.0, |m: f64, e| m.max(e.seconds));
-    longest.max(sum / threads as f64)
-}
-
-fn announce(estimates: &[Estimate], expected: f64) {
-    let mut err = anstream::stderr().lock();
-    let _ = writeln!(err, "about {expected:.0} s expected:");
-    for estimate in estimates {
-        let Estimate { label, seconds } = estimate;
-        let _ = writeln!(
-            err,
-            "  {:<30} {seconds:>8.1} s  ({} steps)",
-            label.engine, label.steps
-        );
-    }
-    let _ = writeln!(
-        err,
-        "shorter: --duration, a larger --timestep, --integrators A,B, --engines none"
-    );
 }

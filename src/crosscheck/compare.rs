@@ -48,12 +48,11 @@ impl Comparison<'_> {
             timesteps: vec![self.rows.timestep],
             truth: self.demand,
             order: Orders::Never,
-        };
-        let plan = Plan {
             // Every step of the rows is replayed below, not some of those recorded.
             identify: false,
-            ..Plan::new(self.scene, &choice)
+            prove: false,
         };
+        let plan = Plan::new(self.scene, &choice);
         let mut report = plan.execute(host)?;
         let (identified, fault) = identity::of_rows(&plan, &self.rows);
         for outcome in &mut report.outcomes {

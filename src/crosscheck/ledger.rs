@@ -18,18 +18,29 @@ pub(super) fn scene_facts(plan: &Plan, runs: &[Run], scale: Option<f64>) -> Scen
             damping += ran.counts.damping_evaluations.unwrap_or(0);
         }
     }
+    let effects = effects(scene, &plan.system, [forces, damping]);
+    facts(scene, effects, scale)
+}
+
+/// Each effect in force, evaluated so often: all forces, damping alone.
+pub(super) fn effects(
+    scene: &Scene,
+    system: &ParticleSystem,
+    [forces, damping]: [u64; 2],
+) -> Vec<EffectUse> {
     let start = ParticleSystem::initial_state(scene);
-    let effects = plan
-        .system
-        .effects()
-        .iter()
-        .map(|(row, effect)| EffectUse {
-            id: row.id,
-            members: effect.members(),
-            evaluations: forces + if effect.is_damped() { damping } else { 0 },
-            nanoseconds: Some(cost(effect.as_ref(), &start.x, &start.v)),
-        })
-        .collect();
+    let rows = system.effects().iter();
+    rows.map(|(row, effect)| EffectUse {
+        id: row.id,
+        members: effect.members(),
+        evaluations: forces + if effect.is_damped() { damping } else { 0 },
+        nanoseconds: Some(cost(effect.as_ref(), &start.x, &start.v)),
+    })
+    .collect()
+}
+
+/// What the file says, with what ran and the scale of its energy.
+pub(super) fn facts(scene: &Scene, effects: Vec<EffectUse>, scale: Option<f64>) -> SceneFacts {
     SceneFacts {
         name: scene.name.clone(),
         file: scene.file.clone(),

@@ -2,6 +2,7 @@
 
 use super::execute::Run;
 use super::plan::{Case, Plan};
+use super::step_limit::StepLimits;
 use super::truths::Truths;
 use super::{identity, remarks};
 use crate::measure::{self, EnergySeries, TOLERANCE};
@@ -16,9 +17,10 @@ pub(super) fn all(
     truths: &Truths,
     scale: Option<f64>,
 ) -> (Vec<Outcome>, Vec<Option<EnergySeries>>) {
+    let step = StepLimits::new(plan);
     (0..runs.len())
         .into_par_iter()
-        .map(|index| one(plan, runs, index, truths, scale))
+        .map(|index| one(plan, runs, index, truths, scale, &step))
         .unzip()
 }
 
@@ -28,6 +30,7 @@ fn one(
     index: usize,
     truths: &Truths,
     scale: Option<f64>,
+    step: &StepLimits,
 ) -> (Outcome, Option<EnergySeries>) {
     let case = &plan.cases[index];
     let mut outcome = empty(case);
@@ -69,7 +72,7 @@ fn one(
             };
         }
     }
-    outcome.remarks = remarks::remarks(plan, case, &outcome);
+    outcome.remarks = remarks::remarks(plan, case, &outcome, step);
     if let Run::Ran(ran) = &runs[index] {
         outcome.remarks.extend(ran.remarks.iter().cloned());
     }

@@ -24,6 +24,10 @@ pub struct Choice {
     pub truth: Demand,
     /// Whether every method's order is measured.
     pub order: Orders,
+    /// Whether replays say which scheme each outcome follows.
+    pub identify: bool,
+    /// Whether the twin proof is made.
+    pub prove: bool,
 }
 
 /// When orders are measured, which costs about two more runs of each method.
@@ -96,6 +100,8 @@ impl Choice {
             timesteps: vec![scene.solver.timestep],
             truth: Demand::Auto,
             order: Orders::WhereCheap,
+            identify: true,
+            prove: true,
         }
     }
 
@@ -176,8 +182,10 @@ pub struct Plan<'a> {
     pub demand: Demand,
     /// As [`Choice::order`].
     pub order: Orders,
-    /// Whether outcomes say which scheme they follow.
-    pub(super) identify: bool,
+    /// As [`Choice::identify`].
+    pub identify: bool,
+    /// As [`Choice::prove`].
+    pub prove: bool,
 }
 
 impl<'a> Plan<'a> {
@@ -207,7 +215,8 @@ impl<'a> Plan<'a> {
             cases,
             demand: choice.truth,
             order: choice.order,
-            identify: true,
+            identify: choice.identify,
+            prove: choice.prove,
         }
     }
 

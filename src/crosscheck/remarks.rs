@@ -1,12 +1,19 @@
 //! One plain sentence for each row that needs one.
 
 use super::plan::{Case, Plan};
-use crate::integrators::{EnergyLaw, Method, Stable};
-use crate::outcome::{EnergyClass, Outcome, Status};
+use super::step_limit::StepLimits;
+use crate::integrators::{EnergyLaw, Method, PerStep, Settings, Stable};
+use crate::outcome::{Energy, EnergyClass, Outcome, Status};
 use crate::system::System;
 
-pub(super) fn remarks(plan: &Plan, case: &Case, outcome: &Outcome) -> Vec<String> {
+pub(super) fn remarks(
+    plan: &Plan,
+    case: &Case,
+    outcome: &Outcome,
+    step: &StepLimits,
+) -> Vec<String> {
     let class = outcome.energy.as_ref().and_then(|energy| energy.class);
+    let warning = step.warning(case);
     let mut remarks = Vec::new();
     match outcome.status {
         Status::Unsupported | Status::Failed => {
@@ -16,16 +23,34 @@ pub(super) fn remarks(plan: &Plan, case: &Case, outcome: &Outcome) -> Vec<String
             let cause = outcome.reason.as_deref().unwrap_or_default();
             let time = outcome.stopped_at_s.unwrap_or(0.0);
             let damped = plan.system.is_damped();
-            let why = case
-                .method
-                .map_or_else(String::new, |m| why_unstable(m, damped));
+            // The limit of this very scene says it better than a method's facts.
+            let why = match (&warning, case.method) {
+                (None, Some(method)) => why_unstable(method, damped),
+                _ => String::new(),
+            };
             remarks.push(format!("diverged at t = {time:.4} s, {cause}{why}"));
         }
         Status::Completed => {
-            remarks.extend(class.and_then(|class| explain(plan, case, class)));
+            let lost = outcome.energy.as_ref().is_some_and(Energy::lost);
+            remarks.extend(class.and_then(|class| explain(plan, case, class, lost)));
         }
     }
+    remarks.extend(warning);
+    remarks.extend(loosely_solved(plan, case));
     remarks
+}
+
+/// Where the scene asks its implicit steps to be solved to less than the default.
+fn loosely_solved(plan: &Plan, case: &Case) -> Option<String> {
+    let stated = plan.scene.solver.tolerance?;
+    let method = case.method?;
+    let iterates = matches!(method.evaluations, PerStep::PerIteration { .. });
+    (iterates && stated > Settings::default().tolerance).then(|| {
+        format!(
+            "its steps are solved to a relative residual of {stated:e} only (`solver.tolerance`): a \
+             loose tolerance breaks invariants and step-by-step replay"
+        )
+    })
 }
 
 /// What the method's own facts say of a divergence.
@@ -52,8 +77,9 @@ fn why_unstable(method: &Method, damped: bool) -> String {
     }
 }
 
-/// Why a completed run's energy did what it did, where that is not simply right.
-fn explain(plan: &Plan, case: &Case, class: EnergyClass) -> Option<String> {
+/// Why a completed run's energy did what it did, where that is not simply right; `lost`
+/// if less of it is left than there was.
+fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<String> {
     if class == EnergyClass::Bounded {
         return None;
     }
@@ -66,7 +92,7 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass) -> Option<String> {
         Some(method) => {
             let damped = plan.system.is_damped();
             let law = by_law(method, class, damped).filter(|_| has_springs);
-            law.or_else(|| damped.then(|| by_balance(method, class)))
+            law.or_else(|| damped.then(|| by_balance(method, class, lost)))
         }
         None if class != EnergyClass::Growing && has_springs => case.dissipates.clone(),
         None => None,
@@ -113,19 +139,25 @@ fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
             })
         }
         (_, Stable::Below(limit)) if !damped => Some(format!(
-            "{moves}: bounded for good on an oscillator while h ω < {limit:.4}, but over less than a \
-             period its swing looks like a trend"
+            "{moves}: on an oscillator it is bounded for good while h ω < {limit:.4}; a step at that \
+             limit, a force that jumps, or less than a period of its swing all look like a trend"
         )),
         _ => None,
     }
 }
 
-/// Where the balance does not close.
-fn by_balance(method: &Method, class: EnergyClass) -> String {
+/// Where the balance does not close. It may grow while the energy falls: more is booked to dampers
+/// than they took.
+fn by_balance(method: &Method, class: EnergyClass, lost: bool) -> String {
+    let does = match class {
+        EnergyClass::Growing if lost => "grows, though E itself falls",
+        EnergyClass::Growing => "grows",
+        EnergyClass::Dissipating => "falls",
+        EnergyClass::Drifting | EnergyClass::Bounded => "drifts",
+    };
     format!(
-        "{} against the balance E + dissipated - injected, which closes to order {} only: take a \
-         smaller step",
-        moves(class),
+        "the balance E + dissipated - injected {does}: it closes to order {} only, take a smaller \
+         step",
         method.order_damped
     )
 }

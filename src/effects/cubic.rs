@@ -101,11 +101,12 @@ impl Effect for CubicSprings {
                 let n = d / length;
                 let axial = n * n.transpose();
                 let material = axial * (3.0 * squared);
+                let across = Matrix3::identity() - axial;
+                let tension = squared * stretch / length;
                 match linearization {
                     Linearization::Material => material,
-                    Linearization::Exact => {
-                        material + (Matrix3::identity() - axial) * (squared * stretch / length)
-                    }
+                    Linearization::Exact => material + across * tension,
+                    Linearization::Definite => material + across * tension.max(0.0),
                 }
             };
             let [i, j] = spring.ends;

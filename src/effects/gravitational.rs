@@ -90,16 +90,21 @@ impl Effect for Gravitational {
         _t: f64,
         x: &[f64],
         _v: &[f64],
-        _linearization: Linearization,
+        linearization: Linearization,
         out: &mut Jacobian,
     ) {
+        // Attraction falls with distance: its stiffness along the pair is negative.
+        let along = match linearization {
+            Linearization::Definite => 1.0,
+            Linearization::Exact | Linearization::Material => 3.0,
+        };
         for pair in &self.pairs {
             let (d, r) = pair.separation(x);
             let block = if r < COINCIDENT {
                 Matrix3::zeros()
             } else {
                 let n = d / r;
-                (Matrix3::identity() - 3.0 * n * n.transpose()) * (pair.strength / r / r / r)
+                (Matrix3::identity() - along * n * n.transpose()) * (pair.strength / r / r / r)
             };
             out.add_pair(pair.ends[0], pair.ends[1], Some(&block), None);
         }

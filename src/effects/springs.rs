@@ -129,7 +129,7 @@ impl Springs {
         let identity = Matrix3::identity();
         if length <= SHORTEST {
             // Without a direction n there is no k n nᵀ, although the exact stiffness is k.
-            let exact = linearization == Linearization::Exact;
+            let exact = linearization != Linearization::Material;
             let position = if exact && spring.rest_length == 0.0 {
                 identity * k
             } else {
@@ -146,10 +146,12 @@ impl Springs {
             Damping::Isotropic => identity * c,
         };
         let mut position = axial * k;
-        if linearization == Linearization::Exact {
+        if linearization != Linearization::Material {
+            let definite = linearization == Linearization::Definite;
             let across = identity - axial;
-            position += across * (k * (length - spring.rest_length) / length);
-            if self.damping == Damping::Axial {
+            let tension = k * (length - spring.rest_length) / length;
+            position += across * if definite { tension.max(0.0) } else { tension };
+            if !definite && self.damping == Damping::Axial {
                 let dv = Vector3::from(difference(v, i, j));
                 let turned = n * (dv.transpose() * across) + across * dv.dot(&n);
                 position += turned * (c / length);

@@ -18,6 +18,9 @@ pub struct EngineRow {
     /// Why a run loses energy by this engine's design, `{n}` standing for its substeps; None where
     /// it should not.
     pub dissipates: Option<&'static str>,
+    /// The method whose step each of its substeps is, as the twin proof holds it to; None where it
+    /// only comes near one.
+    pub equals: Option<&'static str>,
     /// What its solver is told.
     pub settings: Settings,
     /// Runs unless the command line says otherwise.

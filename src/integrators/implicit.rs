@@ -5,8 +5,8 @@
 
 use super::newton::Newton;
 use super::{
-    EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy,
-    fit,
+    Amplification, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable,
+    StepError, axpy, fit,
 };
 use crate::system::{Linearization, State, System};
 
@@ -34,6 +34,7 @@ const fn implicit(id: &'static str, name: &'static str, order: u32, energy: Ener
             stable: Stable::Always,
             energy,
         },
+        amplification: Amplification::BACKWARD_EULER,
         exact: Exact::of_order(order),
         source: "",
         not: "",
@@ -83,6 +84,7 @@ pub(super) const LINEARIZED_IMPLICIT_MATERIAL: Method = Method {
         stable: Stable::AlwaysAlong { across: 2.0 },
         energy: DISSIPATES,
     },
+    amplification: Amplification::MaterialImplicit,
     build: |settings| {
         Box::new(Implicit::new(
             Scheme::LinearizedEuler(Linearization::Material),
@@ -101,6 +103,7 @@ pub(super) const IMPLICIT_MIDPOINT: Method = Method {
     symplectic: true,
     source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1 (Gauss, s = 1)",
     not: "midpoint, its explicit namesake, or trapezoidal, its conjugate",
+    amplification: Amplification::CAYLEY,
     build: |settings| Box::new(Implicit::new(Scheme::Midpoint, settings)),
     ..implicit("implicit_midpoint", "implicit midpoint", 2, KEEPS)
 };
@@ -109,6 +112,7 @@ pub(super) const TRAPEZOIDAL: Method = Method {
     evaluations: PerStep::PerIteration { plus: 2 },
     source: "Crank & Nicolson 1947; Newmark 1959 with β = 1/4, γ = 1/2",
     not: "heun, its explicit namesake; conjugate to a symplectic method, not one itself",
+    amplification: Amplification::CAYLEY,
     build: |settings| Box::new(Implicit::new(Scheme::Trapezoidal, settings)),
     ..implicit("trapezoidal", "trapezoidal rule", 2, KEEPS)
 };

@@ -1,5 +1,6 @@
 //! Time-stepping methods: one file a family, each method a row of facts in [`REGISTRY`].
 
+mod amplification;
 mod implicit;
 mod newton;
 mod runge_kutta;
@@ -7,6 +8,7 @@ mod splitting;
 mod tr_bdf2;
 mod velocity_flow;
 
+pub use amplification::Amplification;
 pub use implicit::{Implicit, Scheme};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
@@ -37,21 +39,37 @@ pub trait Integrator: Send {
 pub enum StepError {
     #[error(
         "Newton's iteration stopped at a relative residual of {residual:.1e} after {iterations} \
-         iterations (wanted {tolerance:.0e}): a smaller timestep helps"
+         iterations (wanted {tolerance:.0e}), largest at particle {particle}: a smaller timestep \
+         helps"
     )]
     NotConverged {
         iterations: u32,
         residual: f64,
         tolerance: f64,
+        /// With the largest residual.
+        particle: usize,
     },
     #[error(
-        "the implicit step's matrix cannot be factorised: the stiffness is indefinite at this state"
+        "the implicit step's matrix cannot be factorised: the stiffness is indefinite at this state, \
+         with the largest residual at particle {particle}"
     )]
-    Singular,
-    #[error("the damping is too stiff for its exact flow at this step: a smaller timestep helps")]
-    DampingTooStiff,
-    #[error("the implicit step left the range of finite numbers")]
-    NotFinite,
+    Singular {
+        /// With the largest residual.
+        particle: usize,
+    },
+    #[error(
+        "the damping is too stiff for its exact flow at this step, fastest at particle {particle}: a \
+         smaller timestep helps"
+    )]
+    DampingTooStiff {
+        /// With the largest acceleration.
+        particle: usize,
+    },
+    #[error("the step left the range of finite numbers at particle {particle}")]
+    NotFinite {
+        /// The first with a number that is not finite.
+        particle: usize,
+    },
 }
 
 /// One method's facts. Everything a report says of a method, and every law it is tested by,
@@ -72,6 +90,8 @@ pub struct Method {
     pub evaluations: PerStep,
     /// On x'' = -w² x, with z = h w.
     pub oscillator: Oscillator,
+    /// On any linear system; `oscillator` is its summary.
+    pub amplification: Amplification,
     pub exact: Exact,
     /// Paper or textbook.
     pub source: &'static str,
@@ -218,6 +238,20 @@ fn fit(buffer: &mut Vec<f64>, n: usize) {
 fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     let magnitudes = values.into_iter().map(|c| c.abs());
     magnitudes.fold(0.0, f64::max)
+}
+
+/// The particle with the largest component in these coordinates, or the first not finite.
+fn worst_particle(values: &[f64]) -> usize {
+    if let Some(at) = values.iter().position(|c| !c.is_finite()) {
+        return at / 3;
+    }
+    let mut worst = (0, 0.0);
+    for (at, c) in values.iter().enumerate() {
+        if c.abs() > worst.1 {
+            worst = (at / 3, c.abs());
+        }
+    }
+    worst.0
 }
 
 /// y += a x.

@@ -1,8 +1,8 @@
 //! Explicit Runge-Kutta methods: one stepper, a tableau a method.
 
 use super::{
-    EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy,
-    fit,
+    Amplification, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable,
+    StepError, axpy, fit,
 };
 use crate::system::{Power, State, System};
 
@@ -49,6 +49,7 @@ const fn explicit(
     order: u32,
     stages: u32,
     oscillator: Oscillator,
+    amplification: Amplification,
 ) -> Method {
     Method {
         id,
@@ -59,6 +60,7 @@ const fn explicit(
         reversible: false,
         evaluations: PerStep::Exactly(stages),
         oscillator,
+        amplification,
         exact: Exact::of_order(order),
         source: "",
         not: "",
@@ -90,6 +92,7 @@ pub(super) const EXPLICIT_EULER: Method = Method {
                 formula: "1 + z²",
             },
         },
+        Amplification::EXPLICIT_1,
     )
 };
 
@@ -97,21 +100,42 @@ pub(super) const MIDPOINT: Method = Method {
     source: "Runge 1895; Hairer, Nørsett, Wanner, Solving ODEs I, II.1",
     not: "implicit_midpoint; nor the common mistake that drifts with the end velocity",
     build: |_| Box::new(RungeKutta::new(MIDPOINT_TABLEAU)),
-    ..explicit("midpoint", "explicit midpoint", 2, 2, SECOND_ORDER)
+    ..explicit(
+        "midpoint",
+        "explicit midpoint",
+        2,
+        2,
+        SECOND_ORDER,
+        Amplification::EXPLICIT_2,
+    )
 };
 
 pub(super) const HEUN: Method = Method {
     source: "Heun 1900; the explicit trapezoidal rule",
     not: "trapezoidal, its implicit namesake",
     build: |_| Box::new(RungeKutta::new(HEUN_TABLEAU)),
-    ..explicit("heun", "Heun (explicit trapezoid)", 2, 2, SECOND_ORDER)
+    ..explicit(
+        "heun",
+        "Heun (explicit trapezoid)",
+        2,
+        2,
+        SECOND_ORDER,
+        Amplification::EXPLICIT_2,
+    )
 };
 
 pub(super) const RALSTON: Method = Method {
     source: "Ralston 1962, Math. Comp. 16: the two-stage method of least error bound",
     not: "Ralston's third-order method",
     build: |_| Box::new(RungeKutta::new(RALSTON_TABLEAU)),
-    ..explicit("ralston", "Ralston", 2, 2, SECOND_ORDER)
+    ..explicit(
+        "ralston",
+        "Ralston",
+        2,
+        2,
+        SECOND_ORDER,
+        Amplification::EXPLICIT_2,
+    )
 };
 
 pub(super) const RK4: Method = Method {
@@ -131,6 +155,7 @@ pub(super) const RK4: Method = Method {
                 formula: "1 - z⁶/72 + z⁸/576",
             },
         },
+        Amplification::EXPLICIT_4,
     )
 };
 

@@ -2,8 +2,8 @@
 
 use super::velocity_flow::VelocityFlow;
 use super::{
-    EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy,
-    fit,
+    Amplification, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable,
+    StepError, axpy, fit,
 };
 use crate::system::{State, System};
 
@@ -28,6 +28,15 @@ const LAMBDA: f64 = -0.212_341_831_062_605_4;
 const CHI: f64 = -0.066_264_582_669_818_5;
 
 impl Stage {
+    /// Kick, then drift.
+    pub const SYMPLECTIC_EULER: &'static [Self] = &[Kick(1.0), Drift(1.0)];
+
+    /// Drift, then kick.
+    pub const SYMPLECTIC_EULER_DRIFT_FIRST: &'static [Self] = &[Drift(1.0), Kick(1.0)];
+
+    /// Drift, kick, drift.
+    pub const POSITION_VERLET: &'static [Self] = &[Drift(0.5), Kick(1.0), Drift(0.5)];
+
     /// Kick, drift, kick.
     pub const VERLET: &'static [Self] = &[Kick(0.5), Drift(1.0), Kick(0.5)];
 
@@ -86,6 +95,7 @@ const fn symplectic(
             stable: Stable::Below(limit),
             energy,
         },
+        amplification: Amplification::Composition(&[], DampingTreatment::Explicit),
         exact: Exact::of_order(order),
         source: "",
         not: "",
@@ -103,9 +113,10 @@ pub(super) const SYMPLECTIC_EULER: Method = Method {
     source: "de Vogelaere 1956; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
     not: "explicit_euler, which drifts with the old velocity; leapfrog without its first half kick \
           is this method",
+    amplification: Amplification::Composition(Stage::SYMPLECTIC_EULER, DampingTreatment::Explicit),
     build: |_| {
         Box::new(Splitting::new(
-            &[Kick(1.0), Drift(1.0)],
+            Stage::SYMPLECTIC_EULER,
             DampingTreatment::Explicit,
         ))
     },
@@ -122,9 +133,13 @@ pub(super) const SYMPLECTIC_EULER: Method = Method {
 pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Method = Method {
     source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
     not: "explicit_euler, for which it is often taken: it kicks at the position already moved",
+    amplification: Amplification::Composition(
+        Stage::SYMPLECTIC_EULER_DRIFT_FIRST,
+        DampingTreatment::Explicit,
+    ),
     build: |_| {
         Box::new(Splitting::new(
-            &[Drift(1.0), Kick(1.0)],
+            Stage::SYMPLECTIC_EULER_DRIFT_FIRST,
             DampingTreatment::Explicit,
         ))
     },
@@ -141,6 +156,7 @@ pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Method = Method {
 pub(super) const VELOCITY_VERLET: Method = Method {
     source: "Swope et al. 1982; Hairer, Lubich, Wanner, Acta Numerica 2003 (Störmer-Verlet)",
     not: "position_verlet (drift, kick, drift), or Verlet with a predicted velocity in the damper",
+    amplification: Amplification::Composition(Stage::VERLET, DampingTreatment::ExactFlow),
     build: |_| Box::new(Splitting::new(Stage::VERLET, DampingTreatment::ExactFlow)),
     ..symplectic(
         "velocity_verlet",
@@ -158,9 +174,10 @@ pub(super) const VELOCITY_VERLET: Method = Method {
 pub(super) const POSITION_VERLET: Method = Method {
     source: "Verlet 1967; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4",
     not: "velocity_verlet, which kicks first and last",
+    amplification: Amplification::Composition(Stage::POSITION_VERLET, DampingTreatment::ExactFlow),
     build: |_| {
         Box::new(Splitting::new(
-            &[Drift(0.5), Kick(1.0), Drift(0.5)],
+            Stage::POSITION_VERLET,
             DampingTreatment::ExactFlow,
         ))
     },
@@ -180,6 +197,7 @@ pub(super) const POSITION_VERLET: Method = Method {
 pub(super) const YOSHIDA4: Method = Method {
     source: "Forest & Ruth 1990, Physica D 43; Yoshida 1990, Phys. Lett. A 150",
     not: "Yoshida's sixth- and eighth-order methods",
+    amplification: Amplification::Composition(Stage::YOSHIDA4, DampingTreatment::ExactFlow),
     build: |_| Box::new(Splitting::new(Stage::YOSHIDA4, DampingTreatment::ExactFlow)),
     ..symplectic(
         "yoshida4",
@@ -194,6 +212,7 @@ pub(super) const YOSHIDA4: Method = Method {
 pub(super) const PEFRL: Method = Method {
     source: "Omelyan, Mryglod, Folk 2002, Comput. Phys. Commun. 146, 188",
     not: "Forest-Ruth (yoshida4): one evaluation more, an error constant far smaller",
+    amplification: Amplification::Composition(Stage::PEFRL, DampingTreatment::ExactFlow),
     build: |_| Box::new(Splitting::new(Stage::PEFRL, DampingTreatment::ExactFlow)),
     ..symplectic("pefrl", "PEFRL", 4, 4, 2.989_450, EnergyLaw::Bounded)
 };

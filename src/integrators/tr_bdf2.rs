@@ -2,8 +2,8 @@
 
 use super::newton::Newton;
 use super::{
-    EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable, StepError, axpy,
-    fit,
+    Amplification, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable,
+    StepError, axpy, fit,
 };
 use crate::system::{State, System};
 use std::f64::consts::SQRT_2;
@@ -35,6 +35,11 @@ pub(super) const TR_BDF2: Method = Method {
             factor: |z| 1.0 - (z * z / (z * z + CORNER)).powi(2),
             formula: "1 - (z²/(z² + (2 + √2)²))²",
         },
+    },
+    amplification: Amplification::Rational {
+        // R = (1 + (√2 - 1) z) / (1 - g z/2)².
+        numerator: &[1.0, SQRT_2 - 1.0],
+        denominator: &[1.0, SQRT_2 - 2.0, 1.5 - SQRT_2],
     },
     exact: Exact::of_order(2),
     source: "Bank et al. 1985, IEEE Trans. CAD 4; Hosea & Shampine 1996, Appl. Numer. Math. 20",

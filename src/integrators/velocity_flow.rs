@@ -5,8 +5,11 @@
 //! else by Lanczos in the mass metric, in which damping is self-adjoint. (Hochbruck & Lubich 1997,
 //! SIAM J. Numer. Anal. 34; φ functions as in Niesen & Wright 2012, ACM TOMS 38; the stopping rule is
 //! that of Saad 1992, SIAM J. Numer. Anal. 29.)
+//!
+//! Where nothing but damping acts, a0 = 0, and h G is large, v(h) = e^(hG) v is taken as it stands: the
+//! sum v + h φ1 r knows it to the last bit of v only, which a substep backward would blow up again.
 
-use super::{StepError, axpy, fit, largest};
+use super::{StepError, axpy, fit, largest, worst_particle};
 use crate::system::{State, System};
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -25,7 +28,7 @@ pub(super) struct VelocityFlow {
     r: Vec<f64>,
     term: Vec<f64>,
     next: Vec<f64>,
-    /// φ1(hG) r and φ2(hG) r.
+    /// φ1(hG) r and φ2(hG) r; of damping alone e^(hG) v and φ1(hG) v.
     phi1: Vec<f64>,
     phi2: Vec<f64>,
     basis: Vec<Vec<f64>>,
@@ -72,10 +75,20 @@ impl VelocityFlow {
         system.damping(t, &state.x, &state.v, &mut self.r);
         axpy(&mut self.r, 1.0, a0);
         let speed = largest(&state.v);
-        if !self.taylor(system, t, h, &state.x, speed)
-            && !self.lanczos(system, t, h, &state.x, speed)
-        {
-            let halvings = halvings.checked_sub(1).ok_or(StepError::DampingTooStiff)?;
+        let summed = self.taylor(system, t, h, &state.x, speed);
+        let alone = !summed && a0.iter().all(|a| *a == 0.0);
+        let done = if alone {
+            self.r.copy_from_slice(&state.v);
+            self.lanczos(system, t, h, &state.x, speed, VELOCITY)
+        } else {
+            summed || self.lanczos(system, t, h, &state.x, speed, CHANGE)
+        };
+        if !done {
+            let halvings = halvings
+                .checked_sub(1)
+                .ok_or_else(|| StepError::DampingTooStiff {
+                    particle: worst_particle(&self.r),
+                })?;
             self.piece(system, t, 0.5 * h, a0, state, halvings)?;
             return self.piece(system, t, 0.5 * h, a0, state, halvings);
         }
@@ -83,14 +96,18 @@ impl VelocityFlow {
         // energy by was dissipated.
         let displacement = &mut self.term;
         for ((d, v), phi) in displacement.iter_mut().zip(&state.v).zip(&self.phi2) {
-            *d = h * (v + h * phi);
+            *d = if alone { h * phi } else { h * (v + h * phi) };
         }
         let mut dissipated = 0.0;
         for (i, w) in system.inverse_mass().iter().enumerate() {
             if *w > 0.0 {
                 let old = state.v[i];
-                let change = h * self.phi1[i];
-                state.v[i] = old + change;
+                let change = if alone {
+                    self.phi1[i] - old
+                } else {
+                    h * self.phi1[i]
+                };
+                state.v[i] = if alone { self.phi1[i] } else { old + change };
                 dissipated += (a0[i] * displacement[i] - change * (old + 0.5 * change)) / w;
             }
         }
@@ -133,10 +150,19 @@ impl VelocityFlow {
     }
 
     /// Lanczos with full reorthogonalisation in the inner product <u, w> = uᵀ M w; false if the
-    /// space would have to be larger than it may. `speed` is the size of what h φ1 r is added to.
-    fn lanczos(&mut self, system: &dyn System, t: f64, h: f64, x: &[f64], speed: f64) -> bool {
+    /// space would have to be larger than it may. `speed` is the size of what h φ1 r is added to, or of
+    /// v itself.
+    fn lanczos(
+        &mut self,
+        system: &dyn System,
+        t: f64,
+        h: f64,
+        x: &[f64],
+        speed: f64,
+        actions: Actions,
+    ) -> bool {
         let inverse_mass = system.inverse_mass();
-        let scale = weighted_dot(&self.r, &self.r, inverse_mass).sqrt();
+        let scale = length(&self.r, inverse_mass);
         self.phi1.fill(0.0);
         self.phi2.fill(0.0);
         if scale == 0.0 || !scale.is_finite() {
@@ -165,10 +191,15 @@ impl VelocityFlow {
                 let Some(small) = Small::new(h, &alphas, &betas) else {
                     return false;
                 };
-                let (c1, c2) = small.actions();
+                if actions.whole && small.largest() > EXPONENT {
+                    return false;
+                }
+                let (c1, c2) = small.actions(actions);
                 // What the next vector would add, by the last component (Saad 1992, eq. 28).
                 let missing = (h * beta).abs() * c1[k].abs();
-                let enough = largest(&c1).max(speed / (h.abs() * scale) * mass_root(inverse_mass));
+                let per_step = if actions.whole { 1.0 } else { h.abs() };
+                let beside = speed / (per_step * scale) * mass_root(inverse_mass);
+                let enough = largest(&c1).max(beside);
                 if closed || missing <= 0.25 * f64::EPSILON * enough {
                     for (row, q) in self.basis.iter().enumerate() {
                         axpy(&mut self.phi1, scale * c1[row], q);
@@ -184,6 +215,30 @@ impl VelocityFlow {
         false
     }
 }
+
+/// The two functions of h G whose actions are wanted.
+#[derive(Clone, Copy)]
+struct Actions {
+    first: fn(f64) -> f64,
+    second: fn(f64) -> f64,
+    /// The first is the velocity itself, not what h times it is added to.
+    whole: bool,
+}
+
+/// On r.
+const CHANGE: Actions = Actions {
+    first: phi1,
+    second: phi2,
+    whole: false,
+};
+/// On v, where nothing but damping acts.
+const VELOCITY: Actions = Actions {
+    first: f64::exp,
+    second: phi1,
+    whole: true,
+};
+/// Exponents beyond have no double; of half a step they may.
+const EXPONENT: f64 = 700.0;
 
 /// The projected problem: a symmetric tridiagonal matrix h T.
 struct Small(SymmetricEigen<f64, nalgebra::Dyn>);
@@ -206,8 +261,14 @@ impl Small {
         SymmetricEigen::try_new(tridiagonal, f64::EPSILON, 100 * m).map(Self)
     }
 
-    /// φ1(hT) e1 and φ2(hT) e1.
-    fn actions(&self) -> (Vec<f64>, Vec<f64>) {
+    /// The largest eigenvalue of h T.
+    fn largest(&self) -> f64 {
+        let values = self.0.eigenvalues.iter();
+        values.fold(f64::NEG_INFINITY, |m, z| m.max(*z))
+    }
+
+    /// Both functions of hT on e1.
+    fn actions(&self, actions: Actions) -> (Vec<f64>, Vec<f64>) {
         let (values, vectors) = (&self.0.eigenvalues, &self.0.eigenvectors);
         let act = |phi: fn(f64) -> f64, row: usize| {
             let terms = values.iter().enumerate();
@@ -217,8 +278,8 @@ impl Small {
         };
         let rows = 0..values.len();
         (
-            rows.clone().map(|row| act(phi1, row)).collect(),
-            rows.map(|row| act(phi2, row)).collect(),
+            rows.clone().map(|row| act(actions.first, row)).collect(),
+            rows.map(|row| act(actions.second, row)).collect(),
         )
     }
 }
@@ -247,6 +308,17 @@ fn phi2(z: f64) -> f64 {
     (2..18)
         .rev()
         .fold(0.0, |sum, k| (sum * z + 1.0) / f64::from(k))
+}
+
+/// Of u in the mass metric, also where its square has no double.
+fn length(u: &[f64], inverse_mass: &[f64]) -> f64 {
+    let plain = weighted_dot(u, u, inverse_mass).sqrt();
+    let size = largest(u);
+    if plain > 0.0 || !(size > 0.0 && size.is_finite()) {
+        return plain;
+    }
+    let scaled: Vec<f64> = u.iter().map(|c| c / size).collect();
+    size * weighted_dot(&scaled, &scaled, inverse_mass).sqrt()
 }
 
 /// Sum of u w m over the free coordinates.

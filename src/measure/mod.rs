@@ -7,6 +7,7 @@ pub mod identify;
 mod momentum;
 pub mod order;
 mod scale;
+pub mod stability;
 mod trend;
 pub mod twin;
 

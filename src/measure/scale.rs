@@ -41,10 +41,16 @@ pub fn divergence_limit(scene: &Scene, scale: Option<f64>) -> Option<f64> {
     (limit > 0.0 && limit.is_finite()).then_some(limit)
 }
 
-/// Elastic energy of all springs when each is off its rest length by a few last bits.
+/// Elastic energy of all springs when each is off its rest length by a few last bits of that or of its
+/// ends' coordinates, which are larger far from the origin.
 fn elastic_rounding(scene: &Scene) -> f64 {
+    let reach = |s: &Spring| {
+        let ends = s.ends.iter().filter_map(|end| scene.particles.get(*end));
+        let coordinates = ends.flat_map(|p| p.position);
+        coordinates.fold(s.rest_length, |most, c| most.max(c.abs()))
+    };
     let off = |s: &Spring| {
-        let stretch = 8.0 * f64::EPSILON * s.rest_length;
+        let stretch = 8.0 * f64::EPSILON * reach(s);
         0.5 * s.stiffness * stretch * stretch
     };
     scene.springs.iter().map(off).sum()

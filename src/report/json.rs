@@ -41,7 +41,8 @@ fn is_finite(report: &Report) -> bool {
             &report.truth,
             &report.outcomes,
             &report.checks,
-            &report.fault
+            &report.fault,
+            &report.stability
         )
     );
     let mut text = String::with_capacity(numbers.len());

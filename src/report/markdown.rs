@@ -4,6 +4,7 @@ mod ledger;
 
 use super::identity;
 use super::notes::{notes, references, several_timesteps};
+use super::stability;
 use super::svg::FIGURES;
 use super::verdict::verdict;
 use super::words::{self, NOTHING};
@@ -27,22 +28,27 @@ const LEGEND: &str = "\
 
 /// One report, with its figures linked as files beside it.
 pub fn render(report: &Report) -> String {
+    if let Some(stability) = report
+        .stability
+        .as_ref()
+        .filter(|_| stability::is_alone(report))
+    {
+        return stability::markdown::render(report, stability);
+    }
+    let text = heading(report) + &facts(report);
+    let text = text + &images(report) + "## Outcomes\n\n" + &outcomes(report);
+    let text = text + &remarks(report) + &checks(&report.checks) + &fault(report);
+    text + &ledger::energies(report) + &ledger::effects(report) + LEGEND
+}
+
+/// Name, description and verdict.
+pub(super) fn heading(report: &Report) -> String {
     let scene = &report.scene;
     let mut text = format!("# {}\n\n", escape(&scene.name));
     if let Some(description) = &scene.description {
         text += &format!("{}\n\n", escape(description));
     }
-    text += &format!("**Verdict:** {}\n\n", escape(&verdict(report)));
-    text += &facts(report);
-    text += &images(report);
-    text += "## Outcomes\n\n";
-    text += &outcomes(report);
-    text += &remarks(report);
-    text += &checks(&report.checks);
-    text += &fault(report);
-    text += &ledger::energies(report);
-    text += &ledger::effects(report);
-    text + LEGEND
+    text + &format!("**Verdict:** {}\n\n", escape(&verdict(report)))
 }
 
 fn facts(report: &Report) -> String {
@@ -64,7 +70,7 @@ fn facts(report: &Report) -> String {
     table(&["scene", ""], &rows)
 }
 
-fn images(report: &Report) -> String {
+pub(super) fn images(report: &Report) -> String {
     let wanted = FIGURES.iter().filter(|figure| (figure.wanted)(report));
     wanted
         .map(|figure| format!("![{}]({})\n\n", figure.description, figure.file))
@@ -204,7 +210,7 @@ fn fault(report: &Report) -> String {
     )
 }
 
-fn table(header: &[&str], rows: &[Vec<String>]) -> String {
+pub(super) fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let rule = "---|".repeat(header.len());
     let rows: String = rows.iter().map(|row| line(row)).collect();
@@ -212,7 +218,7 @@ fn table(header: &[&str], rows: &[Vec<String>]) -> String {
 }
 
 /// Text with nothing left that Markdown or HTML would read as its own, on one line.
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     let text = words::one_line(text);
     let mut escaped = String::with_capacity(text.len());
     let mut before = ' ';

@@ -6,6 +6,7 @@ mod identity;
 pub mod json;
 pub mod markdown;
 mod notes;
+mod stability;
 pub mod svg;
 pub mod terminal;
 mod verdict;
@@ -51,6 +52,16 @@ pub const FORMATS: &[Format] = &[
         render: |reports| joined(reports, markdown::render),
     },
 ];
+
+/// What a report's files are called, without the dot and what follows: verbs do not write over each
+/// other's.
+pub fn stem(report: &Report) -> &'static str {
+    if stability::is_alone(report) {
+        "stability"
+    } else {
+        "report"
+    }
+}
 
 /// The format with this id.
 pub fn format(id: &str) -> Option<&'static Format> {

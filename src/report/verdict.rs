@@ -1,14 +1,14 @@
 //! The one sentence that says the most important thing.
 
 use super::notes::{listed, subjects};
-use super::{identity, words};
+use super::{identity, stability, words};
 use crate::outcome::{Check, CheckStatus, EnergyClass, Outcome, Report, Status};
 
 /// Engines named in one group before "and n more".
 const NAMED: usize = 4;
 
 /// A part of the sentence: the same said at length, shorter, and so on. The last may be empty.
-type Clause = Vec<String>;
+pub(super) type Clause = Vec<String>;
 
 /// Failed checks first, then the scene's own integrator, then who diverged, grew, dissipated,
 /// then the proof that the harness is unbiased. One sentence, one line.
@@ -33,6 +33,13 @@ pub fn within(report: &Report, columns: usize) -> String {
 
 /// In the order they are said, which is that of their importance but for the twin proof.
 fn clauses(report: &Report) -> Vec<Clause> {
+    if let Some(stability) = report
+        .stability
+        .as_ref()
+        .filter(|_| stability::is_alone(report))
+    {
+        return stability::verdict::clauses(report, stability);
+    }
     let mut clauses = Vec::new();
     clauses.extend(failed_checks(&report.checks).map(|text| vec![text]));
     clauses.extend(identity::verdict(report).map(|text| vec![text]));
@@ -114,6 +121,7 @@ fn own(report: &Report) -> Option<String> {
         EnergyClass::Bounded => format!("stays bounded{error}"),
         EnergyClass::Drifting => format!("drifts in energy{error}"),
         EnergyClass::Dissipating => format!("dissipates energy{error}"),
+        EnergyClass::Growing if energy.lost() => format!("has a growing energy balance{error}"),
         EnergyClass::Growing => format!("gains energy{error}"),
     };
     let error = first.position_error_m.as_ref();

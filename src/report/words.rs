@@ -41,6 +41,7 @@ pub fn measured(check: &Check) -> String {
             let sign = match (passed, m <= b) {
                 (true, true) => "<=",
                 (true, false) => ">=",
+                (false, _) if m == b => "=",
                 (false, true) => "<",
                 (false, false) => ">",
             };

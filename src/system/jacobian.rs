@@ -1,6 +1,7 @@
-//! Force Jacobians as triplets.
+//! Force Jacobians as triplets, or, for those who can use them, as blocks of pairs.
 
 use super::System;
+use nalgebra::Matrix3;
 
 /// Entries (row, column, value); repeated places add up.
 pub type Triplets = Vec<(usize, usize, f64)>;
@@ -16,6 +17,23 @@ pub struct Jacobian {
     pub position: Triplets,
     /// ∂f/∂v, N s/m.
     pub velocity: Triplets,
+    /// Where pairs go instead, if they are kept as blocks.
+    pairs: Option<[Vec<PairBlock>; 2]>,
+}
+
+/// ∂f_i/∂(x_j - x_i), or the same by velocities, of an interaction of particles i and j with
+/// f_j = -f_i: -block at (i, i) and (j, j), +block at (i, j) and (j, i).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PairBlock {
+    pub ends: [u32; 2],
+    pub block: Matrix3<f64>,
+}
+
+/// By what the force was differentiated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Slope {
+    Position = 0,
+    Velocity = 1,
 }
 
 /// Which terms of the force's derivative are kept.
@@ -26,12 +44,75 @@ pub enum Linearization {
     /// Springs as k n nᵀ and c n nᵀ only: no geometric stiffness (the turning of the spring), no
     /// derivative of the damper's direction. What rapier's spring joint solves.
     Material,
+    /// What of `Exact` makes M - γ C - γ² K symmetric and positive definite whatever the state:
+    /// negative stiffness (of compressed springs across, of attraction along) and the turning of
+    /// dampers are left out. For directions to search in, not for steps.
+    ///
+    /// A system that does not know it may answer as for `Exact`.
+    Definite,
 }
 
 impl Jacobian {
+    /// One that keeps pairs as blocks of nine numbers, where triplets take 36 entries; its
+    /// `position` and `velocity` are then without them.
+    pub(crate) fn in_blocks() -> Self {
+        Self {
+            pairs: Some(Default::default()),
+            ..Self::default()
+        }
+    }
+
     pub fn clear(&mut self) {
         self.position.clear();
         self.velocity.clear();
+        for pairs in self.pairs.iter_mut().flatten() {
+            pairs.clear();
+        }
+    }
+
+    pub(crate) fn triplets(&self, by: Slope) -> &Triplets {
+        match by {
+            Slope::Position => &self.position,
+            Slope::Velocity => &self.velocity,
+        }
+    }
+
+    pub(crate) fn pairs(&self, by: Slope) -> &[PairBlock] {
+        self.pairs.as_ref().map_or(&[], |pairs| &pairs[by as usize])
+    }
+
+    /// out += factor * ∂f w, over all coordinates, fixed ones included.
+    pub(crate) fn add_product(&self, by: Slope, factor: f64, w: &[f64], out: &mut [f64]) {
+        for &(row, column, value) in self.triplets(by) {
+            out[row] += factor * value * w[column];
+        }
+        // In the order of the triplets, so that both ways give the same bits.
+        for pair in self.pairs(by) {
+            let [i, j] = pair.ends.map(|end| 3 * end as usize);
+            for (row, column, sign) in [(i, j, 1.0), (i, i, -1.0), (j, j, -1.0), (j, i, 1.0)] {
+                for r in 0..3 {
+                    for c in 0..3 {
+                        out[row + r] += factor * (sign * pair.block[(r, c)]) * w[column + c];
+                    }
+                }
+            }
+        }
+    }
+
+    /// out += factor * |∂f| |w|, entry by entry: how far relative changes of w may reach.
+    pub(crate) fn add_magnitudes(&self, by: Slope, factor: f64, w: &[f64], out: &mut [f64]) {
+        for &(row, column, value) in self.triplets(by) {
+            out[row] += factor * (value * w[column]).abs();
+        }
+        for pair in self.pairs(by) {
+            let [i, j] = pair.ends.map(|end| 3 * end as usize);
+            let sum = nalgebra::Vector3::from_fn(|a, _| w[j + a].abs() + w[i + a].abs());
+            let reach = pair.block.abs() * sum * factor;
+            for axis in 0..3 {
+                out[i + axis] += reach[axis];
+                out[j + axis] += reach[axis];
+            }
+        }
     }
 
     /// Adds the blocks of an interaction that depends on the difference of two particles only:
@@ -40,9 +121,18 @@ impl Jacobian {
         &mut self,
         i: usize,
         j: usize,
-        position: Option<&nalgebra::Matrix3<f64>>,
-        velocity: Option<&nalgebra::Matrix3<f64>>,
+        position: Option<&Matrix3<f64>>,
+        velocity: Option<&Matrix3<f64>>,
     ) {
+        if let Some(pairs) = &mut self.pairs {
+            for (block, out) in [position, velocity].into_iter().zip(pairs) {
+                out.extend(block.map(|&block| PairBlock {
+                    ends: [i as u32, j as u32],
+                    block,
+                }));
+            }
+            return;
+        }
         for (block, out) in [
             (position, &mut self.position),
             (velocity, &mut self.velocity),

@@ -9,6 +9,7 @@ mod state;
 
 pub use counting::{Counting, Evaluations};
 pub use jacobian::{Jacobian, Linearization, Triplets};
+pub(crate) use jacobian::{PairBlock, Slope};
 pub use particles::{Effects, ParticleSystem};
 pub use state::{Power, State, Work};
 

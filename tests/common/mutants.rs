@@ -1,6 +1,9 @@
 //! Integrators with the faults people write. Each law test must fail on the ones it names.
 #![allow(dead_code)]
 
+pub mod numerics;
+pub mod physics;
+
 use springcheck::integrators::{Integrator, StepError};
 use springcheck::system::{State, System};
 

@@ -19,7 +19,7 @@ impl Integrator for Faulty {
     fn step(&mut self, _: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
         state.t += h;
         match self.0 {
-            Fault::Refuses => return Err(StepError::Singular),
+            Fault::Refuses => return Err(StepError::Singular { particle: 0 }),
             Fault::NotANumber => state.v.fill(f64::NAN),
             Fault::StopsTheClock => state.t -= h,
             Fault::LosesACoordinate => {

@@ -1,9 +1,9 @@
 //! Each kind of expectation passes and fails, and what is not there never passes.
 
 use super::{oscillator, run};
-use springcheck::crosscheck::{Choice, expect};
+use springcheck::crosscheck::{Choice, expect, names};
 use springcheck::outcome::{Check, CheckStatus, Report};
-use springcheck::scene::Scene;
+use springcheck::scene::{self, Expectation, Scene, Wanted, Whom};
 use springcheck::truth::Demand;
 use springcheck::{engines, integrators};
 
@@ -218,6 +218,47 @@ fn only_what_is_expected_runs() {
         "{checks:?}"
     );
     assert!(engines::ids().contains(&"rapier-forces"));
+}
+
+#[test]
+fn what_is_left_out_changes_no_key() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/pa1/scene01.yml");
+    // From rest, so that the energy scale is the truth's; a deviation is from an engine that runs.
+    let mut scene = scene::read(path.as_ref(), names()).expect("a shipped scene");
+    scene.duration = 0.1;
+    let value = |report: &Report, key: &str| {
+        let outcome = serde_json::to_value(&report.outcomes[0]).expect("JSON");
+        let found = key
+            .split('.')
+            .try_fold(&outcome, |value, key| value.get(key));
+        found.cloned()
+    };
+    let mut moved = 0;
+    for key in &names().keys {
+        scene.expect = vec![Expectation {
+            whom: Whom::Engine("rk4".into()),
+            key: key.path.clone(),
+            wanted: Wanted::Contains("x".into()),
+        }];
+        let expected = Choice::expected(&scene);
+        let whole = Choice {
+            truth: Demand::Auto,
+            identify: true,
+            prove: true,
+            ..expected.clone()
+        };
+        let blind = Choice {
+            truth: Demand::None,
+            identify: false,
+            ..expected.clone()
+        };
+        let [found, whole, blind] =
+            [&expected, &whole, &blind].map(|choice| value(&run(&scene, choice), &key.path));
+        assert_eq!(found, whole, "{}", key.path);
+        moved += usize::from(blind != whole);
+    }
+    // Errors of two kinds, three each; three energies over their scale; identities, some of them null.
+    assert!(moved >= 12, "{moved}");
 }
 
 #[test]

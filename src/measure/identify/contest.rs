@@ -53,6 +53,10 @@ const LOOK: u64 = 100_000_000;
 /// Where only some transitions are asked for, an answer is wanted soon: a fraction of a second.
 const GLANCE: u64 = 2_000_000;
 
+/// Newton iterations of a step, about, where an answer is wanted soon: four where the motion is calm, a
+/// dozen on stiff cloth.
+const ITERATIONS: u64 = 8;
+
 /// Those that there is time for: in a large scene, or where rows lie far apart in it, only those of
 /// few substeps, and the one that is expected.
 pub(super) fn affordable(
@@ -65,7 +69,10 @@ pub(super) fn affordable(
     let effort = |most: u32| {
         let tried = candidates.iter().filter(|c| c.substeps <= most);
         tried
-            .map(|c| replay.effort(c, at))
+            .map(|c| {
+                let times = if brief && c.iterates() { ITERATIONS } else { 1 };
+                replay.effort(c, at).saturating_mul(times)
+            })
             .fold(0, u64::saturating_add)
     };
     let enough = if brief { GLANCE } else { LOOK };

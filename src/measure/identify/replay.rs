@@ -272,7 +272,7 @@ impl<'a> Replay<'a> {
         let mut before = transition.before.map(|k| (k, self.state(k, nudge)));
         if rows.v.is_none() {
             let Some((k, earlier)) = &mut before else {
-                return Err(StepError::NotFinite);
+                return Err(StepError::NotFinite { particle: 0 });
             };
             let leg = self.leg(*k, transition.from);
             // A thousandth of what the data is rounded to is as good as exact.
@@ -285,10 +285,11 @@ impl<'a> Replay<'a> {
             .map(|(_, state)| state);
         replayer.advance(step, span, rows.timestep, one_back.as_ref(), &mut state)?;
         self.count(replayer, span);
-        if state.x.iter().chain(&state.v).all(|c| c.is_finite()) {
-            Ok(state)
-        } else {
-            Err(StepError::NotFinite)
+        let not_finite = |c: &f64| !c.is_finite();
+        let lost = |values: &[f64]| values.iter().position(not_finite);
+        match lost(&state.x).or_else(|| lost(&state.v)) {
+            None => Ok(state),
+            Some(at) => Err(StepError::NotFinite { particle: at / 3 }),
         }
     }
 

@@ -105,6 +105,7 @@ impl Leg {
                 iterations: taken as u32,
                 residual: best.map_or(f64::MAX, |(off, ..)| off * f64::EPSILON),
                 tolerance: f64::EPSILON,
+                particle: 0,
             }),
         }
     }

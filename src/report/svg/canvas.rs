@@ -74,6 +74,15 @@ impl Canvas {
         ));
     }
 
+    /// A closed area, filled with hard edges, so that neighbours leave no seam; nothing if empty.
+    pub fn area(&mut self, data: &str, colour: &str) {
+        if !data.is_empty() {
+            self.push(&format!(
+                r#"<path d="{data}" fill="{colour}" shape-rendering="crispEdges"/>"#
+            ));
+        }
+    }
+
     /// A square around `centre`, filled.
     pub fn square(&mut self, centre: [f64; 2], half: f64, colour: &str) {
         let [x, y] = centre.map(|c| px(c - half));

@@ -1,9 +1,12 @@
 //! Figures as SVG, written by hand: no network, no fonts, equal bytes for equal input.
 
+mod admissible;
 mod canvas;
 mod chart;
 mod energy;
 mod frame;
+mod grid;
+mod heat;
 mod labels;
 mod line;
 mod palette;
@@ -53,6 +56,18 @@ pub const FIGURES: &[Figure] = &[
         description: "trajectories",
         wanted: trajectories::wanted,
         draw: trajectories::draw,
+    },
+    Figure {
+        file: "stability_map.svg",
+        description: "what becomes of a run at each timestep, engine by engine",
+        wanted: heat::wanted,
+        draw: heat::draw,
+    },
+    Figure {
+        file: "admissible.svg",
+        description: "from where a step does not enlarge the spring's force",
+        wanted: admissible::wanted,
+        draw: admissible::draw,
     },
 ];
 

@@ -2,7 +2,7 @@
 //! (Okabe and Ito, without the yellow that white swallows), dashes for rapier.
 
 use super::canvas::Stroke;
-use crate::outcome::{EnergyClass, Kind, Outcome, Report, Status};
+use crate::outcome::{Cell, EnergyClass, Kind, Outcome, Report, Status};
 
 const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255",
@@ -22,6 +22,33 @@ pub const TRUTH: Stroke = Stroke {
     dash: "",
     width: 6.0,
 };
+
+/// What becomes of a run, from light to dark: told apart in grey and by colour-blind readers alike.
+pub fn cell(cell: Cell) -> &'static str {
+    match cell {
+        Cell::Stable => "#e3eef6",
+        Cell::Dissipating => "#8fbfe0",
+        Cell::Growing => "#d55e00",
+        Cell::Failed => "#3b1c32",
+    }
+}
+
+/// Where something holds, and where it does not.
+pub const HOLDS: [&str; 2] = ["#0072b2", "#f1ece4"];
+
+/// A line over cells of any colour, and the wider one below it that sets it off.
+pub const BOUNDARY: [Stroke; 2] = [
+    Stroke {
+        colour: "#ffffff",
+        dash: "",
+        width: 3.6,
+    },
+    Stroke {
+        colour: "#000000",
+        dash: "",
+        width: 1.6,
+    },
+];
 
 /// The look of the outcome's engine.
 pub fn stroke(report: &Report, outcome: &Outcome) -> Stroke {

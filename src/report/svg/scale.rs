@@ -4,6 +4,8 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Scale {
     Linear,
+    /// Logarithmic; the range is positive.
+    Log,
     /// Linear within ±`linear` (a power of ten), one more unit per decade beyond.
     SymLog {
         linear: f64,
@@ -30,6 +32,18 @@ impl Axis {
         }
     }
 
+    /// Logarithmic where both ends are positive and lie apart, else linear.
+    pub fn logarithmic([lo, hi]: [f64; 2]) -> Axis {
+        if lo > 1.0 / HUGE && hi < HUGE && hi > 1.001 * lo {
+            Axis {
+                scale: Scale::Log,
+                range: [lo, hi],
+            }
+        } else {
+            Axis::linear([lo, hi])
+        }
+    }
+
     /// 0 at the lower end, 1 at the upper, beyond them outside.
     pub fn place(&self, value: f64) -> f64 {
         let [lo, hi] = self.range.map(|end| self.forward(end));
@@ -40,6 +54,7 @@ impl Axis {
         let value = value.clamp(-HUGE, HUGE);
         match self.scale {
             Scale::Linear => value,
+            Scale::Log => value.max(1.0 / HUGE).log10(),
             Scale::SymLog { linear } if value.abs() <= linear => value / linear,
             Scale::SymLog { linear } => {
                 // Logarithms subtracted, not a quotient taken: that could overflow.
@@ -52,6 +67,7 @@ impl Axis {
     pub fn ticks(&self, wanted: usize) -> Vec<(f64, String)> {
         match self.scale {
             Scale::Linear => linear_ticks(self.range, wanted),
+            Scale::Log => log_ticks(self.range, wanted),
             Scale::SymLog { linear } => self.decades(linear, wanted),
         }
     }
@@ -99,6 +115,25 @@ fn linear_ticks([lo, hi]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
             let value = (first + f64::from(i)) * step;
             (value, label(value, step, size))
         })
+        .collect()
+}
+
+/// Powers of ten, every n-th where there are many; 1, 2, 5 times them where there are few.
+fn log_ticks([lo, hi]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
+    let inside = |value: &f64| (lo * (1.0 - 1e-9)..=hi * (1.0 + 1e-9)).contains(value);
+    let (first, last) = (lo.log10().floor() as i32, hi.log10().ceil() as i32);
+    let decades = (first..=last).filter(|e| inside(&10_f64.powi(*e)));
+    let decades: Vec<i32> = decades.collect();
+    if decades.len() >= 2 {
+        let every = decades.len().div_ceil(wanted.max(1));
+        let kept = decades.into_iter().filter(|e| e % every as i32 == 0);
+        return kept.map(|e| (10_f64.powi(e), power_of_ten(e))).collect();
+    }
+    (first..=last)
+        .flat_map(|e| [1.0, 2.0, 5.0].map(|factor| factor * 10_f64.powi(e)))
+        .filter(inside)
+        .take(wanted.max(2))
+        .map(|value| (value, format!("{value}").replace('-', "−")))
         .collect()
 }
 

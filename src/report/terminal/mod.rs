@@ -1,12 +1,14 @@
 //! The terminal's report: what ran, a table of outcomes that fits [`WIDTH`] columns, what is
 //! notable about them, and whether the harness proved itself.
 
-mod fit;
-mod paint;
+pub(in crate::report) mod columns;
+pub(in crate::report) mod fit;
+pub(in crate::report) mod paint;
 mod table;
 
 use super::identity;
 use super::notes::notes;
+use super::stability;
 use super::verdict;
 use super::words;
 use crate::outcome::{Check, CheckStatus, EffectUse, Report};
@@ -19,7 +21,12 @@ pub const WIDTH: usize = 100;
 /// The report with ANSI colours, which the caller's stream strips where they are not wanted. Ends
 /// with the verdict and a newline.
 pub fn render(report: &Report) -> String {
+    if stability::is_alone(report) {
+        return stability::terminal::render(report);
+    }
     let mut lines = scene(report);
+    let truth = words::one_line(&words::truth(&report.truth));
+    lines.extend(wrap(&format!("truth    {truth}"), WIDTH, "         "));
     if report.fault.is_none() {
         lines.extend(ledger(&report.scene.effects));
     }
@@ -28,6 +35,11 @@ pub fn render(report: &Report) -> String {
     lines.extend(remarks(report));
     lines.extend(checks(&report.checks));
     lines.extend(fault(report));
+    finished(report, lines)
+}
+
+/// The lines and the verdict, painted.
+pub(in crate::report) fn finished(report: &Report, mut lines: Vec<String>) -> String {
     lines.push(String::new());
     let verdict = wrap(&verdict::within(report, WIDTH), WIDTH, "");
     lines.extend(verdict.iter().map(|line| mark(Tone::Strong, line)));
@@ -36,7 +48,8 @@ pub fn render(report: &Report) -> String {
     text
 }
 
-fn scene(report: &Report) -> Vec<String> {
+/// Its name and size, and what its file says of it.
+pub(in crate::report) fn scene(report: &Report) -> Vec<String> {
     let scene = &report.scene;
     let facts = format!(
         "  {}, {}, {} s at h = {}, {}",
@@ -52,8 +65,6 @@ fn scene(report: &Report) -> Vec<String> {
     if let Some(description) = &scene.description {
         lines.extend(wrap(&words::one_line(description), WIDTH, ""));
     }
-    let truth = words::one_line(&words::truth(&report.truth));
-    lines.extend(wrap(&format!("truth    {truth}"), WIDTH, "         "));
     lines
 }
 

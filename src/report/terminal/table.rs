@@ -1,36 +1,13 @@
-//! The table of outcomes: columns are built whole, the least telling ones left out where the width
-//! does not hold them, and the engine's name is cut last.
+//! The table of outcomes.
 
 use super::WIDTH;
-use super::fit::{clip, pad, width, wrap};
+use super::columns::{Column, fitted, laid_out};
+use super::fit::{clip, pad, wrap};
 use super::paint::{Tone, mark};
 use crate::outcome::{EnergyClass, Outcome, Report, Status};
 use crate::report::notes::{references, several_timesteps};
 use crate::report::words::{self, NOTHING};
-use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
-
-const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─'));
-/// Spaces between columns.
-const GAP: usize = 2;
-/// An engine's name is not cut below this while another column can go.
-const NAME: usize = 28;
-
-struct Column {
-    /// Lines separated by `\n`.
-    header: String,
-    alignment: CellAlignment,
-    /// Columns with the highest number leave first; 0 stays.
-    spare: u8,
-    cells: Vec<(String, Option<Tone>)>,
-}
-
-impl Column {
-    fn width(&self) -> usize {
-        let cells = self.cells.iter().map(|(text, _)| width(text));
-        let header = self.header.lines().map(width);
-        cells.chain(header).max().unwrap_or(0)
-    }
-}
+use comfy_table::CellAlignment;
 
 /// The table's lines and its legend.
 pub fn table(report: &Report) -> Vec<String> {
@@ -38,11 +15,7 @@ pub fn table(report: &Report) -> Vec<String> {
         (columns, left_out) if left_out.is_empty() => (columns, left_out),
         _ => fitted(columns(report, '\n')),
     };
-    let mut lines: Vec<String> = laid_out(&columns)
-        .trim_fmt()
-        .lines()
-        .map(str::to_string)
-        .collect();
+    let mut lines = laid_out(&columns);
     let legend = wrap(&legend(report, &left_out), WIDTH, "");
     lines.extend(legend.iter().map(|line| mark(Tone::Dim, line)));
     lines
@@ -88,8 +61,7 @@ fn columns(report: &Report, fold: char) -> Vec<Column> {
     columns.push(column("force\nevals", Right, 2, &|o| (forces(o), None)));
     columns.push(column("time", Right, 0, &|o| (words::wall_time(o), None)));
     // A trajectory from a file has neither.
-    let empty = |c: &Column| !c.cells.is_empty() && c.cells.iter().all(|(text, _)| text == NOTHING);
-    columns.retain(|column| !empty(column));
+    columns.retain(|column| !column.is_empty());
     columns
 }
 
@@ -155,61 +127,6 @@ fn forces(outcome: &Outcome) -> String {
         .work
         .force_evaluations
         .map_or(NOTHING.into(), words::count)
-}
-
-/// What fits, and the headers of what does not.
-fn fitted(mut columns: Vec<Column>) -> (Vec<Column>, Vec<String>) {
-    let mut left_out = Vec::new();
-    loop {
-        let rest: usize = columns[1..].iter().map(|c| c.width() + GAP).sum();
-        let room = WIDTH.saturating_sub(rest);
-        let spare = (1..columns.len()).max_by_key(|&i| columns[i].spare);
-        match spare {
-            Some(i) if columns[0].width().min(NAME) > room && columns[i].spare > 0 => {
-                left_out.push(
-                    columns
-                        .remove(i)
-                        .header
-                        .replace("-\n", "-")
-                        .replace('\n', " "),
-                );
-            }
-            _ => {
-                for (text, _) in &mut columns[0].cells {
-                    *text = clip(text, room);
-                }
-                return (columns, left_out);
-            }
-        }
-    }
-}
-
-fn laid_out(columns: &[Column]) -> Table {
-    let mut table = Table::new();
-    table.load_style(STYLE);
-    table.set_content_arrangement(ContentArrangement::Disabled);
-    let height = columns
-        .iter()
-        .map(|c| c.header.lines().count())
-        .max()
-        .unwrap_or(1);
-    table.set_header(columns.iter().map(|column| {
-        // Headers stand on the rule: shorter ones start lower.
-        let above = "\n".repeat(height - column.header.lines().count());
-        Cell::new(above + &column.header).set_alignment(column.alignment)
-    }));
-    for row in 0..columns[0].cells.len() {
-        table.add_row(columns.iter().map(|column| {
-            let (text, tone) = &column.cells[row];
-            let text = tone.map_or_else(|| text.clone(), |tone| mark(tone, text));
-            Cell::new(text).set_alignment(column.alignment)
-        }));
-    }
-    let last = columns.len() - 1;
-    for (i, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((0, if i == last { 0 } else { GAP as u16 }));
-    }
-    table
 }
 
 fn legend(report: &Report, left_out: &[String]) -> String {

@@ -2,6 +2,7 @@ mod hostile;
 mod json;
 mod motion;
 mod samples;
+mod stability;
 
 use super::{FORMATS, format, markdown, svg, terminal, verdict};
 use crate::outcome::*;
@@ -30,6 +31,10 @@ fn all() -> Vec<Report> {
         hostile(),
         upright(),
         crowd(),
+        stability::limits(),
+        stability::mapped(),
+        stability::pair(),
+        stability::odd(),
     ]
 }
 

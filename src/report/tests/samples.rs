@@ -191,6 +191,7 @@ pub fn empty(name: &str) -> Report {
             twin("twin_converged", CheckStatus::Pass),
         ],
         fault: None,
+        stability: None,
         figures: Figures {
             plane: [0, 2],
             fixed: vec![[0.0, 0.0]],

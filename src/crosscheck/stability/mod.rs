@@ -1,0 +1,152 @@
+//! How large a step may be: of every chosen engine predicted and measured, along the trajectory, and
+//! as a map.
+
+mod admissible;
+mod explain;
+mod map;
+mod path;
+mod rows;
+mod subject;
+mod vary;
+
+pub use admissible::NotAdmissible;
+pub use map::{BudgetError, MapPlan};
+pub use vary::{COUNT, Range, RangeError, Vary, VaryError};
+
+use super::{ChosenEngine, Host, ledger};
+use crate::integrators::Method;
+use crate::measure;
+use crate::measure::stability::{Linearised, is_linear};
+use crate::outcome::{Figures, Report, SCHEMA_VERSION, Stability, Truth, TruthKind};
+use crate::scene::Scene;
+use crate::system::ParticleSystem;
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use subject::{Subject, Tally};
+
+/// What is asked of one scene.
+#[derive(Debug, Clone)]
+pub struct StabilityPlan<'a> {
+    pub scene: &'a Scene,
+    /// In the order of the rows.
+    pub methods: Vec<&'static Method>,
+    /// After the methods. A timestep of their own is not looked at: the step is what is searched.
+    pub engines: Vec<ChosenEngine>,
+    /// Where growth is taken, seconds.
+    pub timestep: f64,
+    pub map: Option<MapPlan>,
+    /// Stiffnesses, N/m, of the pictures of where a step does not enlarge a spring's force; empty for
+    /// none.
+    pub admissible: Vec<f64>,
+}
+
+impl StabilityPlan<'_> {
+    /// Rows, map and picture, in parallel; the same bits on any number of threads. What cannot be
+    /// answered is a row with its reason.
+    ///
+    /// # Errors
+    /// Before anything runs: a budget that leaves the map's cells too few steps, or a picture of a
+    /// scene that is not two free particles on one spring.
+    pub fn execute(&self, host: &dyn Host) -> Result<Report, StabilityError> {
+        let scene = self.scene;
+        let pair = match self.admissible.as_slice() {
+            [] => None,
+            stiffnesses => Some(admissible::draw(scene, self.timestep, stiffnesses)?),
+        };
+        let tally = Arc::new(Tally::default());
+        let subjects = self.subjects(&tally);
+        let map = match &self.map {
+            Some(map) => Some(map.cells(scene, subjects.len())?),
+            None => None,
+        };
+        let system = ParticleSystem::new(scene);
+        let start = ParticleSystem::initial_state(scene);
+        let linearised = Linearised::at(&system, start.t, &start.x, &start.v);
+        let linear = is_linear(scene);
+        let path = path::of(self, &system, &linearised, linear);
+        let asked = rows::Asked {
+            plan: self,
+            system: &system,
+            linearised: &linearised,
+            linear,
+            path: &path,
+        };
+        let rows = subjects
+            .par_iter()
+            .map(|subject| rows::row(&asked, subject, host))
+            .collect();
+        let map = map.map(|cells| cells.run(scene, &subjects, host));
+        let stability = Stability {
+            omega_max_rad_s: linearised.omega_max().filter(|w| w.is_finite()),
+            unsure: linearised.is_unsure(),
+            horizon_s: path.until,
+            timestep_s: self.timestep,
+            linear,
+            excluded: linearised
+                .excluded()
+                .iter()
+                .map(|excluded| excluded.what.clone())
+                .collect(),
+            rows,
+            map,
+            admissible: pair,
+        };
+        let counted = [&tally.forces, &tally.damping].map(|n| n.load(Ordering::Relaxed));
+        let scale = measure::energy_scale(scene, &system, None);
+        Ok(Report {
+            schema_version: SCHEMA_VERSION,
+            scene: ledger::facts(scene, ledger::effects(scene, &system, counted), scale),
+            truth: Truth {
+                kind: TruthKind::None,
+                method: None,
+                error_bound_m: None,
+                horizon_s: None,
+                reason: Some("stability compares nothing with a truth".to_owned()),
+            },
+            outcomes: Vec::new(),
+            checks: Vec::new(),
+            fault: None,
+            stability: Some(stability),
+            figures: Figures::default(),
+        })
+    }
+
+    /// Steps that may be taken at most: what a progress bar counts against, and times are guessed from.
+    ///
+    /// # Errors
+    /// A budget that leaves the map's cells too few steps.
+    pub fn steps(&self) -> Result<u64, BudgetError> {
+        let subjects = self.subjects(&Arc::default());
+        let panels = subjects.len();
+        let of_map = match &self.map {
+            Some(map) => map.cells(self.scene, panels)?.steps(),
+            None => 0,
+        };
+        let usual = |subject: &Subject| rows::usual(self.scene, subject, self.timestep);
+        let of_rows = subjects.iter().map(usual).sum::<u64>();
+        Ok(of_rows.saturating_add(of_map))
+    }
+
+    /// Of each row's search, in the order of the rows: what it mostly takes.
+    pub fn steps_by_row(&self) -> Vec<u64> {
+        let subjects = self.subjects(&Arc::default());
+        let usual = |subject: &Subject| rows::usual(self.scene, subject, self.timestep);
+        subjects.iter().map(usual).collect()
+    }
+
+    fn subjects(&self, tally: &Arc<Tally>) -> Vec<Subject> {
+        let methods = self.methods.iter().map(|m| Subject::method(m, tally));
+        let engines = self.engines.iter().map(|e| Subject::engine(e, tally));
+        methods.chain(engines).collect()
+    }
+}
+
+/// Why a plan cannot be carried out.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StabilityError {
+    #[error(transparent)]
+    Budget(#[from] BudgetError),
+    #[error(transparent)]
+    NotAdmissible(#[from] NotAdmissible),
+}

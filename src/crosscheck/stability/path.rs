@@ -1,0 +1,85 @@
+//! States along a trajectory, where limits are taken again.
+
+use super::StabilityPlan;
+use crate::engines::{Engine, IntegratorEngine, Limits, Observer, simulate};
+use crate::integrators::{Method, Settings};
+use crate::measure;
+use crate::measure::stability::{Along, Limit, Linearised};
+use crate::system::{ParticleSystem, State};
+
+/// States kept of a path.
+const STATES: u64 = 100;
+/// Steps times particles the path may take; what a scene of a few particles needs many times over.
+const REACH: u64 = 20_000_000;
+
+/// A trajectory as far as it was followed.
+pub(super) struct Path {
+    /// Linearised at some of its states, the start left out; None where every state has the same
+    /// limits.
+    pub along: Option<Along>,
+    /// When it ends, s.
+    pub until: f64,
+    /// Whose trajectory it is.
+    pub method: Option<&'static Method>,
+}
+
+/// The trajectory of the first method whose step is predicted to be stable, the scene's own coming
+/// first: one that explodes would show limits of places nothing really gets to.
+pub(super) fn of(
+    plan: &StabilityPlan,
+    system: &ParticleSystem,
+    linearised: &Linearised,
+    linear: bool,
+) -> Path {
+    let scene = plan.scene;
+    let h = scene.solver.timestep;
+    let calm = |method: &&'static Method| match linearised.predict(method, h).limit {
+        Limit::At(limit) | Limit::Between(limit, _) => h <= limit,
+        Limit::Unconditional => true,
+        Limit::Never | Limit::Unknown(_) => false,
+    };
+    let candidates = crate::crosscheck::Choice::all_methods(scene);
+    let chosen = candidates.iter().find(|m| calm(m)).or(candidates.first());
+    let (false, Some(method)) = (linear, chosen.copied()) else {
+        return Path {
+            along: None,
+            until: scene.duration,
+            method: None,
+        };
+    };
+    let particles = scene.particles.len().max(1) as u64;
+    let steps = scene.steps(h).min((REACH / particles).max(STATES));
+    let settings = Settings::stated(scene.solver.tolerance);
+    let mut engine = IntegratorEngine::new(scene, system.clone(), method, &settings, h);
+    let scale = measure::energy_scale(scene, system, None);
+    let limits = Limits::new(system.clone(), measure::divergence_limit(scene, scale));
+    let mut kept = Kept {
+        every: steps.div_ceil(STATES).max(1),
+        states: Vec::new(),
+    };
+    simulate(&mut engine, steps, &limits, &mut kept, &|_| {});
+    // Where it ended early, what it ended in is no place to linearise about.
+    kept.states.retain(State::is_finite);
+    Path {
+        until: engine.state().t.min(scene.duration),
+        along: Some(Along::new(system, &kept.states)),
+        method: Some(method),
+    }
+}
+
+struct Kept {
+    every: u64,
+    states: Vec<State>,
+}
+
+impl Observer for Kept {
+    fn next(&self, from: u64) -> Option<u64> {
+        Some(from.max(1).next_multiple_of(self.every))
+    }
+
+    fn observe(&mut self, _step: u64, state: &State) {
+        self.states.push(state.clone());
+    }
+
+    fn observe_diverged(&mut self, _step: u64, _state: &State) {}
+}

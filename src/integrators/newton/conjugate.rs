@@ -1,0 +1,133 @@
+//! Conjugate gradients with a block-Jacobi preconditioner, for many unknowns and modest stiffness.
+//!
+//! faer's own (`matrix_free::conjugate_gradient`) does not fit: it cannot say that a matrix is
+//! indefinite. Its step length comes from a pivoted factor of pᵀ A p, which for a negative number
+//! has rank 0 and no error, so the step is 0 and it spins to its cap; and negative curvature is
+//! what asks for another direction here. (Nocedal & Wright 2006, Numerical Optimization, 7.1.)
+
+use super::matrix::{Matrix, three};
+use nalgebra::Matrix3;
+
+#[derive(Default)]
+pub(super) struct Conjugate {
+    /// Inverses of the blocks on the diagonal.
+    inverse: Vec<Matrix3<f64>>,
+    left: Vec<f64>,
+    preconditioned: Vec<f64>,
+    direction: Vec<f64>,
+    image: Vec<f64>,
+}
+
+/// How a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ended {
+    Solved,
+    /// Negative curvature was met: the matrix is not positive definite.
+    Indefinite,
+    /// At the cap of iterations.
+    Slow,
+}
+
+impl Conjugate {
+    /// False where a block on the diagonal is not positive definite.
+    pub(super) fn prepare(&mut self, matrix: &Matrix) -> bool {
+        self.inverse.clear();
+        for at in 0..matrix.diagonal.len() {
+            let Some(inverse) = inverse(&matrix.symmetric_diagonal(at)) else {
+                return false;
+            };
+            self.inverse.push(inverse);
+        }
+        let n = matrix.size();
+        for buffer in [
+            &mut self.left,
+            &mut self.preconditioned,
+            &mut self.direction,
+            &mut self.image,
+        ] {
+            super::super::fit(buffer, n);
+        }
+        true
+    }
+
+    /// Replaces the right side `z` by the solution for the symmetric part, to `tolerance` of the
+    /// right side's norm.
+    ///
+    /// From 0 on, so whatever it stops at is a direction of descent.
+    pub(super) fn solve(
+        &mut self,
+        matrix: &Matrix,
+        tolerance: f64,
+        cap: usize,
+        z: &mut [f64],
+    ) -> Ended {
+        self.left.copy_from_slice(z);
+        z.fill(0.0);
+        let enough = tolerance * dot(&self.left, &self.left).sqrt();
+        let mut product = self.precondition();
+        self.direction.copy_from_slice(&self.preconditioned);
+        for _ in 0..cap {
+            if product == 0.0 {
+                return Ended::Solved;
+            }
+            matrix.symmetric_product(&self.direction, &mut self.image);
+            let curvature = dot(&self.direction, &self.image);
+            // NaN is not positive.
+            if curvature.is_nan() || curvature <= 0.0 {
+                return Ended::Indefinite;
+            }
+            let length = product / curvature;
+            let mut squares = [0.0; 4];
+            for (((z, left), d), image) in z
+                .chunks_mut(4)
+                .zip(self.left.chunks_mut(4))
+                .zip(self.direction.chunks(4))
+                .zip(self.image.chunks(4))
+            {
+                for ((((z, left), d), image), square) in
+                    z.iter_mut().zip(left).zip(d).zip(image).zip(&mut squares)
+                {
+                    *z += length * d;
+                    *left -= length * image;
+                    *square += *left * *left;
+                }
+            }
+            if squares.iter().sum::<f64>().sqrt() <= enough {
+                return Ended::Solved;
+            }
+            let before = std::mem::replace(&mut product, self.precondition());
+            let share = product / before;
+            for (d, p) in self.direction.iter_mut().zip(&self.preconditioned) {
+                *d = p + share * *d;
+            }
+        }
+        Ended::Slow
+    }
+
+    /// Returns the product of what is left and its preconditioned self.
+    fn precondition(&mut self) -> f64 {
+        for (at, inverse) in self.inverse.iter().enumerate() {
+            let z = inverse * three(&self.left, at);
+            self.preconditioned[3 * at..3 * at + 3].copy_from_slice(z.as_slice());
+        }
+        dot(&self.left, &self.preconditioned)
+    }
+}
+
+/// None where the block is not positive definite (Sylvester: its leading minors).
+fn inverse(block: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    let minor = block[(0, 0)] * block[(1, 1)] - block[(0, 1)] * block[(1, 0)];
+    let definite = block[(0, 0)] > 0.0 && minor > 0.0 && block.determinant() > 0.0;
+    block.try_inverse().filter(|_| definite)
+}
+
+/// In four running sums, the same whatever the machine.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    for (a, b) in a.chunks(4).zip(b.chunks(4)) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    sums.iter().sum()
+}

@@ -1,0 +1,23 @@
+//! How large a step may be: predicted from the linearised scene and a method's stability region,
+//! and measured on the scene itself.
+
+mod measured;
+mod predicted;
+
+pub use measured::{Make, Measured, classify, measure};
+pub use predicted::{Along, Effort, Excluded, Linearised, Prediction, Tightest, along, is_linear};
+
+/// The largest step that is stable, with all smaller ones.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Limit {
+    /// No step is: the energy of some mode grows at every step size.
+    Never,
+    /// Seconds.
+    At(f64),
+    /// Between the largest step found stable and the smallest found unstable, s: work ended first.
+    Between(f64, f64),
+    /// Every step is.
+    Unconditional,
+    /// Not found, and why.
+    Unknown(String),
+}
