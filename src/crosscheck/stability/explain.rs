@@ -59,10 +59,19 @@ fn tightest(asked: &Asked, row: &StabilityRow) -> Option<String> {
     })
 }
 
+/// Whether the measured limit, or all of what it lies between, is below the predicted one.
+fn lower(predicted: &Limit, measured: &Limit) -> bool {
+    match (predicted, measured) {
+        (Limit::At(p), Limit::At(m)) => *m < p * (1.0 - RESOLUTION),
+        (Limit::At(p), Limit::Between(_, high)) => high < p,
+        _ => false,
+    }
+}
+
 /// What a state that moves away from where it was linearised does to a limit.
 fn difference(predicted: &Limit, measured: &Limit) -> Option<String> {
     let text = match (predicted, measured) {
-        (Limit::At(p), Limit::At(m)) if m < &(p * (1.0 - RESOLUTION)) => {
+        _ if lower(predicted, measured) => {
             "the measured limit is lower: forces are not linear, and the state moves to where they \
              are stiffer than where they were linearised"
         }
@@ -80,10 +89,6 @@ fn difference(predicted: &Limit, measured: &Limit) -> Option<String> {
         }
         (Limit::At(_), Limit::Unconditional) => {
             "beyond the predicted limit growth ends, since forces are not linear: bounded, but wrong"
-        }
-        (Limit::At(p), Limit::Between(_, high)) if high < p => {
-            "the measured limit is lower: forces are not linear, and the state moves to where they \
-             are stiffer than where they were linearised"
         }
         (Limit::At(_), Limit::Never) => {
             "predicted stable where it was linearised, but unstable where the motion leads"
