@@ -10,7 +10,8 @@
 //!
 //! - [`scene`] reads a YAML file, strictly; [`effects`] builds only the forces it calls for;
 //! - [`system`] is what an integrator sees: vectors, accelerations, Jacobians, no particles;
-//! - [`integrators`] are rows of facts over three steppers: tableau, splitting, Newton;
+//! - [`integrators`] are rows of facts over three steppers: tableau, splitting, Newton; beside them are
+//!   [`adaptive`](integrators::adaptive) pairs, which choose their own steps;
 //! - [`engines`] run an integrator, rapier worlds built from the same scene, or other programs;
 //! - [`truth`] is what really happens: a closed form or a converged reference, with an error bar;
 //! - [`trajectory`] keeps a bounded record of a run, or all of it in a file, and reads other people's;
@@ -50,3 +51,4 @@ pub mod scene;
 pub mod system;
 pub mod trajectory;
 pub mod truth;
+mod vector;

@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
+use springcheck::integrators::adaptive::{self, Estimate};
 use springcheck::integrators::{EnergyLaw, Method, PerStep, Stable};
 use springcheck::measure::identify::{MISTAKES, Mistake, Wrong};
 use springcheck::{effects, engines, integrators};
@@ -25,7 +26,10 @@ enum What {
 /// Prints a registry.
 pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
     let text = match args.what {
-        What::Integrators => format!("{}\n\n{}", of_integrators(), sources()),
+        What::Integrators => {
+            let (fixed, adaptive, from) = (of_integrators(), of_pairs(), sources());
+            format!("{fixed}\n\nadaptive (cost only)\n{adaptive}\n\n{from}")
+        }
         What::Effects => {
             let rows = effects::REGISTRY.iter();
             table(
@@ -90,6 +94,34 @@ fn of_integrators() -> Table {
     )
 }
 
+/// Pairs that choose their own steps, which only costs are measured of.
+fn of_pairs() -> Table {
+    table(
+        &[
+            "pair",
+            "order",
+            "estimate",
+            "stages",
+            "forces a step",
+            "and a rejected one",
+        ],
+        adaptive::REGISTRY.iter().map(|pair| {
+            let [accepted, rejected] = pair.evaluations();
+            vec![
+                pair.id.into(),
+                pair.order.to_string(),
+                match pair.estimate {
+                    Estimate::Embedded { order, .. } => format!("of order {order}"),
+                    Estimate::Mixed53 { .. } => "of orders 5 and 3, mixed".into(),
+                },
+                pair.stages().to_string(),
+                accepted.to_string(),
+                rejected.to_string(),
+            ]
+        }),
+    )
+}
+
 /// The method a mistake is a wrong form of.
 fn meant(mistake: &Mistake) -> &'static str {
     match mistake.wrong {
@@ -100,11 +132,13 @@ fn meant(mistake: &Mistake) -> &'static str {
 
 /// Where each method is from and what it is not.
 fn sources() -> Table {
+    let methods = integrators::REGISTRY.iter();
+    let methods = methods.map(|method| [method.id, method.source, method.not]);
+    let pairs = adaptive::REGISTRY.iter();
+    let pairs = pairs.map(|pair| [pair.id, pair.source, pair.not]);
     table(
         &["integrator", "from", "not to be confused with"],
-        integrators::REGISTRY
-            .iter()
-            .map(|method| vec![method.id.into(), method.source.into(), method.not.into()]),
+        methods.chain(pairs).map(|row| row.map(String::from).into()),
     )
 }
 

@@ -19,7 +19,7 @@ pub use drag::Drag;
 pub use gravitational::Gravitational;
 pub use gravity::Gravity;
 pub use scaled::Scaled;
-pub use springs::{Spring, Springs};
+pub use springs::Springs;
 pub use wind::Wind;
 
 use crate::scene::Scene;

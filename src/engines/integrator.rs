@@ -66,6 +66,7 @@ impl Engine for IntegratorEngine {
             force_evaluations: Some(evaluations.forces),
             damping_evaluations: Some(evaluations.damping),
             linear_solves: Some(self.integrator.linear_solves()),
+            newton_iterations: Some(self.integrator.newton_iterations()),
         }
     }
 }

@@ -1,14 +1,16 @@
 //! Whatever can advance a scene: our integrators, rapier's worlds, and other programs.
 
+mod adaptive;
 pub mod external;
 mod integrator;
 pub mod rapier;
 mod registry;
 mod simulate;
 
+pub use adaptive::AdaptiveEngine;
 pub use integrator::IntegratorEngine;
 pub use registry::{EngineRow, REGISTRY, find, ids, rapier_with};
-pub use simulate::{Ended, Limits, Observer, simulate};
+pub use simulate::{Ended, Limits, Observer, adapt, simulate};
 
 use crate::integrators::StepError;
 use crate::system::State;
@@ -17,14 +19,15 @@ use crate::system::State;
 ///
 /// Two engines built from the same scene and timestep give the same bits.
 pub trait Engine: Send {
-    /// Advances by one timestep.
+    /// Advances by one timestep, or by a step of the engine's own where it chooses them.
     ///
     /// # Errors
-    /// [`StepError`] when an implicit step cannot be solved; the state is then the last good one.
+    /// [`StepError`] when an implicit step cannot be solved, or no step is short enough for a
+    /// tolerance; the state is then the last good one.
     fn step(&mut self) -> Result<(), StepError>;
 
     /// The state now: all particles, fixed ones included; t is not kept here but by the caller,
-    /// who counts steps.
+    /// who counts steps, except by an [`AdaptiveEngine`], whose steps are of any length.
     fn state(&self) -> &State;
 
     /// What has been computed so far.
@@ -39,6 +42,7 @@ pub struct Counts {
     /// Evaluations of the velocity-dependent effects alone (inside exact damping flows).
     pub damping_evaluations: Option<u64>,
     pub linear_solves: Option<u64>,
+    pub newton_iterations: Option<u64>,
 }
 
 impl Counts {

@@ -1,6 +1,6 @@
 //! Advances an engine over a run, hands states to an observer, and stops what diverges.
 
-use super::Engine;
+use super::{AdaptiveEngine, Engine};
 use crate::integrators::StepError;
 use crate::system::{ParticleSystem, State, System};
 
@@ -172,4 +172,31 @@ pub fn simulate(
     }
     tick(steps - ticked);
     Ended::Completed
+}
+
+/// Takes an adaptive engine to its end, or until the run diverges or fails; `see` is shown the state after
+/// every accepted step. `Failed` and `Diverged` count accepted steps. None where it is not there after
+/// `most` steps, accepted or not.
+pub fn adapt(
+    engine: &mut AdaptiveEngine,
+    limits: &Limits,
+    most: u64,
+    see: &mut dyn FnMut(&State),
+) -> Option<Ended> {
+    while !engine.done() {
+        let step = engine.steps();
+        if step + engine.steps_rejected() >= most {
+            return None;
+        }
+        if let Err(error) = engine.step() {
+            return Some(Ended::Failed { step, error });
+        }
+        let looked_at = step.is_multiple_of(limits.every) || engine.done();
+        if looked_at && let Some(reason) = limits.exceeded(engine.state()) {
+            let step = engine.steps();
+            return Some(Ended::Diverged { step, reason });
+        }
+        see(engine.state());
+    }
+    Some(Ended::Completed)
 }

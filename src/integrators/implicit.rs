@@ -215,4 +215,8 @@ impl Integrator for Implicit {
     fn linear_solves(&self) -> u64 {
         self.newton.solves()
     }
+
+    fn newton_iterations(&self) -> u64 {
+        self.newton.iterations()
+    }
 }

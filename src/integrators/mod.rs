@@ -1,8 +1,10 @@
 //! Time-stepping methods: one file a family, each method a row of facts in [`REGISTRY`].
 
+pub mod adaptive;
 mod amplification;
 mod implicit;
 mod newton;
+pub(crate) mod nystrom;
 mod runge_kutta;
 mod splitting;
 mod tr_bdf2;
@@ -15,6 +17,7 @@ pub use splitting::{DampingTreatment, Splitting, Stage};
 pub use tr_bdf2::TrBdf2;
 
 use crate::system::{State, System};
+use crate::vector::axpy;
 
 /// Advances a state by one step.
 ///
@@ -30,6 +33,12 @@ pub trait Integrator: Send {
 
     /// Linear systems solved so far; 0 for explicit methods.
     fn linear_solves(&self) -> u64 {
+        0
+    }
+
+    /// Iterations of Newton's method so far; 0 for methods that do not iterate. Not to be confused
+    /// with [`linear_solves`](Self::linear_solves), of which a hard iteration may take several.
+    fn newton_iterations(&self) -> u64 {
         0
     }
 }
@@ -63,6 +72,16 @@ pub enum StepError {
     )]
     DampingTooStiff {
         /// With the largest acceleration.
+        particle: usize,
+    },
+    #[error(
+        "the step fell below the spacing of time at t = {t} s, with the largest error at particle \
+         {particle}: the forces are not smooth there, or the motion explodes"
+    )]
+    TooShort {
+        /// Where the step would start, s.
+        t: f64,
+        /// With the largest error as estimated.
         particle: usize,
     },
     #[error("the step left the range of finite numbers at particle {particle}")]
@@ -252,12 +271,4 @@ fn worst_particle(values: &[f64]) -> usize {
         }
     }
     worst.0
-}
-
-/// y += a x.
-#[inline(always)]
-fn axpy(y: &mut [f64], a: f64, x: &[f64]) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += a * x;
-    }
 }

@@ -5,6 +5,7 @@ use super::{
     StepError, axpy, fit,
 };
 use crate::system::{Power, State, System};
+use crate::vector;
 
 /// An explicit tableau for the first-order system (x, v)' = (v, a), s stages.
 #[derive(Debug, Clone, Copy)]
@@ -196,13 +197,18 @@ impl Integrator for RungeKutta {
         for (stage, row) in self.tableau.a.iter().enumerate() {
             let (before, rest) = self.velocities.split_at_mut(stage);
             let velocity = &mut rest[0];
-            self.x.copy_from_slice(&state.x);
-            velocity.copy_from_slice(&state.v);
-            for (earlier, &weight) in row.iter().enumerate() {
-                if weight != 0.0 {
-                    axpy(&mut self.x, h * weight, &before[earlier]);
-                    axpy(velocity, h * weight, &self.accelerations[earlier]);
-                }
+            let weighted = |&(_, weight): &(usize, f64)| weight != 0.0;
+            let mut terms = row.iter().copied().enumerate().filter(weighted);
+            if let Some((first, weight)) = terms.next() {
+                vector::sum(&mut self.x, &state.x, h * weight, &before[first]);
+                vector::sum(velocity, &state.v, h * weight, &self.accelerations[first]);
+            } else {
+                vector::copy(&mut self.x, &state.x);
+                vector::copy(velocity, &state.v);
+            }
+            for (earlier, weight) in terms {
+                axpy(&mut self.x, h * weight, &before[earlier]);
+                axpy(velocity, h * weight, &self.accelerations[earlier]);
             }
             let t = state.t + h * self.tableau.c[stage];
             self.powers[stage] =

@@ -6,6 +6,7 @@ use super::{
     StepError, axpy, fit,
 };
 use crate::system::{State, System};
+use crate::vector;
 
 /// One factor of the composition; its coefficient multiplies the step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -251,11 +252,24 @@ impl Splitting {
         }
     }
 
-    /// v += h a(x, v), the work with it.
-    fn kick_explicitly(&mut self, system: &dyn System, t: f64, h: f64, state: &mut State) {
+    /// v += h a(x, v), the work with it; then, if there is a drift, x += drift v.
+    fn kick_explicitly(
+        &mut self,
+        system: &dyn System,
+        t: f64,
+        h: f64,
+        drift: Option<f64>,
+        state: &mut State,
+    ) {
         fit(&mut self.kept.a, state.x.len());
         let power = system.acceleration(t, &state.x, &state.v, &mut self.kept.a);
-        axpy(&mut state.v, h, &self.kept.a);
+        match drift {
+            // Memory is what both wait for.
+            Some(drift) => {
+                vector::kick_and_drift(&mut state.x, &mut state.v, &self.kept.a, h, drift);
+            }
+            None => axpy(&mut state.v, h, &self.kept.a),
+        }
         state.work.advance(power, h);
     }
 
@@ -316,8 +330,10 @@ impl Splitting {
     fn compose(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
         let start = state.t;
         let mut drifted = 0.0;
-        for &stage in self.stages {
-            match stage {
+        let mut stages = self.stages;
+        while let [stage, rest @ ..] = stages {
+            stages = rest;
+            match *stage {
                 Drift(c) => {
                     axpy(&mut state.x, c * h, &state.v);
                     drifted += c;
@@ -327,7 +343,13 @@ impl Splitting {
                     let t = start + drifted * h;
                     match self.damping {
                         DampingTreatment::Explicit => {
-                            self.kick_explicitly(system, t, c * h, state);
+                            let mut drift = None;
+                            if let [Drift(next), after @ ..] = rest {
+                                drift = Some(next * h);
+                                drifted += next;
+                                stages = after;
+                            }
+                            self.kick_explicitly(system, t, c * h, drift, state);
                         }
                         DampingTreatment::ExactFlow => {
                             self.kick_exactly(system, t, c * h, state)?;

@@ -120,4 +120,8 @@ impl Integrator for TrBdf2 {
     fn linear_solves(&self) -> u64 {
         self.newton.solves()
     }
+
+    fn newton_iterations(&self) -> u64 {
+        self.newton.iterations()
+    }
 }

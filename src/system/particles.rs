@@ -3,6 +3,7 @@
 use super::{Jacobian, Linearization, Power, State, System};
 use crate::effects::{self, Effect, EffectRow, Scaled};
 use crate::scene::Scene;
+use crate::vector;
 use std::sync::Arc;
 
 /// The effects a scene calls for, each with its registry row, in registry order.
@@ -79,7 +80,7 @@ impl ParticleSystem {
     /// Overwrites `f` with the forces, N. On fixed particles they are what effects happen to add,
     /// such as a spring's pull; they move nothing.
     pub fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
-        f.fill(0.0);
+        vector::clear(f);
         let mut power = Power::default();
         for (_, effect) in self.effects.iter() {
             power += effect.add_force(t, x, v, f);
@@ -108,9 +109,7 @@ impl System for ParticleSystem {
 
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
         let power = self.forces(t, x, v, a);
-        for (a, w) in a.iter_mut().zip(self.inverse_mass.iter()) {
-            *a *= w;
-        }
+        vector::multiply(a, &self.inverse_mass);
         power
     }
 
@@ -119,13 +118,11 @@ impl System for ParticleSystem {
     }
 
     fn damping(&self, _t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
-        a.fill(0.0);
+        vector::clear(a);
         for (_, effect) in self.effects.iter().filter(|(_, e)| e.is_damped()) {
             effect.add_damping(x, w, a);
         }
-        for (a, w) in a.iter_mut().zip(self.inverse_mass.iter()) {
-            *a *= w;
-        }
+        vector::multiply(a, &self.inverse_mass);
     }
 
     fn is_driven(&self) -> bool {

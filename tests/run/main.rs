@@ -281,8 +281,9 @@ fn a_reader_that_leaves_is_no_error() {
 
 #[test]
 fn lists_show_every_row() {
-    let rows: [(&str, Vec<&str>); 3] = [
+    let rows: [(&str, Vec<&str>); 4] = [
         ("integrators", springcheck::integrators::ids()),
+        ("integrators", springcheck::integrators::adaptive::ids()),
         (
             "effects",
             springcheck::effects::REGISTRY

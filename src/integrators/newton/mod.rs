@@ -52,6 +52,7 @@ pub(super) struct Newton {
     z: Vec<f64>,
     power: Power,
     solves: u64,
+    iterations: u64,
 }
 
 impl Newton {
@@ -67,11 +68,17 @@ impl Newton {
             z: Vec::new(),
             power: Power::default(),
             solves: 0,
+            iterations: 0,
         }
     }
 
     pub(super) fn solves(&self) -> u64 {
         self.solves
+    }
+
+    /// Iterations of Newton's method in all; a single linearised step is none.
+    pub(super) fn iterations(&self) -> u64 {
+        self.iterations
     }
 
     /// The powers at the converged stage.
@@ -136,6 +143,7 @@ impl Newton {
                 return Ok(());
             }
             before = self.at.relative;
+            self.iterations += 1;
             // In step with Newton, which squares the residual; no further than is asked for.
             let wanted = (0.1 * self.at.relative).min(FORCING);
             let left = 0.25 * self.tolerance / self.at.relative;

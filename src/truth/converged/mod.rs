@@ -45,7 +45,7 @@ use std::fmt::Write;
 use std::sync::Arc;
 
 /// Changes whenever the same scene would get other bits.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What [`find`] may spend on a scene, in force evaluations times coordinates.
 pub const BUDGET: u64 = 1 << 30;

@@ -1,21 +1,15 @@
 //! The explicit Runge-Kutta method of order 8 of Dormand and Prince, at fixed steps.
 
-mod coefficients;
-
-pub use coefficients::DORMAND_PRINCE_8;
+pub use crate::integrators::adaptive::coefficients::DORMAND_PRINCE_8;
 
 use super::precise::Precise;
 use super::stepper::{Stepper, fit};
 use crate::integrators::Tableau;
+use crate::integrators::adaptive::coefficients::{ERROR_3, ERROR_5, mixed};
+use crate::integrators::nystrom::{self, LANES, Stage, Weight, sums, weights};
 use crate::system::System;
-use coefficients::{ERROR_5, ORDER_3};
 
-/// Coordinates handled at once, so that sums over stages stay in registers.
-const LANES: usize = 8;
-
-/// Steps of an explicit tableau in Nyström form: as (x, v)' = (v, a), stage velocities are sums of
-/// stage accelerations, so positions are x + c h v + h² Σ ā a with ā = a a, and only accelerations
-/// are kept. Where forces depend on velocity it is the same Runge-Kutta method.
+/// Steps of an explicit tableau in Nyström form, of compensated states.
 ///
 /// The first weight is taken as what makes the weights sum to 1, and to 1/2 for positions: rounded
 /// coefficients would drift with time.
@@ -32,18 +26,6 @@ pub struct DormandPrince {
     v: Vec<f64>,
 }
 
-struct Stage {
-    node: f64,
-    row: Vec<Weight>,
-}
-
-/// What one stage's acceleration adds to a position (times h²) and to a velocity (times h).
-struct Weight {
-    stage: usize,
-    position: f64,
-    velocity: f64,
-}
-
 impl Default for DormandPrince {
     fn default() -> Self {
         Self::with(&DORMAND_PRINCE_8)
@@ -54,24 +36,12 @@ impl DormandPrince {
     /// With another explicit tableau, at least consistent. Its error estimates mean nothing.
     pub fn with(tableau: &Tableau) -> Self {
         let stages = tableau.b.len();
-        let rows = tableau.a.iter().zip(tableau.c);
-        let mut order_3 = tableau.b.to_vec();
-        for (stage, weight) in ORDER_3 {
-            if let Some(b) = order_3.get_mut(stage) {
-                *b -= weight;
-            }
-        }
         let mut end = weights(tableau, tableau.b);
         end.retain(|weight| weight.stage > 0);
         Self {
-            stages: rows
-                .map(|(row, &node)| Stage {
-                    node,
-                    row: weights(tableau, row),
-                })
-                .collect(),
+            stages: nystrom::stages(tableau),
             end,
-            errors: [weights(tableau, &ERROR_5), weights(tableau, &order_3)],
+            errors: [weights(tableau, &ERROR_5), weights(tableau, &ERROR_3)],
             accelerations: vec![Vec::new(); stages],
             x: Vec::new(),
             v: Vec::new(),
@@ -82,15 +52,6 @@ impl DormandPrince {
     /// in position, m, and in velocity, m/s. Of the order of the method's own, and larger.
     pub(super) fn local_error(&self, h: f64) -> [f64; 2] {
         let [of_5, of_3] = [&self.errors[0], &self.errors[1]].map(|rows| self.largest_sums(rows));
-        // DOP853's mixture: err5² / sqrt(err5² + err3² / 100).
-        let mixed = |five: f64, three: f64| {
-            let both = five.hypot(0.1 * three);
-            if both == 0.0 {
-                0.0
-            } else {
-                five * (five / both)
-            }
-        };
         [h * h * mixed(of_5[0], of_3[0]), h * mixed(of_5[1], of_3[1])]
     }
 
@@ -100,7 +61,7 @@ impl DormandPrince {
         let mut most = [0.0_f64; 2];
         let padded = self.accelerations.first().map_or(0, Vec::len);
         for start in (0..padded).step_by(LANES) {
-            let (dx, dv) = self.sums(weights, start);
+            let (dx, dv) = sums(&self.accelerations, weights, start);
             for (most, sums) in most.iter_mut().zip([dx, dv]) {
                 for sum in sums {
                     *most = if sum.is_nan() {
@@ -114,26 +75,12 @@ impl DormandPrince {
         most
     }
 
-    /// Weighted sums of accelerations over some coordinates: for positions and for velocities.
-    #[inline(always)]
-    fn sums(&self, weights: &[Weight], start: usize) -> ([f64; LANES], [f64; LANES]) {
-        let (mut dx, mut dv) = ([0.0; LANES], [0.0; LANES]);
-        for weight in weights {
-            let a = &self.accelerations[weight.stage][start..start + LANES];
-            for (lane, a) in a.iter().enumerate() {
-                dx[lane] += weight.position * a;
-                dv[lane] += weight.velocity * a;
-            }
-        }
-        (dx, dv)
-    }
-
     /// Overwrites the stage's position and velocity from the stages before it.
     fn prepare(&mut self, stage: usize, h: f64, state: &Precise) {
         let dim = state.x.len();
         let node = self.stages[stage].node;
         for start in (0..dim).step_by(LANES) {
-            let (dx, dv) = self.sums(&self.stages[stage].row, start);
+            let (dx, dv) = sums(&self.accelerations, &self.stages[stage].row, start);
             for (lane, at) in (start..dim.min(start + LANES)).enumerate() {
                 let drift = node * h * state.v[at] + h * h * dx[lane];
                 self.x[at] = state.x[at] + (state.x_low[at] + drift);
@@ -187,19 +134,4 @@ impl Stepper for DormandPrince {
     fn evaluations(&self) -> u64 {
         self.stages.len() as u64
     }
-}
-
-/// A combination of stage slopes as weights of stage accelerations, those of no weight left out.
-fn weights(tableau: &Tableau, row: &[f64]) -> Vec<Weight> {
-    let through = |at: usize| -> f64 {
-        let slopes = row.iter().zip(tableau.a);
-        slopes.map(|(w, a)| w * a.get(at).unwrap_or(&0.0)).sum()
-    };
-    let all = (0..tableau.b.len()).map(|stage| Weight {
-        stage,
-        position: through(stage),
-        velocity: row.get(stage).copied().unwrap_or(0.0),
-    });
-    all.filter(|w| w.position != 0.0 || w.velocity != 0.0)
-        .collect()
 }

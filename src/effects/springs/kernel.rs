@@ -1,0 +1,274 @@
+//! The force loop: springs in blocks, gathered, computed, scattered.
+//!
+//! Nothing but plain sums, products, quotients and roots, each rounded once and in one order: scalar
+//! and vector instructions of any width give the same bits.
+
+use super::dashpot::{Pair, one};
+use super::network::Table;
+use super::{AXIAL, ISOTROPIC, NONE, dot};
+use pulp::{Arch, Simd, WithSimd};
+
+/// Springs computed side by side: enough for the compiler to take vectors, few enough to stay in
+/// the nearest cache.
+const BLOCK: usize = 16;
+
+/// A flat vector of length 3n, particle by particle.
+pub(super) type Vectors = [[f64; 3]];
+
+/// Where the forces are taken.
+#[derive(Clone, Copy)]
+pub(super) struct Motion<'a> {
+    /// Positions, m.
+    x: &'a Vectors,
+    /// Velocities, m/s.
+    v: &'a Vectors,
+}
+
+impl<'a> Motion<'a> {
+    /// Of flat vectors of length 3n.
+    pub fn new(x: &'a [f64], v: &'a [f64]) -> Self {
+        Self {
+            x: x.as_chunks().0,
+            v: v.as_chunks().0,
+        }
+    }
+}
+
+/// Adds the springs' forces, N, to `f`, which begins with particle `first`: to their ends there, and
+/// to no others. Without `ELASTIC` those of the dampers alone.
+///
+/// Returns the power dissipated, W, by springs whose first end is there.
+#[inline(always)]
+pub(super) fn add<const MODEL: u8, const ELASTIC: bool>(
+    arch: Arch,
+    springs: &Table,
+    at: Motion,
+    f: &mut Vectors,
+    first: usize,
+) -> f64 {
+    if springs.ends.len() < BLOCK {
+        return few::<MODEL, ELASTIC>(springs, at, f, first);
+    }
+    many::<MODEL, ELASTIC>(arch, springs, at, f, first)
+}
+
+/// One after the other: what [`blocks`] does of one spring at a time.
+///
+/// Axis by axis to one end and the other, which keeps the compiler from taking two coordinates in one
+/// instruction: across the boundary of what was just stored, such a load waits for the memory.
+#[inline(always)]
+fn few<const MODEL: u8, const ELASTIC: bool>(
+    springs: &Table,
+    at: Motion,
+    f: &mut Vectors,
+    first: usize,
+) -> f64 {
+    let mut dissipated = 0.0;
+    let f = f.as_flattened_mut();
+    let elastic = springs.ends.iter().zip(&springs.stiffness);
+    for (s, ((&ends, &k), &l)) in elastic.zip(&springs.rest_length).enumerate() {
+        let c = if MODEL == NONE {
+            0.0
+        } else {
+            springs.damping[s]
+        };
+        let between = apart(at.x, ends);
+        let relative = if MODEL == NONE {
+            [0.0; 3]
+        } else {
+            apart(at.v, ends)
+        };
+        let pair = Pair {
+            between,
+            closing: dot(relative, between),
+            relative,
+        };
+        let (force, loss) = one::<MODEL, ELASTIC>(pair, [k, l, c]);
+        let [i, j] = ends.map(|end| (end as usize).wrapping_sub(first).wrapping_mul(3));
+        for axis in 0..3 {
+            if let Some(f) = f.get_mut(i.wrapping_add(axis)) {
+                *f += force[axis];
+            }
+            if let Some(f) = f.get_mut(j.wrapping_add(axis)) {
+                *f -= force[axis];
+            }
+        }
+        if i < f.len() {
+            dissipated += loss;
+        }
+    }
+    dissipated
+}
+
+/// Out of line: a few springs should not carry its frame.
+#[inline(never)]
+fn many<const MODEL: u8, const ELASTIC: bool>(
+    arch: Arch,
+    springs: &Table,
+    at: Motion,
+    f: &mut Vectors,
+    first: usize,
+) -> f64 {
+    arch.dispatch(Forces::<MODEL, ELASTIC> {
+        springs,
+        at,
+        f,
+        first,
+    })
+}
+
+/// What is compiled once for each set of vector instructions. (A closure would not be: its body may
+/// become a function of its own, compiled for the least of machines.)
+struct Forces<'a, const MODEL: u8, const ELASTIC: bool> {
+    springs: &'a Table,
+    at: Motion<'a>,
+    f: &'a mut Vectors,
+    first: usize,
+}
+
+impl<const MODEL: u8, const ELASTIC: bool> WithSimd for Forces<'_, MODEL, ELASTIC> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let (springs, at, f, first) = (self.springs, self.at, self.f, self.first);
+        let whole = springs.ends.len() / BLOCK * BLOCK;
+        let dissipated = blocks::<BLOCK, MODEL, ELASTIC>(springs, 0, at, f, first, 0.0);
+        blocks::<1, MODEL, ELASTIC>(springs, whole, at, f, first, dissipated)
+    }
+}
+
+/// Springs from number `from` on in blocks of `N`; what is left over is not done. The power is
+/// summed on from `dissipated`, spring by spring.
+#[inline(always)]
+fn blocks<const N: usize, const MODEL: u8, const ELASTIC: bool>(
+    springs: &Table,
+    from: usize,
+    at: Motion,
+    f: &mut Vectors,
+    first: usize,
+    mut dissipated: f64,
+) -> f64 {
+    let ends = springs.ends[from..].as_chunks::<N>().0;
+    let stiffness = springs.stiffness[from..].as_chunks::<N>().0;
+    let rest_length = springs.rest_length[from..].as_chunks::<N>().0;
+    let elastic = ends.iter().zip(stiffness).zip(rest_length);
+    if MODEL == NONE {
+        for ((ends, k), l) in elastic {
+            let (force, _) = compute::<N, MODEL, ELASTIC>(ends, k, l, &[0.0; N], at);
+            scatter(ends, &force, f, first);
+        }
+    } else {
+        let damping = springs.damping[from..].as_chunks::<N>().0;
+        for (((ends, k), l), c) in elastic.zip(damping) {
+            let (force, loss) = compute::<N, MODEL, ELASTIC>(ends, k, l, c, at);
+            scatter(ends, &force, f, first);
+            for s in 0..N {
+                if (ends[s][0] as usize).wrapping_sub(first) < f.len() {
+                    dissipated += loss[s];
+                }
+            }
+        }
+    }
+    dissipated
+}
+
+/// The force on the first end of each spring, N, axis by axis, and the power it dissipates, W.
+#[inline(always)]
+fn compute<const N: usize, const MODEL: u8, const ELASTIC: bool>(
+    ends: &[[u32; 2]; N],
+    stiffness: &[f64; N],
+    rest_length: &[f64; N],
+    damping: &[f64; N],
+    at: Motion,
+) -> ([[f64; N]; 3], [f64; N]) {
+    // As long as each other: one check of an index serves both.
+    let (x, v) = (at.x, &at.v[..at.x.len()]);
+    let (mut d, mut dv, mut closing) = ([[0.0; N]; 3], [[0.0; N]; 3], [0.0; N]);
+    for s in 0..N {
+        let between = between(x, ends[s]);
+        for axis in 0..3 {
+            d[axis][s] = between[axis];
+        }
+        if MODEL == AXIAL {
+            closing[s] = dot(self::between(v, ends[s]), between);
+        }
+        if MODEL == ISOTROPIC {
+            let between = self::between(v, ends[s]);
+            for axis in 0..3 {
+                dv[axis][s] = between[axis];
+            }
+        }
+    }
+    let (mut force, mut loss) = ([[0.0; N]; 3], [0.0; N]);
+    for s in 0..N {
+        let pair = Pair {
+            between: [d[0][s], d[1][s], d[2][s]],
+            closing: closing[s],
+            relative: [dv[0][s], dv[1][s], dv[2][s]],
+        };
+        let spring = [stiffness[s], rest_length[s], damping[s]];
+        let (own, lost) = one::<MODEL, ELASTIC>(pair, spring);
+        for axis in 0..3 {
+            force[axis][s] = own[axis];
+        }
+        loss[s] = lost;
+    }
+    (force, loss)
+}
+
+/// Adds the forces to those ends that lie in `f`, spring after spring.
+#[inline(always)]
+fn scatter<const N: usize>(
+    ends: &[[u32; 2]; N],
+    force: &[[f64; N]; 3],
+    f: &mut Vectors,
+    first: usize,
+) {
+    // Springs that share their first end follow each other in most scenes: its sum waits for no
+    // memory.
+    let (mut current, mut sum) = (usize::MAX, [0.0; 3]);
+    // An index outside `f` is another part's particle: the check that indexing costs anyway decides.
+    for s in 0..N {
+        let [i, j] = ends[s].map(|end| (end as usize).wrapping_sub(first));
+        if i != current {
+            if let Some(f) = f.get_mut(current) {
+                *f = sum;
+            }
+            current = i;
+            sum = f.get(i).copied().unwrap_or_default();
+        }
+        for axis in 0..3 {
+            sum[axis] += force[axis][s];
+        }
+        if let Some(f) = f.get_mut(j) {
+            for axis in 0..3 {
+                f[axis] -= force[axis][s];
+            }
+        }
+    }
+    if let Some(f) = f.get_mut(current) {
+        *f = sum;
+    }
+}
+
+/// From the first end to the second.
+#[inline(always)]
+fn between(x: &Vectors, ends: [u32; 2]) -> [f64; 3] {
+    let [from, to] = ends.map(|end| &x[end as usize]);
+    [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
+}
+
+/// The same, a checked coordinate at a time: see [`few`].
+#[inline(always)]
+fn apart(x: &Vectors, ends: [u32; 2]) -> [f64; 3] {
+    let x = x.as_flattened();
+    let [i, j] = ends.map(|end| 3 * end as usize);
+    let mut between = [0.0; 3];
+    for axis in 0..3 {
+        if let (Some(from), Some(to)) = (x.get(i + axis), x.get(j + axis)) {
+            between[axis] = to - from;
+        }
+    }
+    between
+}

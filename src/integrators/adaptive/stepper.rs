@@ -1,0 +1,172 @@
+//! The stepper all pairs share: try, judge, accept or try a shorter step.
+
+use super::Pair;
+use super::control::Controller;
+use super::scale::Scale;
+use super::trial::Trial;
+use crate::integrators::StepError;
+use crate::system::{State, System};
+
+/// What rounding leaves of a tolerance.
+const TIGHTEST: f64 = 4.0 * f64::EPSILON;
+/// Steps shorter than this share of the time they start at are refused.
+const SPACING: f64 = 10.0 * f64::EPSILON;
+
+/// A pair with a tolerance.
+///
+/// The tolerance is the largest error a step may add to any coordinate, as the pair estimates it: of a
+/// position in units of the scene's size L, of a velocity in units of V, the largest of the speeds so
+/// far, sqrt(L a) with the largest acceleration at the start, and L over the duration. What is left at
+/// the end is proportional to it, and not equal: errors of many steps add up, grow with the motion, and
+/// are overestimated. Work integrals have no part in it.
+///
+/// It serves one system and remembers no more than the last step's end: handing it any state is allowed.
+pub struct Adaptive {
+    trial: Trial,
+    controller: Controller,
+    tolerance: f64,
+    size: f64,
+    /// From the first step on: what errors are relative to, and the step to try next, s.
+    started: Option<(Scale, f64)>,
+    k: u32,
+    rejected: u64,
+}
+
+impl Adaptive {
+    /// `size` is the scene's in metres, 0 where it has none; `tolerance` is taken as 4 eps or 1 if it
+    /// is outside these, and as 4 eps if it is no number.
+    pub fn new(pair: &Pair, tolerance: f64, size: f64) -> Self {
+        let k = pair.estimate.order();
+        let tolerance = if tolerance.is_nan() {
+            TIGHTEST
+        } else {
+            tolerance
+        };
+        Self {
+            trial: Trial::new(pair),
+            controller: Controller::new(k),
+            tolerance: tolerance.clamp(TIGHTEST, 1.0),
+            size,
+            started: None,
+            k,
+            rejected: 0,
+        }
+    }
+
+    /// Attempts so far whose error was too large.
+    pub fn rejected(&self) -> u64 {
+        self.rejected
+    }
+
+    /// Advances a state by one step of the stepper's own choice, and to `until` exactly at the end;
+    /// nothing if it is already there. On an error the state is left as it was.
+    ///
+    /// # Errors
+    /// [`StepError::TooShort`] where no step is short enough for the tolerance,
+    /// [`StepError::NotFinite`] where forces are not finite.
+    pub fn step(
+        &mut self,
+        system: &dyn System,
+        until: f64,
+        state: &mut State,
+    ) -> Result<(), StepError> {
+        let left = until - state.t;
+        // NaN is no time to go to.
+        if !(left > 0.0 && left.is_finite()) {
+            return Ok(());
+        }
+        self.trial.begin(system, state);
+        let (mut scale, mut h) = self.started(system, state.t, left)?;
+        loop {
+            let unlimited = h;
+            if h >= left / 1.01 {
+                h = left;
+            } else if h > 0.5 * left {
+                // Two equal steps, instead of a long one and a short one.
+                h = 0.5 * left;
+            }
+            let end = if h == left { until } else { state.t + h };
+            // The length between the two times, so that steps add up to the time.
+            h = end - state.t;
+            if h <= SPACING * state.t || h <= 0.0 {
+                return Err(self.too_short(state.t));
+            }
+            let error = self.trial.attempt(system, state.t, h, &scale) / self.tolerance;
+            if error <= 1.0 {
+                let Some(speed) = self.trial.accept(h, end, state) else {
+                    return Err(self.not_finite());
+                };
+                let next = self.controller.accepted(h, error);
+                // A step cut short by the end says nothing against a longer one.
+                let next = if h < unlimited {
+                    next.max(unlimited)
+                } else {
+                    next
+                };
+                scale.speed = scale.speed.max(speed);
+                self.started = Some((scale, next));
+                return Ok(());
+            }
+            self.rejected += 1;
+            h = self.controller.rejected(h, error);
+        }
+    }
+
+    /// Advances a state by a step of `h` seconds, whatever its error, which is returned, as estimated,
+    /// in units of the tolerance. For those who hold the pair's formula against its order.
+    ///
+    /// # Errors
+    /// [`StepError::NotFinite`].
+    pub fn step_of(
+        &mut self,
+        system: &dyn System,
+        h: f64,
+        state: &mut State,
+    ) -> Result<f64, StepError> {
+        self.trial.begin(system, state);
+        let (scale, _) = self.started(system, state.t, h)?;
+        let error = self.trial.attempt(system, state.t, h, &scale) / self.tolerance;
+        let moved = self.trial.accept(h, state.t + h, state);
+        moved.map(|_| error).ok_or_else(|| self.not_finite())
+    }
+
+    /// Scale and step; at the first call from the state begun with, `left` seconds before the end.
+    ///
+    /// The first step is (tolerance / 100)^(1/k) / rate: Hairer's rule (Solving ODEs I, II.4) with a
+    /// rate made of the first and second derivative, which does not depend on the unit of time.
+    fn started(
+        &mut self,
+        system: &dyn System,
+        t: f64,
+        left: f64,
+    ) -> Result<(Scale, f64), StepError> {
+        if !self.trial.is_finite() {
+            return Err(self.not_finite());
+        }
+        if let Some(started) = self.started {
+            return Ok(started);
+        }
+        let scale = self.trial.scale(self.size, left);
+        let rate = self.trial.rate(system, t, left, &scale);
+        let share = (0.01 * self.tolerance).powf(1.0 / f64::from(self.k));
+        let h = share / rate;
+        let h = if h < left { h } else { left };
+        self.started = Some((scale, h));
+        Ok((scale, h))
+    }
+
+    fn too_short(&self, t: f64) -> StepError {
+        match self.trial.not_finite() {
+            Some(particle) => StepError::NotFinite { particle },
+            None => StepError::TooShort {
+                t,
+                particle: self.trial.worst(),
+            },
+        }
+    }
+
+    fn not_finite(&self) -> StepError {
+        let particle = self.trial.not_finite().unwrap_or(0);
+        StepError::NotFinite { particle }
+    }
+}

@@ -1,0 +1,69 @@
+//! Explicit tableaux in Nyström form, for those who step with many stages.
+//!
+//! As (x, v)' = (v, a), stage velocities are sums of stage accelerations, so positions are
+//! x + c h v + h² Σ ā a with ā = a a, and only accelerations are kept. Where forces depend on
+//! velocity it is the same Runge-Kutta method, but for rounding.
+
+use super::Tableau;
+
+/// Coordinates handled at once, so that sums over stages stay in registers.
+pub(crate) const LANES: usize = 8;
+
+/// Where forces are evaluated.
+pub(crate) struct Stage {
+    /// c.
+    pub node: f64,
+    /// Of the stages before it.
+    pub row: Vec<Weight>,
+}
+
+/// What one stage's acceleration adds to a position (times h²) and to a velocity (times h).
+pub(crate) struct Weight {
+    pub stage: usize,
+    pub position: f64,
+    pub velocity: f64,
+}
+
+/// All stages of a tableau.
+pub(crate) fn stages(tableau: &Tableau) -> Vec<Stage> {
+    let rows = tableau.a.iter().zip(tableau.c);
+    rows.map(|(row, &node)| Stage {
+        node,
+        row: weights(tableau, row),
+    })
+    .collect()
+}
+
+/// A combination of stage slopes as weights of stage accelerations, those of no weight left out.
+pub(crate) fn weights(tableau: &Tableau, row: &[f64]) -> Vec<Weight> {
+    let through = |at: usize| -> f64 {
+        let slopes = row.iter().zip(tableau.a);
+        slopes.map(|(w, a)| w * a.get(at).unwrap_or(&0.0)).sum()
+    };
+    let all = (0..tableau.b.len()).map(|stage| Weight {
+        stage,
+        position: through(stage),
+        velocity: row.get(stage).copied().unwrap_or(0.0),
+    });
+    all.filter(|w| w.position != 0.0 || w.velocity != 0.0)
+        .collect()
+}
+
+/// Weighted sums of accelerations over the coordinates from `start`: for positions and for
+/// velocities. Accelerations are padded to whole lanes.
+#[inline(always)]
+pub(crate) fn sums(
+    accelerations: &[Vec<f64>],
+    weights: &[Weight],
+    start: usize,
+) -> ([f64; LANES], [f64; LANES]) {
+    let (mut dx, mut dv) = ([0.0; LANES], [0.0; LANES]);
+    for weight in weights {
+        let a = &accelerations[weight.stage][start..start + LANES];
+        for (lane, a) in a.iter().enumerate() {
+            dx[lane] += weight.position * a;
+            dv[lane] += weight.velocity * a;
+        }
+    }
+    (dx, dv)
+}

@@ -1,0 +1,54 @@
+//! What a running simulation keeps: bytes per spring of a large cloth.
+
+#[path = "common/cloth.rs"]
+mod cloth;
+
+use springcheck::integrators::{self, Settings};
+use springcheck::scene::{DampingModel, Scene};
+use springcheck::system::ParticleSystem;
+
+#[global_allocator]
+static ALLOCATOR: dhat::Alloc = dhat::Alloc;
+
+/// System, state and integrator while a simulation runs, and at the worst moment of two steps; with
+/// `scene` the scene it was built from, too. Bytes per spring.
+fn bytes_per_spring(method: &str, scene: Scene, keep_scene: bool) -> [f64; 2] {
+    let springs = scene.springs.len() as f64;
+    let method = integrators::find(method).expect("a method");
+    let system = ParticleSystem::new(&scene);
+    let mut state = ParticleSystem::initial_state(&scene);
+    let kept = keep_scene.then_some(scene);
+    let mut integrator = (method.build)(&Settings::default());
+    let mut worst = 0;
+    for _ in 0..2 {
+        let done = integrator.step(&system, 1e-4, &mut state);
+        done.expect("an explicit step");
+        worst = worst.max(dhat::HeapStats::get().curr_bytes);
+    }
+    drop(kept);
+    let running = dhat::HeapStats::get().curr_bytes;
+    [worst, running].map(|bytes| bytes as f64 / springs)
+}
+
+#[test]
+fn a_running_simulation_takes_under_100_bytes_per_spring() {
+    let _profiler = dhat::Profiler::builder().testing().build();
+    // 595,978 springs with dampers between 99,856 particles. A spring takes 32 bytes, and one in
+    // twenty has a copy; each has a sixth of a particle, which takes 16 bytes of weight and 24 for
+    // each vector: inverse mass, x, v, then a with symplectic Euler, nine vectors with rk4.
+    let cloth = || cloth::cloth(316, 0.01, DampingModel::Axial);
+    for (method, vectors) in [("symplectic_euler", 4.0), ("rk4", 12.0)] {
+        let [worst, running] = bytes_per_spring(method, cloth(), false);
+        let derived = 32.0 * 1.05 + (24.0 * vectors + 16.0) / 5.97;
+        println!("{method}: {running:.1} bytes per spring, derived {derived:.1}");
+        assert_eq!(worst, running, "{method}: a step takes memory of its own");
+        assert!(running < derived + 1.0, "{method}: {running} bytes");
+        assert!(running < 100.0, "{method}: {running} bytes");
+        // With the scene beside it, it would not be: the scale sees what is kept.
+        let [with_scene, _] = bytes_per_spring(method, cloth(), true);
+        assert!(
+            with_scene > 100.0,
+            "{method}: {with_scene} bytes with the scene"
+        );
+    }
+}
