@@ -3,8 +3,12 @@
 //!
 //! Every number that could be missing is an `Option`; no field ever holds NaN or infinity.
 
+mod cost;
 mod stability;
 
+pub use cost::{
+    Cost, CostCurve, CostLine, CostPanel, CostPanels, CostPoint, CostRank, CostReached, CostTarget,
+};
 pub use stability::{
     Admissible, AdmissiblePanel, Cell, MapPanel, Stability, StabilityMap, StabilityRow,
     TightestLimit,
@@ -30,6 +34,9 @@ pub struct Report {
     /// `stability` alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability: Option<Stability>,
+    /// `cost` alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cost: Option<Cost>,
     /// What plots need and the JSON does not carry.
     #[serde(skip)]
     pub figures: Figures,

@@ -4,6 +4,7 @@ mod announce;
 mod cache;
 mod chosen;
 mod compare;
+mod cost;
 mod external;
 mod host;
 mod list;
@@ -14,6 +15,7 @@ mod run;
 mod save;
 mod shown;
 mod stability;
+mod time;
 
 use anyhow::Context;
 use clap::{Parser, Subcommand, ValueEnum};
@@ -47,6 +49,8 @@ enum Verb {
     Compare(compare::Args),
     /// How large a step each integrator may take: predicted, measured, and as a map.
     Stability(stability::Args),
+    /// What accuracy costs: errors over time and evaluations, and the cheapest way to a target.
+    Cost(cost::Args),
     /// What there is: integrators, effects, engines, mistakes, with their facts.
     List(list::Args),
 }
@@ -81,6 +85,7 @@ pub fn main() -> ExitCode {
         Verb::Run(args) => run::run(&args, cli.quiet),
         Verb::Compare(args) => compare::compare(&args, cli.quiet),
         Verb::Stability(args) => stability::stability(&args, cli.quiet),
+        Verb::Cost(args) => cost::cost(&args, cli.quiet),
         Verb::List(args) => list::list(&args),
     };
     match done {

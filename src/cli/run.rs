@@ -3,12 +3,13 @@
 use super::announce;
 use super::cache::Cache;
 use super::chosen;
-use super::external::{self, External, Timeout};
+use super::external::{self, External};
 use super::host::host;
 use super::progress::Progress;
 use super::rapier::Custom;
 use super::save::{FileKind, Files};
 use super::shown::{self, HUMAN, formats};
+use super::time::Time;
 use anyhow::{Context, bail};
 use springcheck::crosscheck::{self, Choice, Orders, Plan, expect};
 use springcheck::outcome::{Check, CheckStatus, Figures, Report};
@@ -49,7 +50,7 @@ pub struct Args {
         requires = "external",
         default_value = "60s"
     )]
-    external_timeout: Timeout,
+    external_timeout: Time,
 
     /// Timesteps in seconds, separated by commas: everything runs at each. Default: the scene's.
     #[arg(long, value_name = "H,...", value_delimiter = ',')]

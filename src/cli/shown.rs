@@ -70,3 +70,8 @@ pub fn quoted(path: &Path) -> Option<String> {
         Some(format!("'{}'", text.replace('\'', "'\\''")))
     }
 }
+
+/// Three digits are enough for a suggestion.
+pub fn rounded(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}

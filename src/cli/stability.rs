@@ -215,7 +215,7 @@ fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
             .iter()
             .fold(0.0, |k: f64, s| k.max(s.stiffness));
         return Some(if stiffest > 0.0 {
-            let [low, high] = [stiffest / 100.0, stiffest * 100.0].map(rounded);
+            let [low, high] = [stiffest / 100.0, stiffest * 100.0].map(shown::rounded);
             format!("springcheck stability {path} --vary springs.stiffness={low}..{high}")
         } else {
             format!("springcheck stability {path} --vary particles.drag=0.01..100")
@@ -225,14 +225,9 @@ fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
     let own = own.filter(|row| row.engine == report.scene.own_method);
     let limit = own.filter_map(StabilityRow::limit).next()?;
     let h = if limit > 0.0 && limit.is_finite() {
-        rounded(0.9 * limit).min(scene.duration)
+        shown::rounded(0.9 * limit).min(scene.duration)
     } else {
         scene.solver.timestep
     };
     Some(format!("springcheck run {path} --timestep {h}"))
-}
-
-/// Three digits are enough for a suggestion.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
 }

@@ -19,7 +19,7 @@ pub trait Host: Sync {
     /// When the file cannot be made.
     fn saver(&self, case: &Label) -> Result<Option<Box<dyn Saver>>, SaveError>;
 
-    /// So many more steps have been taken.
+    /// So much more is done, in the units of the plan: steps, or nominal microseconds.
     fn progress(&self, steps: u64);
 
     /// Where truths are kept from one run to the next.
@@ -220,7 +220,8 @@ fn time(case: &Case, build: &Build, limits: &Limits, wall: &mut WallTime) {
     };
 }
 
-struct Nobody;
+/// Looks at nothing.
+pub(super) struct Nobody;
 
 impl Observer for Nobody {
     fn next(&self, _from: u64) -> Option<u64> {
@@ -230,7 +231,7 @@ impl Observer for Nobody {
 }
 
 /// Sorts; not empty.
-fn median(values: &mut [f64]) -> f64 {
+pub(super) fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     let half = values.len() / 2;
     if values.len() % 2 == 1 {

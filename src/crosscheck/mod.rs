@@ -5,6 +5,7 @@
 //! number of threads; only wall times do.
 
 mod compare;
+pub mod cost;
 mod execute;
 pub mod expect;
 mod figures;
@@ -64,6 +65,7 @@ impl Plan<'_> {
             outcomes,
             fault: None,
             stability: None,
+            cost: None,
             checks: proofs
                 .into_iter()
                 .chain(orders)

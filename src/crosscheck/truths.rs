@@ -4,7 +4,7 @@ use super::execute::Run;
 use super::plan::Plan;
 use crate::measure::{self, Errors, Known};
 use crate::outcome::{self, TruthKind};
-use crate::system::System;
+use crate::system::{ParticleSystem, System};
 use crate::trajectory::Trajectory;
 use crate::truth::Truth;
 use rayon::prelude::*;
@@ -29,7 +29,7 @@ impl Truths {
             .into_par_iter()
             .map(|timestep| (timestep, known(plan, runs, &truth, timestep)))
             .collect();
-        let peak = peak(plan, &truth);
+        let peak = peak(&plan.system, &truth);
         Self { truth, known, peak }
     }
 
@@ -55,15 +55,19 @@ impl Truths {
 
     /// As the report states it.
     pub fn facts(&self) -> outcome::Truth {
-        let truth = &self.truth;
-        let there = truth.kind != TruthKind::None;
-        outcome::Truth {
-            kind: truth.kind,
-            method: truth.method.clone(),
-            error_bound_m: there.then_some(truth.error_bound),
-            horizon_s: there.then_some(truth.horizon),
-            reason: Some(truth.reason.clone()),
-        }
+        facts(&self.truth)
+    }
+}
+
+/// A truth as reports state it.
+pub(super) fn facts(truth: &Truth) -> outcome::Truth {
+    let there = truth.kind != TruthKind::None;
+    outcome::Truth {
+        kind: truth.kind,
+        method: truth.method.clone(),
+        error_bound_m: there.then_some(truth.error_bound),
+        horizon_s: there.then_some(truth.horizon),
+        reason: Some(truth.reason.clone()),
     }
 }
 
@@ -94,11 +98,12 @@ fn known(plan: &Plan, runs: &[Run], truth: &Truth, timestep: f64) -> Known {
     }
 }
 
-fn peak(plan: &Plan, truth: &Truth) -> Option<f64> {
+/// The largest kinetic energy of a truth up to its horizon, J.
+pub(super) fn peak(system: &ParticleSystem, truth: &Truth) -> Option<f64> {
     let motion = truth.motion()?;
     let times = motion.landmarks(truth.horizon);
     let states = motion.states(&times);
-    let kinetic = (0..times.len()).map(|k| plan.system.kinetic(states.v(k)));
+    let kinetic = (0..times.len()).map(|k| system.kinetic(states.v(k)));
     let peak = kinetic.fold(0.0, f64::max);
     peak.is_finite().then_some(peak)
 }

@@ -51,7 +51,7 @@ pub fn reach(run: &Trajectory) -> f64 {
 }
 
 /// Largest distance between the same particle of two states, m.
-pub(super) fn farthest(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn farthest(a: &[f64], b: &[f64]) -> f64 {
     let square =
         |(a, b): (&[f64], &[f64])| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum() };
     a.chunks_exact(3)

@@ -1,5 +1,6 @@
 //! What a trajectory shows, as numbers: pure functions of recorded states.
 
+pub mod cost;
 mod deviation;
 mod energy;
 mod error;
@@ -11,6 +12,7 @@ pub mod stability;
 mod trend;
 pub mod twin;
 
+pub(crate) use deviation::farthest;
 pub use deviation::{TOLERANCE, deviation, reach};
 pub use energy::{EnergySeries, judge};
 pub use error::{Errors, Known, errors};

@@ -42,7 +42,8 @@ fn is_finite(report: &Report) -> bool {
             &report.outcomes,
             &report.checks,
             &report.fault,
-            &report.stability
+            &report.stability,
+            &report.cost
         )
     );
     let mut text = String::with_capacity(numbers.len());

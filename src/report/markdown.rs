@@ -2,6 +2,7 @@
 
 mod ledger;
 
+use super::cost;
 use super::identity;
 use super::notes::{notes, references, several_timesteps};
 use super::stability;
@@ -34,6 +35,9 @@ pub fn render(report: &Report) -> String {
         .filter(|_| stability::is_alone(report))
     {
         return stability::markdown::render(report, stability);
+    }
+    if let Some(cost) = report.cost.as_ref().filter(|_| cost::is_alone(report)) {
+        return cost::markdown::render(report, cost);
     }
     let text = heading(report) + &facts(report);
     let text = text + &images(report) + "## Outcomes\n\n" + &outcomes(report);
@@ -163,7 +167,7 @@ fn remarks(report: &Report) -> String {
     )
 }
 
-fn checks(checks: &[Check]) -> String {
+pub(super) fn checks(checks: &[Check]) -> String {
     if checks.is_empty() {
         return String::new();
     }

@@ -2,6 +2,7 @@
 //!
 //! A format is a row of [`FORMATS`]; the figures beside a report are [`svg::figures`].
 
+mod cost;
 mod identity;
 pub mod json;
 pub mod markdown;
@@ -58,6 +59,8 @@ pub const FORMATS: &[Format] = &[
 pub fn stem(report: &Report) -> &'static str {
     if stability::is_alone(report) {
         "stability"
+    } else if cost::is_alone(report) {
+        "cost"
     } else {
         "report"
     }

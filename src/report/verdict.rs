@@ -1,7 +1,7 @@
 //! The one sentence that says the most important thing.
 
 use super::notes::{listed, subjects};
-use super::{identity, stability, words};
+use super::{cost, identity, stability, words};
 use crate::outcome::{Check, CheckStatus, EnergyClass, Outcome, Report, Status};
 
 /// Engines named in one group before "and n more".
@@ -42,6 +42,10 @@ fn clauses(report: &Report) -> Vec<Clause> {
     }
     let mut clauses = Vec::new();
     clauses.extend(failed_checks(&report.checks).map(|text| vec![text]));
+    if let Some(cost) = report.cost.as_ref().filter(|_| cost::is_alone(report)) {
+        clauses.extend(cost::verdict::clauses(report, cost));
+        return clauses;
+    }
     clauses.extend(identity::verdict(report).map(|text| vec![text]));
     clauses.extend(own(report).map(|text| vec![text]));
     clauses.extend(groups(report));

@@ -59,7 +59,11 @@ pub fn short(value: f64) -> String {
     if plain.len() <= 7 {
         return plain;
     }
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    let digits = format!("{value:.2e}");
+    // The largest number rounds to infinity.
+    let Some(rounded) = digits.parse::<f64>().ok().filter(|r| r.is_finite()) else {
+        return digits;
+    };
     let plain = format!("{rounded}");
     if plain.len() <= 7 {
         plain

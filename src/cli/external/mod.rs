@@ -4,6 +4,7 @@ mod process;
 mod program;
 mod tree;
 
+use crate::cli::time::Time;
 use anyhow::bail;
 use springcheck::crosscheck::ChosenProgram;
 use springcheck::engines::external::Command;
@@ -11,7 +12,6 @@ use springcheck::{engines, integrators};
 use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// The flag's value: what reports call the program, and how it is started.
 #[derive(Debug, Clone)]
@@ -65,7 +65,7 @@ pub fn distinct(externals: &[External]) -> anyhow::Result<()> {
 }
 
 /// The programs, ready to run on this scene.
-pub fn chosen(externals: &[External], scene: &Path, timeout: Timeout) -> Vec<ChosenProgram> {
+pub fn chosen(externals: &[External], scene: &Path, timeout: Time) -> Vec<ChosenProgram> {
     let ready = |external: &External| ChosenProgram {
         name: external.name.clone(),
         program: Arc::new(program::Started {
@@ -77,56 +77,9 @@ pub fn chosen(externals: &[External], scene: &Path, timeout: Timeout) -> Vec<Cho
     externals.iter().map(ready).collect()
 }
 
-/// `60s`, `2m`, `1.5h`, `500ms`, or seconds without a unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Timeout(Duration);
-
-impl FromStr for Timeout {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("expected a time such as 60s, 2m or 500ms, found `{text}`");
-        let digits = text.trim_end_matches(char::is_alphabetic);
-        let unit = match &text[digits.len()..] {
-            "ms" => 1e-3,
-            "" | "s" => 1.0,
-            "m" | "min" => 60.0,
-            "h" => 3600.0,
-            _ => return Err(wrong()),
-        };
-        let seconds = digits.parse::<f64>().map_err(|_| wrong())? * unit;
-        // Ten years are as good as for ever, and clocks can count to them.
-        if !(seconds > 0.0 && seconds < 3e8) {
-            return Err(wrong());
-        }
-        Duration::try_from_secs_f64(seconds).map_or_else(|_| Err(wrong()), |t| Ok(Self(t)))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn times_with_and_without_units() {
-        let ms = |text: &str| text.parse::<Timeout>().map(|t| t.0.as_millis()).ok();
-        let good = [
-            ("60s", 60_000),
-            ("2m", 120_000),
-            ("500ms", 500),
-            ("1.5h", 5_400_000),
-            ("7", 7_000),
-            ("0.25", 250),
-        ];
-        for (text, wanted) in good {
-            assert_eq!(ms(text), Some(wanted), "{text}");
-        }
-        for text in [
-            "", "s", "0", "-1s", "inf", "NaN", "1e300", "5 s", "1d", "1m30s", "µs",
-        ] {
-            assert_eq!(ms(text), None, "{text}");
-        }
-    }
 
     #[test]
     fn names_are_short_plain_and_not_taken() {

@@ -108,6 +108,7 @@ impl StabilityPlan<'_> {
             checks: Vec::new(),
             fault: None,
             stability: Some(stability),
+            cost: None,
             figures: Figures::default(),
         })
     }

@@ -2,8 +2,8 @@
 //! panel a stiffness.
 
 use super::canvas::{Anchor, Canvas, FAINT, INK, Stroke};
-use super::grid::{Panel, Sides, legend};
-use super::line::{self, Window};
+use super::grid::{Layout, Panel, legend};
+use super::line;
 use super::palette::HOLDS;
 use super::scale::Axis;
 use super::{WIDTH, heading};
@@ -45,19 +45,19 @@ pub fn draw(report: &Report) -> String {
     key(&mut canvas, admissible);
     let count = admissible.panels.len();
     let columns = count.min(COLUMNS);
-    let side = (WIDTH - LEFT - 12.0 - GAP * (columns - 1) as f64) / columns as f64;
-    let side = side.min(380.0);
+    let side = Layout::width(columns, LEFT, GAP).min(380.0);
+    let layout = Layout {
+        count,
+        columns,
+        left: LEFT,
+        top: TOP,
+        above: ABOVE,
+        gap: GAP,
+        size: [side, side],
+    };
     for (at, stiffness) in admissible.panels.iter().enumerate() {
-        let (row, column) = (at / columns, at % columns);
-        let left = LEFT + column as f64 * (side + GAP);
-        let top = TOP + ABOVE + row as f64 * (side + ABOVE);
         let panel = Panel {
-            window: Window {
-                left,
-                top,
-                right: left + side,
-                bottom: top + side,
-            },
+            window: layout.window(at),
             x: axis(&admissible.x1_m),
             y: axis(&admissible.x2_m),
         };
@@ -74,17 +74,11 @@ pub fn draw(report: &Report) -> String {
             words::short(stiffness.stiffness_n_m),
             100.0 * stiffness.share
         );
-        let sides = Sides {
-            left: column == 0,
-            below: at + columns >= count,
-        };
-        panel.frame(&mut canvas, &title, sides);
+        panel.frame(&mut canvas, &title, layout.sides(at));
     }
-    let rows = count.div_ceil(columns);
-    let bottom = TOP + rows as f64 * (side + ABOVE);
-    let full = columns as f64 * (side + GAP) - GAP;
+    let bottom = layout.bottom();
     canvas.text(
-        [LEFT + full / 2.0, bottom + 34.0],
+        [layout.middle(), bottom + 34.0],
         Anchor::Middle,
         12.0,
         FAINT,

@@ -21,6 +21,15 @@ pub enum Anchor {
     End,
 }
 
+/// The shape of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mark {
+    Disc,
+    Square,
+    Diamond,
+    Triangle,
+}
+
 /// Dark grey of text.
 pub const INK: &str = "#222222";
 /// Grey of what stands back: axes, notes.
@@ -105,6 +114,23 @@ impl Canvas {
         let [x, y] = centre;
         self.line([x - half, y - half], [x + half, y + half], colour, 2.0);
         self.line([x - half, y + half], [x + half, y - half], colour, 2.0);
+    }
+
+    /// A point of a line, about 7 pixels wide.
+    pub fn mark(&mut self, centre: [f64; 2], mark: Mark, fill: &str, outline: &str) {
+        let [x, y] = centre;
+        let corners: &[[f64; 2]] = match mark {
+            Mark::Disc => return self.circle(centre, 3.3, fill, outline),
+            Mark::Square => &[[-3.0, -3.0], [3.0, -3.0], [3.0, 3.0], [-3.0, 3.0]],
+            Mark::Diamond => &[[0.0, -4.3], [4.3, 0.0], [0.0, 4.3], [-4.3, 0.0]],
+            Mark::Triangle => &[[0.0, -4.0], [3.8, 2.8], [-3.8, 2.8]],
+        };
+        let corner = |[dx, dy]: &[f64; 2]| format!("{} {}", px(x + dx), px(y + dy));
+        let corners: Vec<String> = corners.iter().map(corner).collect();
+        let data = corners.join("L");
+        self.push(&format!(
+            r#"<path d="M{data}Z" fill="{fill}" stroke="{outline}"/>"#
+        ));
     }
 
     /// `size` in pixels.

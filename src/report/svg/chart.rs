@@ -84,6 +84,7 @@ fn draw(
             Label {
                 text: TRUTH_NAME.to_owned(),
                 stroke: palette::TRUTH,
+                mark: None,
                 exit: (drawn.end.is_some() && x > w.right - 3.0).then_some(y),
                 wish: y.clamp(w.top, w.bottom),
             }
@@ -105,6 +106,7 @@ fn draw(
         notes.push(Label {
             text: name(outcome),
             stroke,
+            mark: None,
             exit: (drawn.end.is_some() && x > w.right - 3.0).then_some(y),
             wish: y.clamp(w.top, w.bottom),
         });

@@ -1,6 +1,7 @@
 //! Panels full of cells, as small multiples: ticks on every panel's outside only where neighbours do
 //! not share them, and cells of one colour as one path.
 
+use super::WIDTH;
 use super::canvas::{Anchor, Canvas, FAINT, INK, px};
 use super::line::Window;
 use super::scale::Axis;
@@ -12,6 +13,62 @@ pub struct Panel {
     pub window: Window,
     pub x: Axis,
     pub y: Axis,
+}
+
+/// Panels of one size, row by row.
+#[derive(Debug, Clone, Copy)]
+pub struct Layout {
+    pub count: usize,
+    pub columns: usize,
+    /// Pixels: left of the first panel, and above the title of the first row.
+    pub left: f64,
+    pub top: f64,
+    /// Room for a panel's title, and between panels of one row.
+    pub above: f64,
+    pub gap: f64,
+    /// Width and height of one.
+    pub size: [f64; 2],
+}
+
+impl Layout {
+    /// The width one of `columns` panels may have.
+    pub fn width(columns: usize, left: f64, gap: f64) -> f64 {
+        let columns = columns.max(1) as f64;
+        (WIDTH - left - 12.0 - gap * (columns - 1.0)) / columns
+    }
+
+    pub fn window(&self, at: usize) -> Window {
+        let columns = self.columns.max(1);
+        let [wide, high] = self.size;
+        let left = self.left + (at % columns) as f64 * (wide + self.gap);
+        let top = self.top + self.above + (at / columns) as f64 * (high + self.above);
+        Window {
+            left,
+            top,
+            right: left + wide,
+            bottom: top + high,
+        }
+    }
+
+    /// Labels stand where no neighbour has the same.
+    pub fn sides(&self, at: usize) -> Sides {
+        Sides {
+            left: at.is_multiple_of(self.columns.max(1)),
+            below: at + self.columns >= self.count,
+        }
+    }
+
+    /// Where the last row ends.
+    pub fn bottom(&self) -> f64 {
+        let rows = self.count.div_ceil(self.columns.max(1));
+        self.top + rows as f64 * (self.size[1] + self.above)
+    }
+
+    /// Halfway along a full row.
+    pub fn middle(&self) -> f64 {
+        let full = self.columns as f64 * (self.size[0] + self.gap) - self.gap;
+        self.left + full / 2.0
+    }
 }
 
 /// Which sides of a panel carry tick labels.
@@ -59,6 +116,11 @@ impl Panel {
 
     /// Title above, outline, ticks outside.
     pub fn frame(&self, canvas: &mut Canvas, title: &str, sides: Sides) {
+        self.frame_with(canvas, title, sides, 24.0);
+    }
+
+    /// The same with ticks along y about `pitch` pixels apart.
+    pub fn frame_with(&self, canvas: &mut Canvas, title: &str, sides: Sides, pitch: f64) {
         let w = self.window;
         let (width, height) = (w.right - w.left, w.bottom - w.top);
         canvas.frame([w.left, w.top], [width, height]);
@@ -76,7 +138,7 @@ impl Panel {
                 canvas.text([x, w.bottom + 15.0], Anchor::Middle, TICK, INK, &label);
             }
         }
-        for (value, label) in self.y.ticks((height / 24.0) as usize) {
+        for (value, label) in self.y.ticks((height / pitch) as usize) {
             let [_, y] = self.place([self.x.range[0], value]);
             if y < w.top - 0.5 || y > w.bottom + 0.5 {
                 continue;

@@ -2,8 +2,8 @@
 //! over it.
 
 use super::canvas::{Anchor, Canvas, FAINT, INK};
-use super::grid::{Panel, Sides, legend};
-use super::line::{self, Window};
+use super::grid::{Layout, Panel, Sides, legend};
+use super::line;
 use super::palette;
 use super::scale::Axis;
 use super::{WIDTH, heading, shortened};
@@ -52,37 +52,30 @@ pub fn draw(report: &Report) -> String {
     let count = map.engines.len();
     let columns = count.min(COLUMNS);
     // Few panels are larger, but no larger than legible.
-    let wide = (WIDTH - LEFT - 12.0 - GAP * (columns - 1) as f64) / columns as f64;
-    let wide = wide.min(2.4 * HEIGHT);
+    let wide = Layout::width(columns, LEFT, GAP).min(2.4 * HEIGHT);
     let high = if columns < COLUMNS {
         wide * 0.7
     } else {
         HEIGHT
     };
+    let layout = Layout {
+        count,
+        columns,
+        left: LEFT,
+        top: TOP,
+        above: ABOVE,
+        gap: GAP,
+        size: [wide, high],
+    };
     for (at, engine) in map.engines.iter().enumerate() {
-        let (row, column) = (at / columns, at % columns);
-        let left = LEFT + column as f64 * (wide + GAP);
-        let top = TOP + ABOVE + row as f64 * (high + ABOVE);
         let panel = Panel {
-            window: Window {
-                left,
-                top,
-                right: left + wide,
-                bottom: top + high,
-            },
+            window: layout.window(at),
             x: axis(&map.values),
             y: axis(&map.timesteps_s),
         };
-        let sides = Sides {
-            left: column == 0,
-            // Nothing stands below it.
-            below: at + columns >= count,
-        };
-        draw_panel(&mut canvas, report, map, engine, &panel, sides);
+        draw_panel(&mut canvas, report, map, engine, &panel, layout.sides(at));
     }
-    let rows = count.div_ceil(columns);
-    let bottom = TOP + rows as f64 * (high + ABOVE);
-    let full = columns as f64 * (wide + GAP) - GAP;
+    let bottom = layout.bottom();
     let unit = if map.unit.is_empty() {
         String::new()
     } else {
@@ -90,7 +83,7 @@ pub fn draw(report: &Report) -> String {
     };
     let name = shortened(&words::one_line(&map.vary), 40) + &unit;
     canvas.text(
-        [LEFT + full / 2.0, bottom + 34.0],
+        [layout.middle(), bottom + 34.0],
         Anchor::Middle,
         12.0,
         FAINT,

@@ -1,6 +1,6 @@
 //! Labels at the right edge, each beside the end of its line, none over another.
 
-use super::canvas::{Anchor, Canvas, FAINT, INK, Stroke};
+use super::canvas::{Anchor, Canvas, FAINT, INK, Mark, Stroke};
 
 /// Pixels from one label's baseline to the next.
 pub const PITCH: f64 = 16.0;
@@ -14,6 +14,8 @@ const SIZE: f64 = 12.0;
 pub struct Label {
     pub text: String,
     pub stroke: Stroke,
+    /// Of the line's points, where they are marked.
+    pub mark: Option<Mark>,
     /// Height at which the line reaches the panel's right edge; `None` if it ends before.
     pub exit: Option<f64>,
     /// Where the label would like to stand.
@@ -42,6 +44,10 @@ pub fn draw(canvas: &mut Canvas, mut labels: Vec<Label>, x: f64, top: f64, botto
         let [from, to] = [x + LEADER, x + LEADER + SWATCH];
         let data = format!("M{from:.1} {y:.1}L{to:.1} {y:.1}");
         canvas.path(&data, label.stroke);
+        if let Some(mark) = label.mark {
+            let colour = label.stroke.colour;
+            canvas.mark([(from + to) / 2.0, y], mark, colour, colour);
+        }
         canvas.text([to + 6.0, y + 4.0], Anchor::Start, SIZE, INK, &label.text);
     }
 }

@@ -3,6 +3,7 @@
 mod admissible;
 mod canvas;
 mod chart;
+mod cost_panels;
 mod energy;
 mod frame;
 mod grid;
@@ -12,6 +13,7 @@ mod line;
 mod palette;
 mod panels;
 mod plot;
+mod precision;
 mod range;
 mod scale;
 mod trajectories;
@@ -68,6 +70,30 @@ pub const FIGURES: &[Figure] = &[
         description: "from where a step does not enlarge the spring's force",
         wanted: admissible::wanted,
         draw: admissible::draw,
+    },
+    Figure {
+        file: "cost_time.svg",
+        description: "work-precision diagram: error over wall time",
+        wanted: |report| precision::wanted(report, precision::TIME),
+        draw: |report| precision::draw(report, precision::TIME),
+    },
+    Figure {
+        file: "cost_evaluations.svg",
+        description: "work-precision diagram: error over force evaluations",
+        wanted: |report| precision::wanted(report, precision::EVALUATIONS),
+        draw: |report| precision::draw(report, precision::EVALUATIONS),
+    },
+    Figure {
+        file: "cost_energy.svg",
+        description: "work-precision diagram: energy error over cost",
+        wanted: |report| precision::wanted(report, precision::energy(report)),
+        draw: |report| precision::draw(report, precision::energy(report)),
+    },
+    Figure {
+        file: "cost_panels.svg",
+        description: "each integrator at a few steps beside the truth, and the difference below",
+        wanted: cost_panels::wanted,
+        draw: cost_panels::draw,
     },
 ];
 

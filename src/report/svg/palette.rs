@@ -1,14 +1,16 @@
 //! One look per engine, the same in every figure: colours a colour-blind reader tells apart
 //! (Okabe and Ito, without the yellow that white swallows), dashes for rapier.
 
-use super::canvas::Stroke;
-use crate::outcome::{Cell, EnergyClass, Kind, Outcome, Report, Status};
+use super::canvas::{Mark, Stroke};
+use crate::outcome::{Cell, CostCurve, EnergyClass, Kind, Outcome, Report, Status};
 
 const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255",
 ];
 /// Tells apart the integrators that share a colour.
 const ROUNDS: [&str; 3] = ["", "1.5 2", "6 2 1 2"];
+/// Tells them apart where points are marked.
+const MARKS: [Mark; 4] = [Mark::Disc, Mark::Square, Mark::Diamond, Mark::Triangle];
 /// The second, which mostly lies on the scene's own integrator, is thin enough to leave it in sight.
 const RAPIER: [(&str, &str, f64); 3] = [
     ("#000000", "7 4", 1.6),
@@ -61,8 +63,13 @@ pub fn stroke(report: &Report, outcome: &Outcome) -> Stroke {
             seen.push(&other.engine);
         }
     }
-    let place = seen.len();
-    match outcome.kind {
+    let own = outcome.engine == report.scene.own_method;
+    look(outcome.kind, seen.len(), own)
+}
+
+/// The look of the engine that is number `place` of its kind.
+fn look(kind: Kind, place: usize, own: bool) -> Stroke {
+    match kind {
         Kind::Rapier => {
             let (colour, dash, width) = RAPIER[place % RAPIER.len()];
             Stroke {
@@ -79,14 +86,49 @@ pub fn stroke(report: &Report, outcome: &Outcome) -> Stroke {
         Kind::Integrator => Stroke {
             colour: COLOURS[place % COLOURS.len()],
             dash: ROUNDS[place / COLOURS.len() % ROUNDS.len()],
-            width: if outcome.engine == report.scene.own_method {
-                3.0
-            } else {
-                1.5
-            },
+            width: if own { 3.0 } else { 1.5 },
         },
     }
 }
+
+/// Looks of lines whose points are marked: what shares a colour differs in its marks, so that only
+/// what is no integrator is dashed.
+pub fn marked(report: &Report, curves: &[CostCurve]) -> Vec<(Stroke, Mark)> {
+    let look = |(at, curve): (usize, &CostCurve)| {
+        let before = curves.iter().take(at);
+        let place = before.filter(|other| other.kind == curve.kind).count();
+        let own = curve.engine == report.scene.own_method;
+        let mut stroke = look(curve.kind, place, own);
+        if curve.kind == Kind::Integrator {
+            stroke.dash = "";
+            return (stroke, MARKS[place / COLOURS.len() % MARKS.len()]);
+        }
+        (stroke, MARKS[place % MARKS.len()])
+    };
+    curves.iter().enumerate().map(look).collect()
+}
+
+/// The look of the n-th timestep, where a panel belongs to one engine.
+pub fn timestep(place: usize) -> Stroke {
+    look(Kind::Integrator, place, false)
+}
+
+/// The truth where lines are to be compared with it one by one.
+pub const TRUTH_LINE: Stroke = Stroke {
+    colour: "#000000",
+    dash: "",
+    width: 2.6,
+};
+
+/// An error asked about.
+pub const TARGET: Stroke = Stroke {
+    colour: "#6b6b6b",
+    dash: "5 4",
+    width: 0.8,
+};
+
+/// Where errors cannot be told from the truth's own.
+pub const BELOW_FLOOR: &str = "#efefef";
 
 /// Runs that may leave the picture: unfinished ones and those that gain energy.
 pub fn is_wild(outcome: &Outcome) -> bool {

@@ -178,6 +178,7 @@ fn legend(
         .map(|(i, (text, stroke))| Label {
             text,
             stroke,
+            mark: None,
             exit: None,
             wish: w.top + (i as f64 + 0.5) * PITCH,
         })

@@ -6,6 +6,7 @@ pub(in crate::report) mod fit;
 pub(in crate::report) mod paint;
 mod table;
 
+use super::cost;
 use super::identity;
 use super::notes::notes;
 use super::stability;
@@ -23,6 +24,9 @@ pub const WIDTH: usize = 100;
 pub fn render(report: &Report) -> String {
     if stability::is_alone(report) {
         return stability::terminal::render(report);
+    }
+    if cost::is_alone(report) {
+        return cost::terminal::render(report);
     }
     let mut lines = scene(report);
     let truth = words::one_line(&words::truth(&report.truth));
@@ -118,7 +122,7 @@ fn fault(report: &Report) -> Vec<String> {
     lines
 }
 
-fn checks(checks: &[Check]) -> Vec<String> {
+pub(in crate::report) fn checks(checks: &[Check]) -> Vec<String> {
     if checks.is_empty() {
         return Vec::new();
     }

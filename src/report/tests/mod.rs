@@ -1,3 +1,4 @@
+mod cost;
 mod hostile;
 mod json;
 mod motion;
@@ -35,6 +36,12 @@ fn all() -> Vec<Report> {
         stability::mapped(),
         stability::pair(),
         stability::odd(),
+        cost::samples::priced(),
+        cost::samples::full(),
+        cost::samples::counted(),
+        cost::samples::untrue(),
+        cost::samples::classic(),
+        cost::samples::odd(),
     ]
 }
 

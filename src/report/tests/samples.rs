@@ -192,6 +192,7 @@ pub fn empty(name: &str) -> Report {
         ],
         fault: None,
         stability: None,
+        cost: None,
         figures: Figures {
             plane: [0, 2],
             fixed: vec![[0.0, 0.0]],

@@ -1,0 +1,56 @@
+//! A length of time as flags state it.
+
+use std::str::FromStr;
+use std::time::Duration;
+
+/// `60s`, `2m`, `1.5h`, `500ms`, or seconds without a unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Time(pub Duration);
+
+impl FromStr for Time {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("expected a time such as 60s, 2m or 500ms, found `{text}`");
+        let digits = text.trim_end_matches(char::is_alphabetic);
+        let unit = match &text[digits.len()..] {
+            "ms" => 1e-3,
+            "" | "s" => 1.0,
+            "m" | "min" => 60.0,
+            "h" => 3600.0,
+            _ => return Err(wrong()),
+        };
+        let seconds = digits.parse::<f64>().map_err(|_| wrong())? * unit;
+        // Ten years are as good as for ever, and clocks can count to them.
+        if !(seconds > 0.0 && seconds < 3e8) {
+            return Err(wrong());
+        }
+        Duration::try_from_secs_f64(seconds).map_or_else(|_| Err(wrong()), |t| Ok(Self(t)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_with_and_without_units() {
+        let ms = |text: &str| text.parse::<Time>().map(|t| t.0.as_millis()).ok();
+        let good = [
+            ("60s", 60_000),
+            ("2m", 120_000),
+            ("500ms", 500),
+            ("1.5h", 5_400_000),
+            ("7", 7_000),
+            ("0.25", 250),
+        ];
+        for (text, wanted) in good {
+            assert_eq!(ms(text), Some(wanted), "{text}");
+        }
+        for text in [
+            "", "s", "0", "-1s", "inf", "NaN", "1e300", "5 s", "1d", "1m30s", "µs",
+        ] {
+            assert_eq!(ms(text), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The classic picture: a coordinate over time at a few steps, engine by engine, beside the truth.
+
+use super::lane::Lane;
+use super::sweep::Swept;
+use super::witness::{Kept, Witness};
+use crate::outcome::{CostLine, CostPanel, CostPanels, CostPoint};
+use crate::scene::Scene;
+
+/// Points of the truth's curve.
+const POINTS: u32 = 600;
+
+pub(super) fn panels(
+    scene: &Scene,
+    witness: &Witness,
+    lanes: &[Lane],
+    swept: &[Swept],
+) -> CostPanels {
+    let [particle, axis] = shown(scene, swept);
+    let at = 3 * particle + axis;
+    let panel = |(lane, swept): (&Lane, &Swept)| CostPanel {
+        engine: lane.entrant.id.clone(),
+        lines: swept
+            .points
+            .iter()
+            .zip(&swept.kept)
+            .map(|(point, kept)| line(witness, point, kept, at))
+            .collect(),
+    };
+    CostPanels {
+        label: format!("particle {particle}, {} (m)", ["x", "y", "z"][axis]),
+        truth: truth(witness, at),
+        panels: lanes.iter().zip(swept).map(panel).collect(),
+    }
+}
+
+/// The coordinate the scene asks for, else the one that moves farthest: particle and axis.
+fn shown(scene: &Scene, swept: &[Swept]) -> [usize; 2] {
+    if let Some(plot) = &scene.plot {
+        return [plot.particle, plot.dof];
+    }
+    let finest = swept.iter().filter_map(|swept| swept.kept.last());
+    let mut best = ([0, 0], -1.0);
+    for kept in finest {
+        for at in 0..kept.dim {
+            let values = (0..kept.t.len()).map(|k| kept.x(k)[at]);
+            let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+                [low.min(x), high.max(x)]
+            });
+            if high - low > best.1 {
+                best = ([at / 3, at % 3], high - low);
+            }
+        }
+    }
+    best.0
+}
+
+fn line(witness: &Witness, point: &CostPoint, kept: &Kept, at: usize) -> CostLine {
+    let finite = |p: &[f64; 2]| p.iter().all(|c| c.is_finite());
+    let curve = (0..kept.t.len()).map(|k| [kept.t[k], kept.x(k)[at]]);
+    let difference = witness.states(kept).map(|(times, states)| {
+        let off = |k: usize| [times[k], kept.x(k + 1)[at] - states.x(k)[at]];
+        (0..times.len()).map(off).filter(finite).collect()
+    });
+    CostLine {
+        timestep: point.timestep,
+        status: point.status,
+        curve: curve.filter(finite).collect(),
+        difference: difference.unwrap_or_default(),
+    }
+}
+
+fn truth(witness: &Witness, at: usize) -> Vec<[f64; 2]> {
+    let Some(motion) = witness.truth.motion() else {
+        return Vec::new();
+    };
+    let until = witness.truth.horizon;
+    let part = |k: u32| until * f64::from(k) / f64::from(POINTS);
+    let times: Vec<f64> = (0..=POINTS).map(part).collect();
+    let states = motion.states(&times);
+    let points = times.iter().enumerate().map(|(k, t)| [*t, states.x(k)[at]]);
+    points.filter(|p| p.iter().all(|c| c.is_finite())).collect()
+}

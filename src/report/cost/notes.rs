@@ -1,0 +1,81 @@
+//! What is to be said of single engines: why a reference's line is what it is, and which settings
+//! have no error.
+
+use crate::outcome::{Cost, CostCurve, CostPoint, Status};
+use crate::report::notes::listed;
+use crate::report::words;
+
+/// More settings than this are given by their first and last.
+const NAMED: usize = 4;
+
+/// Who says what, in the order of the curves; equal sentences are said once. Remarks on the whole come
+/// first, without a subject.
+pub fn notes(cost: &Cost) -> Vec<(String, String)> {
+    let remarks = cost.remarks.iter().map(|remark| words::one_line(remark));
+    let mut notes: Vec<(String, String)> = remarks.map(|r| (String::new(), r)).collect();
+    let mut said: Vec<(String, Vec<String>)> = Vec::new();
+    for curve in &cost.curves {
+        let name = words::one_line(&curve.engine);
+        for sentence in sentences(curve) {
+            match said.iter_mut().find(|(known, _)| *known == sentence) {
+                Some((_, names)) => names.push(name.clone()),
+                None => said.push((sentence, vec![name.clone()])),
+            }
+        }
+    }
+    notes.extend(said.into_iter().map(|(text, names)| (listed(&names), text)));
+    notes
+}
+
+fn sentences(curve: &CostCurve) -> Vec<String> {
+    // What takes the scene at no setting has no line to explain.
+    let mut points = curve.points.iter();
+    let runs = points.any(|point| point.status != Status::Unsupported);
+    let explanation = curve.explanation.as_deref().filter(|_| runs);
+    let explanation = explanation.map(words::one_line);
+    let endings = [Status::Diverged, Status::Failed, Status::Unsupported];
+    let endings = endings.into_iter().filter_map(|s| ending(curve, s));
+    explanation.into_iter().chain(endings).collect()
+}
+
+/// `diverged at h = 0.2 and 0.1 s`; with the reason unless that is a divergence, which says the same of
+/// each step in other numbers.
+fn ending(curve: &CostCurve, status: Status) -> Option<String> {
+    let ended = curve.points.iter().filter(|point| point.status == status);
+    let ended: Vec<&CostPoint> = ended.collect();
+    let first = ended.first()?;
+    let mut text = words::status(status).to_owned();
+    if ended.len() < curve.points.len() {
+        text += &format!(" at {}", settings(&ended));
+    } else if ended.len() > 1 {
+        text += " at every setting";
+    }
+    if let (true, Some(reason)) = (status != Status::Diverged, &first.reason) {
+        text += &format!(": {}", words::one_line(reason));
+        if ended.iter().any(|point| point.reason != first.reason) {
+            text += " (the first; others differ)";
+        }
+    }
+    Some(text)
+}
+
+/// `h = 0.2 and 0.1 s`, `h = 0.2 to 0.01 s (7 settings)`, or tolerances.
+fn settings(points: &[&CostPoint]) -> String {
+    let adaptive = points.iter().all(|point| point.tolerance.is_some());
+    let value = |point: &&CostPoint| match point.tolerance {
+        Some(tolerance) if adaptive => super::metres(tolerance),
+        _ => words::short(point.timestep),
+    };
+    let values: Vec<String> = points.iter().map(value).collect();
+    let (name, unit) = if adaptive {
+        ("tolerance ", "")
+    } else {
+        ("h = ", " s")
+    };
+    match values.as_slice() {
+        [first, .., last] if values.len() > NAMED => {
+            format!("{name}{first} to {last}{unit} ({} settings)", values.len())
+        }
+        values => format!("{name}{}{unit}", listed(values)),
+    }
+}
