@@ -6,8 +6,8 @@ use rayon::prelude::*;
 /// Vectors shorter than this are not worth waking a thread for.
 const LONG: usize = 1 << 15;
 
-/// What a thread takes at a time, 64 KB of each vector.
-const CHUNK: usize = 1 << 13;
+/// What a thread takes at a time, 32 KB of each vector.
+const CHUNK: usize = 1 << 12;
 
 /// y += a x.
 #[inline(always)]
