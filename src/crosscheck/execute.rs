@@ -221,7 +221,7 @@ fn time(case: &Case, build: &Build, limits: &Limits, wall: &mut WallTime) {
 }
 
 /// Looks at nothing.
-pub(super) struct Nobody;
+struct Nobody;
 
 impl Observer for Nobody {
     fn next(&self, _from: u64) -> Option<u64> {

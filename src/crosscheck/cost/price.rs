@@ -2,9 +2,7 @@
 //! so that all sweep the same settings.
 
 use super::entrant::Entrant;
-use super::runner::Runner;
 use super::setting::Setting;
-use crate::engines::Engine;
 use crate::outcome::Kind;
 use crate::scene::Scene;
 use crate::system::ParticleSystem;
@@ -42,17 +40,12 @@ pub(super) fn of_step(
         let substeps = f64::from(entrant.substeps);
         return WORLD + (particles + springs) * (BODY + SWEPT * substeps);
     }
-    let (taken, counts) = match entrant.make(scene, system, setting) {
-        Err(_) => return STEP,
-        Ok(Runner::Fixed(mut engine)) => {
-            let taken = (0..SAMPLE).take_while(|_| engine.step().is_ok()).count();
-            (taken, engine.counts())
-        }
-        Ok(Runner::Adaptive(mut engine)) => {
-            let taken = (0..SAMPLE).take_while(|_| engine.step().is_ok()).count();
-            (taken, engine.counts())
-        }
+    let Ok(mut runner) = entrant.make(scene, system, setting) else {
+        return STEP;
     };
+    let engine = runner.engine();
+    let taken = (0..SAMPLE).take_while(|_| engine.step().is_ok()).count();
+    let counts = engine.counts();
     let each = |count: Option<u64>| count.unwrap_or(0) as f64 / taken.max(1) as f64;
     let pairs = scene.gravitational.len() as f64;
     let evaluation = CALL + EVALUATION * particles + SPRING * (springs + 2.0 * pairs);

@@ -2,7 +2,7 @@
 
 use super::setting::Setting;
 use super::witness::Kept;
-use crate::engines::{AdaptiveEngine, Counts, Ended, Engine, Limits, Observer, adapt, simulate};
+use crate::engines::{AdaptiveEngine, Ended, Engine, Limits, Observer, adapt, simulate};
 use crate::system::State;
 
 /// At its start; runs once.
@@ -21,8 +21,7 @@ impl Runner {
                 Some(ended)
             }
             Self::Adaptive(engine) => {
-                let start = engine.state().clone();
-                eye.see(&start);
+                eye.see(engine.state());
                 let ended = adapt(engine, limits, setting.most(), &mut |state| eye.see(state));
                 eye.close(engine.state());
                 ended
@@ -30,18 +29,11 @@ impl Runner {
         }
     }
 
-    pub fn counts(&self) -> Counts {
+    /// What takes the steps.
+    pub fn engine(&mut self) -> &mut dyn Engine {
         match self {
-            Self::Fixed(engine) => engine.counts(),
-            Self::Adaptive(engine) => engine.counts(),
-        }
-    }
-
-    /// How far it got, s, where it chose its steps.
-    pub fn time(&self) -> f64 {
-        match self {
-            Self::Fixed(engine) => engine.state().t,
-            Self::Adaptive(engine) => engine.state().t,
+            Self::Fixed(engine) => engine.as_mut(),
+            Self::Adaptive(engine) => engine.as_mut(),
         }
     }
 

@@ -106,9 +106,9 @@ impl Ground<'_> {
         };
         let mut eye = Eye::new(setting, self.witness.room);
         let ended = runner.run(setting, self.limits, &mut eye);
-        let counts = runner.counts();
+        let counts = runner.engine().counts();
         let (status, reason) = match ended {
-            None => (Status::Failed, Some(too_many(&runner))),
+            None => (Status::Failed, Some(too_many(&mut runner))),
             Some(Ended::Completed) => (Status::Completed, None),
             Some(Ended::Diverged { reason, .. }) => {
                 (Status::Diverged, Some(format!("diverged: {reason}")))
@@ -144,8 +144,8 @@ impl Ground<'_> {
 }
 
 /// Why a pair was stopped.
-fn too_many(runner: &Runner) -> String {
-    let (steps, t) = (runner.steps().unwrap_or(0), runner.time());
+fn too_many(runner: &mut Runner) -> String {
+    let (steps, t) = (runner.steps().unwrap_or(0), runner.engine().state().t);
     format!(
         "stopped at {t:.3e} s after {steps} accepted steps, all its share of the budget allows: what \
          limits them is stability, not the tolerance"
