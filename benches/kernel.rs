@@ -1,7 +1,7 @@
 //! What a step costs per spring: one thread, several, and effects nobody calls for. Compare
 //! figures of one run only.
 
-#[path = "../tests/common/cloth.rs"]
+#[path = "../tests/testkit/cloth.rs"]
 mod cloth;
 
 use cloth::{cloth, shuffled};

@@ -1,6 +1,6 @@
 //! What a running simulation keeps: bytes per spring of a large cloth.
 
-#[path = "common/cloth.rs"]
+#[path = "testkit/cloth.rs"]
 mod cloth;
 
 use springcheck::integrators::{self, Settings};
