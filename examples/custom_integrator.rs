@@ -6,6 +6,7 @@
 
 use springcheck::conformance::{Claims, check};
 use springcheck::crosscheck::{self, Choice, Plan, Quiet};
+use springcheck::engines::Solver;
 use springcheck::integrators::{Integrator, PerStep, StepError};
 use springcheck::outcome::CheckStatus;
 use springcheck::scene;
@@ -70,11 +71,11 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     }
 
     let scene = scene::read("scenes/oscillator/circle.yml".as_ref(), crosscheck::names())?;
-    let mut plan = Plan::new(&scene, &Choice::default_for(&scene));
+    let mut choice = Choice::default_for(&scene);
     for (name, coefficients, _) in rows {
-        let build = move || -> Box<dyn Integrator> { Box::new(KickDrift(coefficients)) };
-        plan = plan.with_integrator(name, scene.solver.timestep, build);
+        choice = choice.with(Solver::own(name, move || Box::new(KickDrift(coefficients))));
     }
+    let plan = Plan::new(&scene, &choice);
     println!(
         "\n{:<17} {:>12} {:>15}",
         scene.name, "m from truth", "m from rapier"

@@ -173,7 +173,8 @@ fn one(args: &Args, quiet: bool, read: &Read, path: &Path) -> anyhow::Result<Rep
         (Some(_), None) => bail!("--save needs --output when --format is not human"),
     };
     let mut choice = choice(args, scene)?;
-    choice.programs = external::chosen(&args.external, path, args.external_timeout);
+    let programs = external::chosen(&args.external, path, args.external_timeout);
+    choice.solvers.extend(programs);
     let plan = Plan::new(scene, &choice);
     let estimates = plan.estimate();
     let expected = announce::expected(&estimates);
@@ -275,8 +276,9 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
     if args.order {
         choice.order = Orders::Always;
     }
-    choice.methods = chosen::methods(&args.integrators, scene, choice.methods)?;
-    choice.engines = chosen::engines(&args.engines, &args.rapier, choice.engines)?;
+    let engines = chosen::engines(&args.engines, &args.rapier, &choice.solvers)?;
+    choice.solvers = chosen::integrators(&args.integrators, scene, &choice.solvers)?;
+    choice.solvers.extend(engines);
     if !args.timestep.is_empty() {
         choice.timesteps.clear();
         for &timestep in &args.timestep {

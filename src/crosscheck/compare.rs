@@ -1,7 +1,8 @@
 //! One trajectory that somebody else computed, against the truth and the laws.
 
-use super::plan::{Choice, ChosenProgram, Orders, Plan};
+use super::plan::{Choice, Orders, Plan};
 use super::{Host, identity};
+use crate::engines::Solver;
 use crate::engines::external::{Failure, Program, Recording, Task};
 use crate::outcome::Report;
 use crate::scene::Scene;
@@ -39,12 +40,10 @@ impl Comparison<'_> {
     /// Only when the host cannot write a trajectory it wants saved.
     pub fn execute(&self, host: &dyn Host) -> Result<Report, SaveError> {
         let choice = Choice {
-            methods: Vec::new(),
-            engines: Vec::new(),
-            programs: vec![ChosenProgram {
-                name: self.name.clone(),
-                program: Arc::new(Recorded(Arc::clone(&self.rows))),
-            }],
+            solvers: vec![Solver::program(
+                &self.name,
+                Arc::new(Recorded(Arc::clone(&self.rows))),
+            )],
             timesteps: vec![self.rows.timestep],
             truth: self.demand,
             order: Orders::Never,

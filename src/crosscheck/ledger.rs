@@ -13,7 +13,7 @@ pub(super) fn scene_facts(plan: &Plan, runs: &[Run], scale: Option<f64>) -> Scen
     let scene = plan.scene;
     let (mut forces, mut damping) = (0, 0);
     for (case, run) in plan.cases.iter().zip(runs) {
-        if let (Kind::Integrator, Run::Ran(ran)) = (case.kind, run) {
+        if let (Kind::Integrator, Run::Ran(ran)) = (case.solver.kind, run) {
             forces += ran.counts.force_evaluations.unwrap_or(0);
             damping += ran.counts.damping_evaluations.unwrap_or(0);
         }

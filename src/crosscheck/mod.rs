@@ -23,13 +23,11 @@ mod truths;
 pub use compare::Comparison;
 pub use execute::{Host, Quiet, Saver};
 pub use expect::names;
-pub use plan::{
-    Build, Case, Choice, ChosenEngine, ChosenProgram, Estimate, Label, Orders, Plan, Source,
-};
+pub use plan::{Case, Choice, Estimate, Label, Orders, Plan};
 
 use crate::engines::Limits;
 use crate::measure;
-use crate::outcome::{Check, Kind, Report, SCHEMA_VERSION};
+use crate::outcome::{Check, Report, SCHEMA_VERSION};
 use crate::trajectory::SaveError;
 use crate::truth;
 use truths::Truths;
@@ -54,7 +52,7 @@ impl Plan<'_> {
         let mut runs = runs?;
         let truths = Truths::new(self, &runs, truth);
         let orders = order::checks(self, truths.truth());
-        execute::time_again(&self.cases, &mut runs, &limits);
+        execute::time_again(self, &mut runs, &limits);
         let scale = measure::energy_scale(self.scene, &self.system, truths.peak());
         let (outcomes, series) = outcome::all(self, &runs, &truths, scale);
         Ok(Report {
@@ -76,8 +74,7 @@ impl Plan<'_> {
 
     /// That rapier's world and ours are the same scene, unless nobody asks or nothing here was computed.
     fn proofs(&self) -> Vec<Check> {
-        let recorded = |case: &Case| case.kind == Kind::External;
-        if !self.prove || self.cases.iter().all(recorded) {
+        if !self.prove || self.only_records() {
             Vec::new()
         } else {
             ledger::twin_proof(self.scene)

@@ -22,7 +22,7 @@ pub(super) fn checks(plan: &Plan, truth: &Truth) -> Vec<Check> {
         return Vec::new();
     };
     let mut methods: Vec<&Method> = Vec::new();
-    for method in plan.cases.iter().filter_map(|case| case.method) {
+    for method in plan.cases.iter().filter_map(|case| case.solver.as_method()) {
         if !methods.iter().any(|known| known.id == method.id) {
             methods.push(method);
         }

@@ -1,21 +1,19 @@
-//! Whatever can advance a scene: our integrators, rapier's worlds, and other programs.
+//! Whatever can run a scene: the [`catalogue`] of solvers, and the [`Run`] that takes their steps.
 
-mod adaptive;
 pub mod external;
 mod integrator;
 pub mod rapier;
-mod registry;
-mod simulate;
+mod run;
+mod solver;
 
-pub use adaptive::AdaptiveEngine;
-pub use integrator::IntegratorEngine;
-pub use registry::{EngineRow, REGISTRY, find, ids, rapier_with};
-pub use simulate::{Ended, Limits, Observer, adapt, simulate};
+pub use integrator::{AdaptiveEngine, IntegratorEngine, advance};
+pub use run::{Ended, Limits, Observer, Run, Tally, Unwatched};
+pub use solver::{BuildIntegrator, Setting, Solver, catalogue, find};
 
 use crate::integrators::StepError;
 use crate::system::State;
 
-/// A scene being advanced step by step.
+/// A scene that advances step by step. Only a [`Run`] takes its steps.
 ///
 /// Two engines built from the same scene and timestep give the same bits.
 pub trait Engine: Send {
@@ -26,12 +24,21 @@ pub trait Engine: Send {
     /// tolerance; the state is then the last good one.
     fn step(&mut self) -> Result<(), StepError>;
 
-    /// The state now: all particles, fixed ones included; t is not kept here but by the caller,
-    /// who counts steps, except by an [`AdaptiveEngine`], whose steps are of any length.
+    /// The state now: all particles, fixed ones included, and the time.
     fn state(&self) -> &State;
 
     /// What has been computed so far.
     fn counts(&self) -> Counts;
+
+    /// Whether it has come to an end of its own, as an adaptive pair does.
+    fn done(&self) -> bool {
+        false
+    }
+
+    /// Steps it tried in vain; what they cost is counted with the others.
+    fn rejected(&self) -> u64 {
+        0
+    }
 }
 
 /// Work that can be counted; None where an engine does not tell.

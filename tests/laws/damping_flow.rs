@@ -4,6 +4,7 @@
 use crate::testkit::{Build, Random, advance, built, method, own, swinging_triangle};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use springcheck::crosscheck::{Choice, Plan, Quiet};
+use springcheck::engines::Solver;
 use springcheck::integrators::{DampingTreatment, Integrator, Splitting, Stage};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
 use springcheck::system::{Counting, State, System};
@@ -206,8 +207,7 @@ fn damping_passes_are_counted_apart_from_forces() {
 fn ledger_law(scene: &Scene) -> Result<(), String> {
     let verlet = method("velocity_verlet");
     let mut choice = Choice::default_for(scene);
-    choice.methods = vec![verlet];
-    choice.engines.clear();
+    choice.solvers = vec![Solver::method(verlet)];
     let report = Plan::new(scene, &choice).execute(&Quiet).expect("no files");
     let of = |id: &str| {
         let effect = report.scene.effects.iter().find(|e| e.id == id);

@@ -2,8 +2,8 @@
 
 use crate::testkit::{free_triangle, swinging_triangle};
 use springcheck::crosscheck::{self, Choice, Plan, Quiet};
-use springcheck::engines::{IntegratorEngine, Limits, simulate};
-use springcheck::integrators::{self, Settings};
+use springcheck::engines::{Limits, Setting, Solver};
+use springcheck::integrators;
 use springcheck::measure::{self, deviation};
 use springcheck::outcome::{EnergyClass, Outcome, Report, Status};
 use springcheck::scene::{self, DampingModel, Scene, Wind};
@@ -27,11 +27,8 @@ fn oscillator(timestep: f64, damping: f64) -> Scene {
 
 fn report(scene: &Scene, methods: &[&str]) -> Report {
     let mut choice = Choice::default_for(scene);
-    choice.methods = methods
-        .iter()
-        .map(|id| crate::testkit::method(id))
-        .collect();
-    choice.engines.clear();
+    let solver = |id: &&str| Solver::method(crate::testkit::method(id));
+    choice.solvers = methods.iter().map(solver).collect();
     Plan::new(scene, &choice)
         .execute(&Quiet)
         .expect("nothing is saved")
@@ -49,9 +46,10 @@ fn recorded(scene: &Scene, method: &str, steps: u64, h: f64) -> Trajectory {
     let system = ParticleSystem::new(scene);
     let limits = Limits::new(system.clone(), None);
     let method = crate::testkit::method(method);
-    let mut engine = IntegratorEngine::new(scene, system, method, &Settings::default(), h);
+    let setting = Setting::Steps { timestep: h, steps };
+    let run = Solver::method(method).start(scene, &system, &setting);
     let mut recorder = Recorder::new(steps, 3 * scene.particles.len(), h);
-    simulate(&mut engine, steps, &limits, &mut recorder, &|_| {});
+    run.expect("a run").finish(&limits, &mut recorder, &|_| {});
     recorder.finish()
 }
 

@@ -9,8 +9,9 @@ use springcheck::system::{ParticleSystem, State, System};
 /// Explicit Euler and rapier, whose four iterations a step are four steps of symplectic Euler.
 fn report(scene: &Scene, timesteps: &[f64]) -> Report {
     let mut choice = Choice::default_for(scene);
-    choice.methods = vec![crate::testkit::method("explicit_euler")];
-    choice.engines.retain(|engine| engine.row.id == "rapier");
+    choice
+        .solvers
+        .retain(|solver| solver.id == "explicit_euler" || solver.id == "rapier");
     choice.timesteps = timesteps.to_vec();
     let plan = Plan::new(scene, &choice);
     plan.execute(&Quiet).expect("nothing is saved")
@@ -62,8 +63,9 @@ fn distances_are_taken_at_the_same_timestep_only() {
     }
     // An engine with a timestep of its own is nobody's reference at another.
     let mut choice = Choice::default_for(&scene);
-    choice.engines.retain(|engine| engine.row.id == "rapier");
-    choice.engines[0].timestep = Some(0.005);
+    choice.solvers.retain(|solver| solver.id != "rapier-forces");
+    let rapier = choice.solvers.last_mut().expect("rapier");
+    rapier.timestep = Some(0.005);
     let apart = Plan::new(&scene, &choice)
         .execute(&Quiet)
         .expect("no files");

@@ -1,6 +1,7 @@
 //! A row of the caller's own in a plan.
 
 use springcheck::crosscheck::{self, Choice, Plan, Quiet};
+use springcheck::engines::Solver;
 use springcheck::integrators::{self, Settings};
 use springcheck::outcome::{Kind, Outcome, Report};
 use springcheck::scene::{self, Scene};
@@ -13,9 +14,8 @@ fn circle() -> Scene {
 /// The default rows and `mine`, which is this method.
 fn with(scene: &Scene, id: &str) -> Report {
     let method = integrators::find(id).expect(id);
-    let build = || (method.build)(&Settings::default());
-    Plan::new(scene, &Choice::default_for(scene))
-        .with_integrator("mine", scene.solver.timestep, build)
+    let mine = Solver::own("mine", move || (method.build)(&Settings::default()));
+    Plan::new(scene, &Choice::default_for(scene).with(mine))
         .execute(&Quiet)
         .expect("nothing is saved")
 }

@@ -2,8 +2,8 @@
 //! wrong variant too, which has to fail it.
 
 use crate::testkit::{advance, method, own};
-use springcheck::crosscheck::{self, Case, Choice, ChosenEngine, Orders, Plan, Quiet};
-use springcheck::engines::{Engine, EngineRow, rapier::Settings, rapier_with};
+use springcheck::crosscheck::{self, Choice, Orders, Plan, Quiet};
+use springcheck::engines::{Solver, rapier::Settings};
 use springcheck::scene::{self, Scene};
 use springcheck::system::{ParticleSystem, State, System};
 use springcheck::truth::Demand;
@@ -17,18 +17,20 @@ fn shipped(path: &str) -> Scene {
 }
 
 /// rapier at its defaults but for `n` substeps.
-fn rapier(n: u32) -> EngineRow {
-    rapier_with(Settings {
+fn rapier(n: u32) -> Solver {
+    Solver::rapier(Settings {
         iterations: n,
         ..Settings::DEFAULT
     })
 }
 
-fn choice(methods: &[&str], engines: &[EngineRow], timestep: f64) -> Choice {
+fn choice(methods: &[&str], engines: &[Solver], timestep: f64) -> Choice {
     Choice {
-        methods: methods.iter().map(|id| method(id)).collect(),
-        engines: engines.iter().map(ChosenEngine::from).collect(),
-        programs: Vec::new(),
+        solvers: methods
+            .iter()
+            .map(|id| Solver::method(method(id)))
+            .chain(engines.iter().cloned())
+            .collect(),
         timesteps: vec![timestep],
         truth: Demand::None,
         order: Orders::WhereCheap,
@@ -37,13 +39,13 @@ fn choice(methods: &[&str], engines: &[EngineRow], timestep: f64) -> Choice {
     }
 }
 
-/// Runs a case to its end and shows every step, counted from 1, to `see`.
-fn run(case: &Case, mut see: impl FnMut(u64, &State)) {
-    let mut engine: Box<dyn Engine> =
-        (case.source.engine().expect("an engine"))().expect("a supported scene");
+/// Runs the only case of a plan to its end and shows every step, counted from 1, to `see`.
+fn run(plan: &Plan, mut see: impl FnMut(u64, &State)) {
+    let case = &plan.cases[0];
+    let mut run = case.start(plan).expect("a supported scene");
     for step in 1..=case.label.steps {
-        engine.step().expect("a step");
-        see(step, engine.state());
+        run.advance(1).expect("a step");
+        see(step, run.state());
     }
 }
 
@@ -101,7 +103,7 @@ fn oscillator(scene: &Scene, choice: &Choice) -> (f64, f64) {
     let plan = Plan::new(scene, choice);
     let case = plan.cases.first().expect("a case");
     let (mut worst, mut last) = (0.0_f64, 0.0);
-    run(case, |step, state| {
+    run(&plan, |step, state| {
         let t = step as f64 * case.label.timestep;
         worst = worst.max((state.x[3] - 0.5 * (50_f64.sqrt() * t).cos()).abs());
         last = plan.system.kinetic(&state.v) + plan.system.potential(t, &state.x);
@@ -144,7 +146,7 @@ const PLEIADES: [[f64; 2]; 7] = [
 fn pleiades_error(scene: &Scene, id: &str, timestep: f64) -> f64 {
     let plan = Plan::new(scene, &choice(&[id], &[], timestep));
     let mut end = Vec::new();
-    run(&plan.cases[0], |_, state| end.clone_from(&state.x));
+    run(&plan, |_, state| end.clone_from(&state.x));
     let distance = |(star, truth): (&[f64], &[f64; 2])| {
         (star[0] - truth[0])
             .hypot(star[1] - truth[1])
@@ -184,7 +186,7 @@ fn the_spring_test_of_soft_constraints() {
         let plan = Plan::new(scene, choice);
         let published = [(1, 9.595_995_44), (30, 2.755_314_27), (60, 0.709_733_29)];
         let mut matches = 0;
-        run(&plan.cases[0], |step, state| {
+        run(&plan, |step, state| {
             let here = published.iter().find(|(at, _)| *at == step);
             matches += usize::from(here.is_some_and(|(_, x)| rounds_to(state.x[3], *x, 8)));
         });

@@ -2,7 +2,8 @@
 
 use crate::measure::identify::{MISTAKES, Wrong};
 use crate::scene::{Key, KeyKind, Names};
-use crate::{engines, integrators};
+use crate::engines::rapier;
+use crate::integrators;
 use std::sync::LazyLock;
 
 /// A key's kind before its words are known.
@@ -67,7 +68,7 @@ const ROWS: &[(&str, Row)] = &[
 pub fn names() -> &'static Names {
     static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
         methods: integrators::ids(),
-        engines: engines::ids(),
+        engines: rapier::IDS.to_vec(),
         keys: keys(),
     });
     &NAMES
@@ -84,7 +85,7 @@ fn keys() -> Vec<Key> {
         };
         // Without a `*` there is nothing to replace, and the key is there once.
         let engines = if path.contains('*') {
-            engines::ids()
+            rapier::IDS.to_vec()
         } else {
             vec![""]
         };

@@ -6,6 +6,7 @@
 //! larger almost everywhere, and what is left of the plane shrinks to the line l = L and to places
 //! from where the ends pass through each other and happen to land well.
 
+use crate::engines::advance;
 use crate::integrators::{self, Integrator, Settings};
 use crate::outcome::{Admissible, AdmissiblePanel};
 use crate::scene::Scene;
@@ -125,7 +126,7 @@ fn admits(
     };
     let before = strain(&state);
     for _ in 0..2 {
-        if integrator.step(system, timestep, &mut state).is_err() {
+        if advance(integrator, system, timestep, &mut state).is_err() {
             return false;
         }
     }

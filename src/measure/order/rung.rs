@@ -1,6 +1,7 @@
 //! One run at one step, held against the truth.
 
 use super::ladder::Build;
+use crate::engines::advance;
 use crate::system::{State, System};
 use crate::truth::{Motion, States};
 
@@ -115,8 +116,7 @@ impl Course<'_> {
             for step in instant * m..(instant + 1) * m {
                 // n h, not a running sum, which would drift.
                 state.t = step as f64 * h;
-                integrator
-                    .step(self.system, h, &mut state)
+                advance(integrator.as_mut(), self.system, h, &mut state)
                     .map_err(|error| format!("failed at {:.3e} s: {error}", step as f64 * h))?;
             }
             let error = farthest(&state.x, grid.truth.x(instant as usize));

@@ -1,8 +1,9 @@
 //! What a report says of energy where dampers are booked more than they took.
 
 use super::{remembering, scene};
+use crate::testkit::method;
 use springcheck::crosscheck::{Choice, Plan};
-use springcheck::integrators::REGISTRY;
+use springcheck::engines::Solver;
 use springcheck::outcome::{EnergyClass, Report};
 use springcheck::report;
 
@@ -11,11 +12,7 @@ fn run(name: &str) -> Report {
     let mut scene = scene(name);
     "explicit_euler".clone_into(&mut scene.solver.method);
     let choice = Choice {
-        methods: REGISTRY
-            .iter()
-            .filter(|m| m.id == "explicit_euler")
-            .collect(),
-        engines: Vec::new(),
+        solvers: vec![Solver::method(method("explicit_euler"))],
         ..Choice::default_for(&scene)
     };
     let report = Plan::new(&scene, &choice).execute(remembering());

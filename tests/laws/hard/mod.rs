@@ -14,7 +14,8 @@ use rayon::prelude::*;
 use springcheck::crosscheck::{Choice, Plan, expect, names};
 use springcheck::outcome::{CheckStatus, Outcome, Report, Status};
 use springcheck::scene::{self, Scene};
-use springcheck::{engines, integrators, report};
+use springcheck::engines::rapier;
+use springcheck::{integrators, report};
 use std::path::{Path, PathBuf};
 use truths::remembering;
 
@@ -153,7 +154,7 @@ fn every_scene_speaks_of_every_engine() {
             row.is_some_and(|(_, _, ids)| ids.contains(&id))
         };
         let methods = integrators::ids().into_iter().map(|id| (id, true));
-        let engines = engines::ids().into_iter().map(|id| (id, false));
+        let engines = rapier::IDS.into_iter().map(|id| (id, false));
         let silent = methods
             .chain(engines)
             .filter(|(id, integrator)| scene.expected_of(id, *integrator).is_empty())

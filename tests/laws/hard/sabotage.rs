@@ -8,6 +8,7 @@ mod c;
 use super::{each_scene, scenes, truths::remembering};
 use crate::testkit::mutants::{self, Step, mutant};
 use springcheck::crosscheck::{Choice, Plan, expect};
+use springcheck::engines::Solver;
 use springcheck::outcome::CheckStatus;
 use springcheck::scene::Scene;
 
@@ -44,12 +45,10 @@ fn rows() -> impl Iterator<Item = &'static Row> {
 /// The expectations of this engine that `step` does not meet when it runs as it.
 fn unmet(scene: &Scene, engine: &str, step: Step) -> usize {
     let nobody = Choice {
-        methods: Vec::new(),
-        engines: Vec::new(),
+        solvers: vec![Solver::own(engine, mutant(step))],
         ..Choice::expected(scene)
     };
     let plan = Plan::new(scene, &nobody);
-    let plan = plan.with_integrator(engine, scene.solver.timestep, mutant(step));
     let report = plan.execute(remembering()).expect("no files");
     let checks = expect::check(scene, &report);
     let failed = |status| status == CheckStatus::Fail;

@@ -3,6 +3,7 @@
 
 use super::scene;
 use crate::testkit::distance;
+use springcheck::engines::Setting;
 use springcheck::engines;
 use springcheck::scene::{Scene, Spring};
 use springcheck::system::ParticleSystem;
@@ -65,17 +66,15 @@ fn rapier_sweeps_once_before_the_drift_and_once_after() {
     let scene = scene("transverse_kick");
     let h = scene.solver.timestep;
     let steps = scene.steps(h);
-    let row = engines::REGISTRY.iter().find(|row| row.id == "rapier");
-    let row = row.expect("a row");
+    let row = engines::find("rapier").expect("a row");
+    let system = ParticleSystem::new(&scene);
     let mut rapier = row
-        .build(&scene, ParticleSystem::new(&scene), h)
+        .start(&scene, &system, &Setting::step(h))
         .expect("springs");
-    for _ in 0..steps {
-        rapier.step().expect("a step");
-    }
+    rapier.advance(steps).expect("steps");
     let state = rapier.state();
     let found = [&state.x[3..6], &state.v[3..6]].concat();
-    let substeps = row.substeps();
+    let substeps = row.substeps;
     let off = |after| {
         let ours = by_hand(
             &scene,

@@ -4,9 +4,8 @@
 use super::scene;
 use crate::testkit::{self, built, distance, mutants, own};
 use springcheck::conformance::Build;
-use springcheck::crosscheck::{Choice, ChosenEngine, Plan, Quiet};
-use springcheck::engines::rapier::Settings;
-use springcheck::engines::rapier_with;
+use springcheck::crosscheck::{Choice, Plan, Quiet};
+use springcheck::engines::{Solver, rapier::Settings};
 use springcheck::integrators::{Integrator, REGISTRY, StepError};
 use springcheck::scene::{Scene, Wanted};
 use springcheck::system::{State, System};
@@ -14,12 +13,10 @@ use springcheck::system::{State, System};
 /// Largest position error against the truth, m, of every method of the registry; then the mutant's.
 fn errors(scene: &Scene) -> (Vec<f64>, f64) {
     let choice = Choice {
-        methods: REGISTRY.iter().collect(),
-        engines: Vec::new(),
+        solvers: REGISTRY.iter().map(Solver::method).collect(),
         ..Choice::default_for(scene)
     };
-    let plan =
-        Plan::new(scene, &choice).with_integrator("absolute", scene.solver.timestep, absolute);
+    let plan = Plan::new(scene, &choice.with(Solver::own("absolute", absolute)));
     let report = plan.execute(&Quiet).expect("nothing is saved");
     let error = |o: &springcheck::outcome::Outcome| {
         let error = o.position_error_m.as_ref().expect("a truth");
@@ -156,15 +153,12 @@ fn errors_do_not_depend_on_a_common_velocity() {
 #[test]
 fn rapier_as_shipped_slows_fast_scenes_down() {
     let scene = scene("moving_together");
-    let capped = rapier_with(Settings {
+    let capped = Solver::rapier(Settings {
         speed: Some(400.0),
         ..Settings::DEFAULT
     });
     let choice = Choice {
-        methods: Vec::new(),
-        engines: [&rapier_with(Settings::DEFAULT), &capped]
-            .map(ChosenEngine::from)
-            .into(),
+        solvers: vec![Solver::rapier(Settings::DEFAULT), capped],
         ..Choice::default_for(&scene)
     };
     let report = Plan::new(&scene, &choice)

@@ -177,14 +177,12 @@ fn fast_particles_stay_fast() {
         assert_eq!(engine.state().v[0], 5000.0, "{id}");
     }
     // As rapier ships, where somebody asks for it.
-    let capped = springcheck::engines::rapier_with(Settings {
+    let capped = springcheck::engines::Solver::rapier(Settings {
         speed: Some(400.0),
         ..Settings::DEFAULT
     });
     assert_eq!(capped.id, "rapier(speed=400)");
-    let mut engine = capped
-        .build(&scene, ParticleSystem::new(&scene), 0.01)
-        .expect("it takes the scene");
+    let mut engine = super::build(&capped, &scene, 0.01);
     engine.step().expect("a step");
     let squares: f64 = engine.state().v.iter().map(|v| v * v).sum();
     // A few roundings of the scaling.

@@ -1,6 +1,7 @@
 //! rapier-converged is linearly implicit Euler without geometric stiffness, at dt / 4.
 
 use super::{apart, build, mutated, ours, scenes, swept, theirs};
+use springcheck::engines::Setting;
 use springcheck::engines::find;
 use springcheck::scene::{DampingModel, Scene};
 use springcheck::system::ParticleSystem;
@@ -127,8 +128,9 @@ fn the_rest_is_unsupported() {
         (slight, "so small"),
     ] {
         for id in ["rapier", "rapier-converged"] {
-            let row = find(id).expect(id);
-            match row.build(&scene, ParticleSystem::new(&scene), 1e-4) {
+            let solver = find(id).expect(id);
+            let system = ParticleSystem::new(&scene);
+            match solver.start(&scene, &system, &Setting::step(1e-4)) {
                 Ok(_) => panic!("{id} takes {words}"),
                 Err(e) => assert!(e.reason.contains(words), "{e}"),
             }

@@ -7,7 +7,7 @@ mod proofs;
 mod scenes;
 mod worlds;
 
-use springcheck::engines::{Engine, EngineRow, IntegratorEngine, find, rapier::Settings};
+use springcheck::engines::{Engine, IntegratorEngine, Setting, Solver, find, rapier::Settings};
 use springcheck::integrators;
 use springcheck::scene::Scene;
 use springcheck::system::ParticleSystem;
@@ -25,17 +25,18 @@ fn ours(scene: &Scene, method: &str, h: f64) -> Box<dyn Engine> {
 
 /// A registered engine on a scene.
 fn theirs(scene: &Scene, id: &str, timestep: f64) -> Box<dyn Engine> {
-    build(find(id).expect(id), scene, timestep)
+    build(&find(id).expect(id), scene, timestep)
 }
 
-fn build(row: &EngineRow, scene: &Scene, timestep: f64) -> Box<dyn Engine> {
-    row.build(scene, ParticleSystem::new(scene), timestep)
-        .unwrap_or_else(|e| panic!("{}: {e}", scene.name))
+fn build(solver: &Solver, scene: &Scene, timestep: f64) -> Box<dyn Engine> {
+    let system = ParticleSystem::new(scene);
+    let run = solver.start(scene, &system, &Setting::step(timestep));
+    Box::new(run.unwrap_or_else(|e| panic!("{}: {e}", scene.name)))
 }
 
 /// rapier with so many substeps and sweeps, none after the drift.
-fn swept(iterations: u32, pgs: u32) -> EngineRow {
-    springcheck::engines::rapier_with(Settings {
+fn swept(iterations: u32, pgs: u32) -> Solver {
+    Solver::rapier(Settings {
         iterations,
         pgs,
         stabilization: 0,

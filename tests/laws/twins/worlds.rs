@@ -2,7 +2,9 @@
 //! published elsewhere are in `tests/golden.rs`.
 
 use super::{apart, build, mutated, ours, scenes, theirs};
-use springcheck::engines::{find, rapier::Settings, rapier_with};
+use springcheck::engines::rapier::{IDS, Settings};
+use springcheck::engines::{Solver, catalogue, find};
+use springcheck::outcome::Kind;
 use springcheck::scene::Scene;
 
 /// Symplectic Euler at h = dt / n falls g h² N (N + 1) / 2 in N substeps from rest.
@@ -15,7 +17,7 @@ fn free_fall_travels_what_symplectic_euler_does() {
             iterations: n,
             ..Settings::DEFAULT
         };
-        let mut engine = build(&rapier_with(settings), &scene, dt);
+        let mut engine = build(&Solver::rapier(settings), &scene, dt);
         let h = dt / f64::from(n);
         let mut twin = ours(&scene, "symplectic_euler", h);
         let many = f64::from(steps * n);
@@ -30,7 +32,7 @@ fn free_fall_travels_what_symplectic_euler_does() {
         // Explicit Euler falls one substep's worth less, and one step of dt is not n of dt / n.
         assert!((fallen / law(many - 1.0) - 1.0).abs() > 1.0 / many);
         let mut coarse = ours(&scene, "symplectic_euler", dt);
-        let mut engine = build(&rapier_with(settings), &scene, dt);
+        let mut engine = build(&Solver::rapier(settings), &scene, dt);
         assert!(n == 1 || apart(&mut *engine, &mut *coarse, 1, steps) > 1e-3);
     }
 }
@@ -81,16 +83,13 @@ fn the_order_of_springs_matters_until_the_sweeps_converge() {
 /// Rows are named once, and what they say of themselves is what they do.
 #[test]
 fn the_registry_is_consistent() {
-    let ids = springcheck::engines::ids();
+    let rapier = catalogue().filter(|solver| solver.kind == Kind::Rapier);
+    let ids: Vec<_> = rapier.map(|solver| solver.id).collect();
     assert_eq!(ids, ["rapier", "rapier-forces", "rapier-converged"]);
-    let defaults: Vec<_> = ids
-        .iter()
-        .map(|id| find(id).map(|row| row.default))
-        .collect();
-    assert_eq!(defaults, [Some(true), Some(true), Some(false)]);
-    assert_eq!(find("rapier").map(|row| row.substeps()), Some(4));
-    assert_eq!(find("rapier-forces").map(|row| row.substeps()), Some(1));
-    let custom = rapier_with(Settings::CONVERGED);
+    assert_eq!(ids, IDS);
+    assert_eq!(find("rapier").map(|row| row.substeps), Some(4));
+    assert_eq!(find("rapier-forces").map(|row| row.substeps), Some(1));
+    let custom = Solver::rapier(Settings::CONVERGED);
     assert_eq!(custom.id, "rapier(pgs=64,stabilization=0)");
-    assert_eq!(rapier_with(Settings::DEFAULT).id, "rapier(defaults)");
+    assert_eq!(Solver::rapier(Settings::DEFAULT).id, "rapier(defaults)");
 }

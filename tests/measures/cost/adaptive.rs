@@ -2,10 +2,9 @@
 
 use super::{choice, cost, of, read};
 use crate::testkit::mutants;
-use springcheck::crosscheck::cost::OwnIntegrator;
+use springcheck::engines::Solver;
 use springcheck::integrators::{self, Settings, adaptive};
 use springcheck::outcome::{Kind, Status};
-use std::sync::Arc;
 
 #[test]
 fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {
@@ -16,7 +15,8 @@ fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {
             .filter(|m| m.order < 4)
             .collect(),
     );
-    choice.pairs = adaptive::REGISTRY.iter().collect();
+    let pairs = adaptive::REGISTRY.iter().map(Solver::pair);
+    choice.solvers.extend(pairs);
     choice.targets = vec![1e-7];
     choice.budget_s = 2.0;
     let cost = cost(&scene, &choice);
@@ -73,16 +73,8 @@ fn an_integrator_of_ones_own_gets_a_curve_like_any_other() {
     choice.targets = vec![1e-3];
     let same = move || (method.build)(&Settings::default());
     let stale = || mutants::mutant(mutants::verlet_with_a_stale_force)();
-    choice.own = vec![
-        OwnIntegrator {
-            name: "mine".into(),
-            build: Arc::new(same),
-        },
-        OwnIntegrator {
-            name: "stale".into(),
-            build: Arc::new(stale),
-        },
-    ];
+    choice.solvers.push(Solver::own("mine", same));
+    choice.solvers.push(Solver::own("stale", stale));
     let cost = cost(&scene, &choice);
     // Its settings differ, since its limit is not known; its line is the same.
     let slope = |id: &str| of(&cost, id).observed_order.expect("a slope");

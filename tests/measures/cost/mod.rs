@@ -5,6 +5,7 @@ mod sweep;
 mod theory;
 
 use springcheck::crosscheck::cost::{CostChoice, CostPlan};
+use springcheck::engines::Solver;
 use springcheck::crosscheck::{self, Quiet};
 use springcheck::integrators::{self, Method};
 use springcheck::outcome::{Cost, CostCurve};
@@ -23,10 +24,7 @@ fn read(name: &str) -> Scene {
 /// These methods over a small budget, no engines.
 fn choice(methods: Vec<&'static Method>) -> CostChoice {
     CostChoice {
-        methods,
-        own: Vec::new(),
-        pairs: Vec::new(),
-        engines: Vec::new(),
+        solvers: methods.into_iter().map(Solver::method).collect(),
         targets: vec![1e-2, 1e-3, 1e-4],
         settings: 10,
         budget_s: 4.0,

@@ -2,7 +2,7 @@
 
 use super::{all, choice, cost, of, read};
 use springcheck::crosscheck::cost::{CostChoice, CostPlan};
-use springcheck::crosscheck::{ChosenEngine, Quiet};
+use springcheck::crosscheck::Quiet;
 use springcheck::engines;
 use springcheck::integrators;
 use springcheck::outcome::{Cost, Kind, Report, Status};
@@ -44,7 +44,8 @@ fn on_threads(threads: usize, scene: &Scene, choice: &CostChoice) -> Report {
 fn all_but_the_clock_is_the_same_on_every_number_of_threads() {
     let scene = read("pa1/scene03.yml");
     let mut choice = choice(all());
-    choice.engines = engines::REGISTRY.iter().map(ChosenEngine::from).collect();
+    let rapier = engines::rapier::IDS.iter();
+    choice.solvers.extend(rapier.filter_map(|id| engines::find(id)));
     (choice.budget_s, choice.settings) = (1.0, 4);
     let [one, four] = [1, 4].map(|threads| counted(&on_threads(threads, &scene, &choice)));
     assert_eq!(one, four);
@@ -113,7 +114,7 @@ fn every_sweep_keeps_its_laws() {
         let mut scene = read(name);
         scene.duration = scene.duration.min(3.0);
         let mut choice = choice(all());
-        choice.engines = vec![ChosenEngine::from(engines::find("rapier").expect("rapier"))];
+        choice.solvers.extend(engines::find("rapier"));
         (choice.budget_s, choice.settings) = (1.0, 4);
         laws(&cost(&scene, &choice));
     }

@@ -5,7 +5,8 @@ use springcheck::crosscheck::{Choice, expect, names};
 use springcheck::outcome::{Check, CheckStatus, Report};
 use springcheck::scene::{self, Expectation, Scene, Wanted, Whom};
 use springcheck::truth::Demand;
-use springcheck::{engines, integrators};
+use springcheck::engines::rapier;
+use springcheck::integrators;
 
 fn judged(expect: &str) -> (Scene, Report, Vec<Check>) {
     let scene = oscillator(expect);
@@ -217,7 +218,7 @@ fn only_what_is_expected_runs() {
         checks.iter().all(|c| c.status == CheckStatus::Pass),
         "{checks:?}"
     );
-    assert!(engines::ids().contains(&"rapier-forces"));
+    assert!(rapier::IDS.contains(&"rapier-forces"));
 }
 
 #[test]
@@ -268,8 +269,7 @@ fn what_did_not_run_is_skipped() {
          completed}",
     );
     let mut choice = Choice::expected(&scene);
-    choice.methods.retain(|method| method.id == "rk4");
-    choice.engines.clear();
+    choice.solvers.retain(|solver| solver.id == "rk4");
     let checks = expect::check(&scene, &run(&scene, &choice));
     let said: Vec<(&str, CheckStatus)> = checks
         .iter()

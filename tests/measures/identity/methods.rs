@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::testkit::swinging_triangle;
+use springcheck::engines::{Limits, Setting, find};
 use springcheck::integrators::REGISTRY;
 use springcheck::measure::identify::Sameness;
 use springcheck::scene::DampingModel;
@@ -100,10 +101,13 @@ fn rows_may_lie_unevenly_apart() {
 fn a_thinned_record_replays_in_pairs() {
     let scene = swinging_triangle(0.0, DampingModel::Axial);
     let steps = 9_000;
-    let mut engine = engine(&scene, "heun", 1e-3);
-    let mut recorder = Recorder::new(steps, 12, 1e-3);
-    let limits = springcheck::engines::Limits::new(ParticleSystem::new(&scene), None);
-    springcheck::engines::simulate(&mut engine, steps, &limits, &mut recorder, &|_| {});
+    let system = ParticleSystem::new(&scene);
+    let (heun, timestep) = (find("heun").expect("a method"), 1e-3);
+    let setting = Setting::Steps { timestep, steps };
+    let run = heun.start(&scene, &system, &setting);
+    let mut recorder = Recorder::new(steps, 12, timestep);
+    let limits = Limits::new(system, None);
+    run.expect("a run").finish(&limits, &mut recorder, &|_| {});
     let rows = Rows::from(&recorder.finish());
     let identity = names(&scene, &rows, "heun", 1).unwrap();
     // One for each instant but the last; none of the long ones between.

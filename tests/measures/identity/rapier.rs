@@ -2,18 +2,20 @@
 
 use super::*;
 use crate::testkit::swinging_triangle;
-use springcheck::engines::{EngineRow, find};
+use springcheck::engines::{Setting, Solver, find, rapier::Settings};
 use springcheck::measure::identify::Sameness;
 use springcheck::scene::DampingModel;
 
-fn of(row: &EngineRow, scene: &Scene) -> Identity {
+fn of(row: &Solver, scene: &Scene) -> Identity {
     let h = scene.solver.timestep;
     let system = ParticleSystem::new(scene);
-    let mut engine = row.build(scene, system, h).expect("supported");
-    name(scene, &record(engine.as_mut(), h, 200))
+    let mut engine = row
+        .start(scene, &system, &Setting::step(h))
+        .expect("supported");
+    name(scene, &record(&mut engine, h, 200))
 }
 
-fn engine_row(id: &str) -> &'static EngineRow {
+fn engine_row(id: &str) -> Solver {
     find(id).expect("an engine")
 }
 
@@ -31,7 +33,7 @@ fn one_spring(damping: f64, model: DampingModel) -> Scene {
 fn its_free_fall_is_symplectic_euler_in_four_substeps() {
     let mut scene = swinging_triangle(0.0, DampingModel::Axial);
     scene.springs.clear();
-    let identity = of(engine_row("rapier"), &scene);
+    let identity = of(&engine_row("rapier"), &scene);
     assert_eq!(
         (identity.method.as_str(), identity.substeps),
         ("symplectic_euler", 4)
@@ -46,7 +48,7 @@ fn its_free_fall_is_symplectic_euler_in_four_substeps() {
 fn its_joint_in_line_is_implicit_euler_in_four_substeps() {
     for damping in [0.0, 0.7] {
         let scene = one_spring(damping, DampingModel::Axial);
-        let identity = of(engine_row("rapier"), &scene);
+        let identity = of(&engine_row("rapier"), &scene);
         assert_eq!(
             (identity.method.as_str(), identity.substeps),
             ("implicit_euler", 4)
@@ -62,7 +64,7 @@ fn its_converged_network_is_linearly_implicit_without_geometric_stiffness() {
     for damping in [0.0, 0.7] {
         for model in [DampingModel::Axial, DampingModel::Isotropic] {
             let scene = swinging_triangle(damping, model);
-            let identity = of(engine_row("rapier-converged"), &scene);
+            let identity = of(&engine_row("rapier-converged"), &scene);
             let name = (identity.method.as_str(), identity.substeps);
             assert_eq!(name, ("linearized_implicit_material", 4));
             assert!(
@@ -73,7 +75,7 @@ fn its_converged_network_is_linearly_implicit_without_geometric_stiffness() {
             assert!(identity.defect <= 8.0, "{identity:?}");
             assert_eq!(identity.followed, identity.transitions);
             // One sweep is not converged, and is not said to be.
-            let identity = of(engine_row("rapier"), &scene);
+            let identity = of(&engine_row("rapier"), &scene);
             assert!(
                 !identity.decisive && identity.same == Sameness::NothingFits,
                 "{identity:?}"
@@ -86,8 +88,10 @@ fn its_converged_network_is_linearly_implicit_without_geometric_stiffness() {
 #[test]
 fn its_nearly_converged_network_is_named_with_a_remark() {
     let scene = swinging_triangle(0.7, DampingModel::Isotropic);
-    let mut row = engine_row("rapier-converged").clone();
-    row.settings.pgs = 4;
+    let row = Solver::rapier(Settings {
+        pgs: 4,
+        ..Settings::CONVERGED
+    });
     let identity = of(&row, &scene);
     assert_eq!(identity.method, "linearized_implicit_material");
     assert_eq!(
@@ -102,7 +106,7 @@ fn its_nearly_converged_network_is_named_with_a_remark() {
 #[test]
 fn rapier_forces_is_symplectic_euler() {
     let scene = swinging_triangle(0.7, DampingModel::Axial);
-    let identity = of(engine_row("rapier-forces"), &scene);
+    let identity = of(&engine_row("rapier-forces"), &scene);
     assert_eq!(
         (identity.method.as_str(), identity.substeps),
         ("symplectic_euler", 1)

@@ -15,8 +15,7 @@ fn pair() -> Scene {
 fn picture(scene: &Scene, stiffnesses: &[f64]) -> Admissible {
     let plan = StabilityPlan {
         scene,
-        methods: Vec::new(),
-        engines: Vec::new(),
+        solvers: Vec::new(),
         timestep: scene.solver.timestep,
         map: None,
         admissible: stiffnesses.to_vec(),
@@ -100,8 +99,7 @@ fn other_scenes_are_refused() {
         change(&mut scene);
         let plan = StabilityPlan {
             scene: &scene,
-            methods: Vec::new(),
-            engines: Vec::new(),
+            solvers: Vec::new(),
             timestep: 0.5,
             map: None,
             admissible: vec![1.0],

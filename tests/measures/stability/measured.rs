@@ -5,7 +5,7 @@ use crate::testkit::method;
 use rayon::prelude::*;
 use springcheck::conformance::measured_limit;
 use springcheck::conformance::systems::Oscillator;
-use springcheck::engines::{Engine, IntegratorEngine, Unsupported};
+use springcheck::engines::{Engine, IntegratorEngine, Setting, Unsupported};
 use springcheck::integrators::{EnergyLaw, Method, REGISTRY, Settings, Stable};
 use springcheck::measure::stability::{Limit, Make, Measured, classify, measure};
 use springcheck::outcome::Cell;
@@ -407,8 +407,9 @@ fn chain(links: usize, stiffness: f64) -> Scene {
 }
 
 fn rapier(scene: &Scene, h: f64) -> Result<Box<dyn Engine>, Unsupported> {
-    let row = springcheck::engines::find("rapier").unwrap();
-    row.build(scene, ParticleSystem::new(scene), h)
+    let rapier = springcheck::engines::find("rapier").unwrap();
+    let run = rapier.start(scene, &ParticleSystem::new(scene), &Setting::step(h))?;
+    Ok(Box::new(run))
 }
 
 #[test]

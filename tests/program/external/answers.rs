@@ -1,6 +1,7 @@
 //! The library's side, without any process: what becomes of the rows a program gives.
 
-use springcheck::crosscheck::{self, Choice, ChosenProgram, Plan, Quiet};
+use springcheck::crosscheck::{self, Choice, Plan, Quiet};
+use springcheck::engines::Solver;
 use springcheck::engines::external::{Failure, Program, Recording, Task};
 use springcheck::integrators::{self, Settings};
 use springcheck::outcome::{EnergyClass, Kind, Outcome, Status, Undecided};
@@ -10,9 +11,9 @@ use springcheck::trajectory::{Precision, Rows};
 use std::sync::Arc;
 
 /// A program in this process.
-struct Solver<F>(F);
+struct Computed<F>(F);
 
-impl<F: Fn(&Task) -> Rows + Send + Sync> Program for Solver<F> {
+impl<F: Fn(&Task) -> Rows + Send + Sync> Program for Computed<F> {
     fn record(&self, task: &Task) -> Result<Recording, Failure> {
         Ok(Recording {
             rows: (self.0)(task),
@@ -24,10 +25,8 @@ impl<F: Fn(&Task) -> Rows + Send + Sync> Program for Solver<F> {
 /// Its outcome beside an integrator of ours.
 fn outcome(scene: &Scene, solver: impl Fn(&Task) -> Rows + Send + Sync + 'static) -> Outcome {
     let mut choice = Choice::default_for(scene);
-    choice.programs = vec![ChosenProgram {
-        name: "mine".to_owned(),
-        program: Arc::new(Solver(solver)),
-    }];
+    let program = Arc::new(Computed(solver));
+    choice.solvers.push(Solver::program("mine", program));
     let report = Plan::new(scene, &choice).execute(&Quiet).expect("no files");
     let mut outcomes = report.outcomes;
     let mine = outcomes.pop().expect("an outcome");

@@ -1,9 +1,8 @@
-//! The steps an engine is tried at: evenly spaced in ln h, from where it becomes stable to where its
+//! The steps a solver is tried at: evenly spaced in ln h, from where it becomes stable to where its
 //! share of the budget ends.
 
-use super::entrant::Entrant;
 use super::price;
-use super::setting::Setting;
+use crate::engines::{Setting, Solver};
 use crate::integrators::Stable;
 use crate::measure::stability::{Limit, Linearised};
 use crate::outcome::Kind;
@@ -33,7 +32,7 @@ pub(super) fn named(scene: &Scene, timesteps: &[f64]) -> Vec<Setting> {
     let mut timesteps = timesteps.to_vec();
     timesteps.sort_by(|a, b| b.total_cmp(a));
     timesteps.dedup();
-    let setting = |&timestep: &f64| Setting::Step {
+    let setting = |&timestep: &f64| Setting::Steps {
         timestep,
         steps: scene.steps(timestep),
     };
@@ -41,12 +40,12 @@ pub(super) fn named(scene: &Scene, timesteps: &[f64]) -> Vec<Setting> {
 }
 
 /// Where an engine starts: just inside its limit, or at the loosest tolerance.
-pub(super) fn coarsest(scene: &Scene, linearised: &Linearised, entrant: &Entrant) -> Setting {
-    if let Some(order) = entrant.adapts() {
-        return tolerance(scene, rate(linearised), order, LOOSEST, 1);
+pub(super) fn coarsest(scene: &Scene, linearised: &Linearised, solver: &Solver) -> Setting {
+    if let Some(pair) = solver.as_pair() {
+        return tolerance(scene, rate(linearised), pair.order, LOOSEST, 1);
     }
-    let steps = (scene.duration / start(scene, linearised, entrant)).max(FEWEST);
-    Setting::of_steps(
+    let steps = (scene.duration / start(scene, linearised, solver)).max(FEWEST);
+    Setting::divided(
         scene.duration,
         steps.min(crate::scene::limits::STEPS) as u64 + 1,
     )
@@ -57,22 +56,22 @@ pub(super) fn coarsest(scene: &Scene, linearised: &Linearised, entrant: &Entrant
 pub(super) fn afforded(
     scene: &Scene,
     linearised: &Linearised,
-    entrant: &Entrant,
+    solver: &Solver,
     coarsest: Setting,
     each: f64,
     share_s: f64,
 ) -> Setting {
     let runs = (1.0 + price::TIMED) * least_runs(LEAST_SETTINGS);
     let most = (1e9 * share_s / each / runs).max(FEWEST);
-    let always = match entrant.follows {
-        None => entrant.kind == Kind::Rapier,
+    let always = match solver.follows {
+        None => solver.kind == Kind::Rapier,
         Some(method) => {
             let prediction = linearised.predict(method, scene.solver.timestep);
             prediction.limit == Limit::Unconditional
         }
     };
     if always && coarsest.steps() as f64 > most {
-        Setting::of_steps(scene.duration, most as u64)
+        Setting::divided(scene.duration, most as u64)
     } else {
         coarsest
     }
@@ -120,7 +119,7 @@ pub(super) fn spaced(
     steps.dedup();
     steps
         .into_iter()
-        .map(|n| Setting::of_steps(duration, n))
+        .map(|n| Setting::divided(duration, n))
         .collect()
 }
 
@@ -196,7 +195,7 @@ pub(super) fn tolerances(
 }
 
 /// The largest step worth trying, s.
-fn start(scene: &Scene, linearised: &Linearised, entrant: &Entrant) -> f64 {
+fn start(scene: &Scene, linearised: &Linearised, solver: &Solver) -> f64 {
     let rate = rate(linearised);
     let over = |z: f64| {
         if rate > 0.0 {
@@ -205,10 +204,10 @@ fn start(scene: &Scene, linearised: &Linearised, entrant: &Entrant) -> f64 {
             scene.duration / SLOW
         }
     };
-    let Some(method) = entrant.follows else {
+    let Some(method) = solver.follows else {
         return over(ALWAYS);
     };
-    let many = f64::from(entrant.substeps);
+    let many = f64::from(solver.substeps);
     match linearised.predict(method, scene.solver.timestep).limit {
         Limit::At(limit) if limit > 0.0 => (limit * many).min(over(4.0 * ALWAYS) * many),
         Limit::Between(low, _) if low > 0.0 => low * many,

@@ -1,8 +1,9 @@
-//! The truth as a sweep needs it: errors of a run's instants, and what is too small to be told from it.
+//! The errors of a run, against the truth and of its energy, and what is too small to be told from either.
 
+use super::sampler::Samples;
 use crate::outcome::TruthKind;
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State, System, Work};
+use crate::system::{ParticleSystem, System};
 use crate::truth::{States, Truth};
 
 /// Instants of a run that are looked at, at most.
@@ -12,8 +13,8 @@ const NUMBERS: u64 = 1 << 21;
 /// Roundings of the largest coordinate, a random walk over all steps, that may be in an error.
 const ROUNDINGS: f64 = 4.0;
 
-/// What is known of a scene's motion.
-pub(super) struct Witness<'a> {
+/// What the runs of a scene are held against.
+pub(super) struct Errors<'a> {
     pub truth: &'a Truth,
     system: &'a ParticleSystem,
     /// S, J.
@@ -22,52 +23,6 @@ pub(super) struct Witness<'a> {
     size: f64,
     /// Instants a run keeps at most.
     pub room: u64,
-}
-
-/// States of a run at some instants, the start and the end among them.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Kept {
-    pub dim: usize,
-    /// Seconds, ascending.
-    pub t: Vec<f64>,
-    pub x: Vec<f64>,
-    pub v: Vec<f64>,
-    pub work: Vec<Work>,
-}
-
-impl Kept {
-    pub fn push(&mut self, t: f64, state: &State) {
-        self.dim = state.x.len();
-        self.t.push(t);
-        self.x.extend_from_slice(&state.x);
-        self.v.extend_from_slice(&state.v);
-        self.work.push(state.work);
-    }
-
-    /// Every other instant, beginning with the first.
-    pub fn halve(&mut self) {
-        let dim = self.dim;
-        let kept = (0..self.t.len()).step_by(2);
-        for (to, from) in kept.enumerate() {
-            self.t[to] = self.t[from];
-            self.work[to] = self.work[from];
-            self.x.copy_within(from * dim..(from + 1) * dim, to * dim);
-            self.v.copy_within(from * dim..(from + 1) * dim, to * dim);
-        }
-        let left = self.t.len().div_ceil(2);
-        self.t.truncate(left);
-        self.work.truncate(left);
-        self.x.truncate(left * dim);
-        self.v.truncate(left * dim);
-    }
-
-    pub fn x(&self, k: usize) -> &[f64] {
-        &self.x[k * self.dim..(k + 1) * self.dim]
-    }
-
-    pub fn v(&self, k: usize) -> &[f64] {
-        &self.v[k * self.dim..(k + 1) * self.dim]
-    }
 }
 
 /// How far a run is from the truth.
@@ -79,7 +34,7 @@ pub(super) struct Off {
     pub last: f64,
 }
 
-impl<'a> Witness<'a> {
+impl<'a> Errors<'a> {
     pub fn new(
         scene: &Scene,
         system: &'a ParticleSystem,
@@ -115,7 +70,7 @@ impl<'a> Witness<'a> {
     }
 
     /// The times of a run at which it is held against the truth: within the horizon, the start left out.
-    fn times(&self, kept: &Kept) -> Vec<f64> {
+    fn times(&self, kept: &Samples) -> Vec<f64> {
         // A run ends at n h, which may round to just past where the truth was asked for.
         let last = self.truth.horizon * (1.0 + 4.0 * f64::EPSILON);
         let within = kept.t.iter().skip(1).filter(|t| **t <= last);
@@ -123,7 +78,7 @@ impl<'a> Witness<'a> {
     }
 
     /// The truth at the instants of a run within the horizon, the start left out.
-    pub fn states(&self, kept: &Kept) -> Option<(Vec<f64>, States)> {
+    pub fn states(&self, kept: &Samples) -> Option<(Vec<f64>, States)> {
         let motion = self.truth.motion()?;
         let times = self.times(kept);
         let states = motion.states(&times);
@@ -131,7 +86,7 @@ impl<'a> Witness<'a> {
     }
 
     /// None without a truth, or where no instant lies within its horizon, or too far away for a number.
-    pub fn errors(&self, kept: &Kept) -> Option<Off> {
+    pub fn errors(&self, kept: &Samples) -> Option<Off> {
         let (times, states) = self.states(kept)?;
         let mut off: Option<Off> = None;
         for k in 0..times.len() {
@@ -147,7 +102,7 @@ impl<'a> Witness<'a> {
     }
 
     /// max |B - B(0)| / S over the kept instants; None where the scene has no scale.
-    pub fn energy_error(&self, kept: &Kept) -> Option<f64> {
+    pub fn energy_error(&self, kept: &Samples) -> Option<f64> {
         let scale = self.scale?;
         let balance = |k: usize| {
             let energy =
