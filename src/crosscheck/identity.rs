@@ -14,11 +14,10 @@ const TRANSITIONS: usize = 16;
 
 /// The scheme of a run, by some of its steps.
 pub(super) fn of_run(plan: &Plan, case: &Case, run: &Ran) -> Option<Identified> {
-    let rows = Rows::from(&run.trajectory);
     let question = Question {
         transitions: Some(TRANSITIONS),
         hint: expected(plan, case),
-        ..question(plan, &rows)
+        ..question(plan, run.trajectory.rows())
     };
     identify(&question)?.report()
 }

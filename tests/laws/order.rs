@@ -8,7 +8,7 @@ use springcheck::crosscheck;
 use springcheck::integrators::{
     DampingTreatment, Integrator, REGISTRY, Splitting, Stage, StepError,
 };
-use springcheck::measure::order::{Ladder, Measured, RATIOS, Reason, Verdict, check, observed};
+use springcheck::measure::order::{Measured, RATIOS, Reason, Study, Verdict, check, observed};
 use springcheck::outcome::CheckStatus;
 use springcheck::scene::{self, Scene};
 use springcheck::system::{ParticleSystem, State, System};
@@ -29,25 +29,25 @@ const DESIGNATED: [&str; 3] = [
 ];
 
 /// What `measure` finds on a shipped scene, whose truth is Gauss-Legendre's.
-fn on<T>(path: &str, measure: impl FnOnce(&Ladder, &Scene) -> T) -> T {
+fn on<T>(path: &str, measure: impl FnOnce(&Study, &Scene) -> T) -> T {
     let scene = shipped(path);
     let (system, start) = built(&scene);
     let truth = Gauss::new(&system, start, scene.duration, 1e-3);
     let bar = truth.error_bar(scene.duration);
     // Nothing but rounding: measured 2.1e-15 to 4.4e-15 m.
     assert!(bar < 1.5e-14, "{path}: {bar:e}");
-    let ladder = Ladder::of_scene(&scene, &system, &truth, scene.duration);
-    measure(&ladder, &scene)
+    let study = Study::of_scene(&scene, &system, &truth, scene.duration);
+    measure(&study, &scene)
 }
 
 #[test]
 fn every_method_is_of_its_order_on_designated_scenes() {
     for path in DESIGNATED {
-        on(path, |ladder, scene| {
+        on(path, |study, scene| {
             let description = scene.description.as_deref().unwrap_or_default();
             assert!(description.starts_with("Designated for measuring orders"));
             for row in REGISTRY {
-                let Measured { observed, .. } = ladder.method(row);
+                let Measured { observed, .. } = study.method(row);
                 assert_eq!(
                     observed.verdict,
                     Verdict::Meets,
@@ -73,9 +73,9 @@ fn no_method_falls_below_its_order_on_an_oscillator() {
         let scene = shipped(path);
         let (system, _) = built(&scene);
         let truth = released(&scene);
-        let ladder = Ladder::of_scene(&scene, &system, &truth, f64::INFINITY);
+        let study = Study::of_scene(&scene, &system, &truth, f64::INFINITY);
         for row in REGISTRY {
-            let measured = ladder.method(row);
+            let measured = study.method(row);
             let seen = &measured.observed;
             assert!(
                 matches!(seen.verdict, Verdict::Meets | Verdict::Above),
@@ -99,9 +99,9 @@ fn free_fall_is_exact_from_order_two_up() {
         x: Box::new(move |t| (z + 0.5 * g * t * t, g * t)),
         bar: 16.0 * f64::EPSILON * 123.0,
     };
-    let ladder = Ladder::of_scene(&scene, &system, &truth, scene.duration);
+    let study = Study::of_scene(&scene, &system, &truth, scene.duration);
     for row in REGISTRY {
-        let measured = ladder.method(row);
+        let measured = study.method(row);
         let said = check(row.id, &measured);
         if row.order == 1 {
             assert_eq!(measured.observed.verdict, Verdict::Meets, "{measured:?}");
@@ -119,16 +119,16 @@ fn free_fall_is_exact_from_order_two_up() {
         scene.solver.gravity *= 1.0 + 1e-9;
         Box::new(Elsewhere(own(method("rk4"))(), built(&scene).0))
     };
-    let seen = ladder.measure(4, &heavier).observed;
+    let seen = study.measure(4, &heavier).observed;
     assert_eq!(seen.verdict, Verdict::Misses, "{seen:?}");
     // Were the truth wrong instead, the control would be, too: no method is to blame.
     let wrong = Line {
         x: Box::new(move |t| (z + 0.5 * g * (1.0 + 1e-9) * t * t, g * t)),
         ..truth
     };
-    let ladder = Ladder::of_scene(&scene, &system, &wrong, scene.duration);
+    let study = Study::of_scene(&scene, &system, &wrong, scene.duration);
     assert_eq!(
-        ladder.method(method("rk4")).observed.verdict,
+        study.method(method("rk4")).observed.verdict,
         Verdict::Inconclusive(Reason::NotSmooth)
     );
 }
@@ -163,8 +163,8 @@ fn wrong_integrators_miss_the_order_they_state() {
         (DESIGNATED[1], 2, mutants::verlet_with_explicit_damping, 1.0),
     ];
     for (path, stated, step, true_order) in cases {
-        on(path, |ladder, _| {
-            let measured = ladder.measure(stated, &mutant(step));
+        on(path, |study, _| {
+            let measured = study.measure(stated, &mutant(step));
             let seen = &measured.observed;
             assert_eq!(seen.verdict, Verdict::Misses, "{measured:?}");
             let off = seen.order.map(|order| (order - true_order).abs());
@@ -193,7 +193,7 @@ fn composed(coefficients: &[f64]) -> impl Fn() -> Box<dyn Integrator> + Sync + u
 /// swapped it keeps energy bounded all the same, and is of first order.
 #[test]
 fn swapped_coefficients_show_in_the_order() {
-    on(DESIGNATED[0], |ladder, _| {
+    on(DESIGNATED[0], |study, _| {
         // The first drift has no length, so that the list begins with a kick.
         let right = [
             0.0,
@@ -210,7 +210,7 @@ fn swapped_coefficients_show_in_the_order() {
             (right, Verdict::Meets, 3.0),
             (swapped, Verdict::Misses, 1.0),
         ] {
-            let seen = ladder.measure(3, &composed(&coefficients)).observed;
+            let seen = study.measure(3, &composed(&coefficients)).observed;
             assert_eq!(seen.verdict, verdict, "{seen:?}");
             // Measured 2.9996 and 1.0001.
             assert!(
@@ -239,8 +239,8 @@ fn sixth_order(inner: f64) -> impl Fn() -> Box<dyn Integrator> + Sync + use<> {
 fn above_order_four_steps_lie_closer() {
     let right = 1.0 / (2.0 - 2_f64.powf(1.0 / 3.0));
     for path in [DESIGNATED[0], DESIGNATED[1]] {
-        on(path, |ladder, _| {
-            let measured = ladder.measure(6, &sixth_order(right));
+        on(path, |study, _| {
+            let measured = study.measure(6, &sixth_order(right));
             assert_eq!(measured.observed.verdict, Verdict::Meets, "{measured:?}");
             let used: Vec<f64> = measured
                 .observed
@@ -253,9 +253,9 @@ fn above_order_four_steps_lie_closer() {
                 "{used:?}"
             );
             // As eighth, and with the inner jump a thousandth off: second order in the end.
-            let eighth = ladder.measure(8, &sixth_order(right)).observed.verdict;
+            let eighth = study.measure(8, &sixth_order(right)).observed.verdict;
             assert_eq!(eighth, Verdict::Misses);
-            let wrong = ladder
+            let wrong = study
                 .measure(6, &sixth_order(1.001 * right))
                 .observed
                 .verdict;
@@ -271,12 +271,12 @@ fn steps_too_coarse_are_no_miss() {
     scene.springs[0].stiffness = 5e7;
     let (system, _) = built(&scene);
     let truth = released(&scene);
-    let ladder = Ladder::of_scene(&scene, &system, &truth, scene.duration).budget(200_000);
+    let study = Study::of_scene(&scene, &system, &truth, scene.duration).budget(200_000);
     let Measured {
         observed: seen,
         points,
         ..
-    } = ladder.method(method("implicit_euler"));
+    } = study.method(method("implicit_euler"));
     assert_eq!(seen.verdict, Verdict::Inconclusive(Reason::NotAsymptotic));
     // What the errors alone would say.
     assert_eq!(observed(&points, 1).verdict, Verdict::Misses);
@@ -295,9 +295,9 @@ fn a_motion_damped_away_is_no_miss() {
         scene.duration = duration;
         let (system, start) = built(&scene);
         let truth = Gauss::new(&system, start, duration, 4e-3);
-        let ladder = Ladder::of_scene(&scene, &system, &truth, duration);
+        let study = Study::of_scene(&scene, &system, &truth, duration);
         for row in REGISTRY {
-            let measured = ladder.method(row);
+            let measured = study.method(row);
             let seen = &measured.observed;
             // By the errors alone, as they come in.
             let missed = (RATIOS + 1..=measured.points.len())
@@ -310,7 +310,7 @@ fn a_motion_damped_away_is_no_miss() {
             }
         }
         // A mutant is told from them where its error is small: of first order, not second.
-        let seen = ladder
+        let seen = study
             .measure(2, &mutant(mutants::verlet_with_a_stale_force))
             .observed;
         // At 40 s the budget ends before the control has run.
@@ -357,9 +357,9 @@ fn dropped(length: f64) -> (Scene, Line) {
 fn forces_that_jump_are_no_miss() {
     let (scene, truth) = dropped(0.0);
     let (system, _) = built(&scene);
-    let ladder = Ladder::of_scene(&scene, &system, &truth, f64::INFINITY);
+    let study = Study::of_scene(&scene, &system, &truth, f64::INFINITY);
     for row in REGISTRY {
-        let measured = ladder.method(row);
+        let measured = study.method(row);
         let verdict = measured.observed.verdict;
         let alone = observed(&measured.points, row.order).verdict;
         assert_ne!(verdict, Verdict::Misses, "{}: {measured:?}", row.id);
@@ -374,9 +374,9 @@ fn forces_that_jump_are_no_miss() {
     // Let go from elsewhere on the same spring nothing jumps, and a miss is one.
     let (scene, truth) = dropped(0.5);
     let (system, _) = built(&scene);
-    let ladder = Ladder::of_scene(&scene, &system, &truth, f64::INFINITY);
+    let study = Study::of_scene(&scene, &system, &truth, f64::INFINITY);
     for row in REGISTRY {
-        let seen = ladder.method(row).observed;
+        let seen = study.method(row).observed;
         assert_eq!(seen.verdict, Verdict::Meets, "{}: {seen:?}", row.id);
     }
     for (stated, step) in [
@@ -384,7 +384,7 @@ fn forces_that_jump_are_no_miss() {
         (2, mutants::midpoint_drifting_with_the_end_velocity),
         (4, mutants::rk4_with_swapped_weights),
     ] {
-        let seen = ladder.measure(stated, &mutant(step)).observed;
+        let seen = study.measure(stated, &mutant(step)).observed;
         assert_eq!(seen.verdict, Verdict::Misses, "{seen:?}");
     }
 }
@@ -409,8 +409,8 @@ fn a_ladder_keeps_to_its_budget() {
         || -> Box<dyn Integrator> { Box::new(Counted(own(method("explicit_euler"))(), &STEPS)) };
     for (budget, enough) in [(0, false), (1_000, false), (30_000, false), (100_000, true)] {
         STEPS.store(0, Ordering::Relaxed);
-        let ladder = Ladder::of_scene(&scene, &system, &truth, scene.duration).budget(budget);
-        let seen = ladder.measure(1, &build).observed;
+        let study = Study::of_scene(&scene, &system, &truth, scene.duration).budget(budget);
+        let seen = study.measure(1, &build).observed;
         assert_eq!(seen.order.is_some(), enough, "{budget}: {seen:?}");
         // Six coordinates. The rung that is run twice is a coarse one.
         let spent = 6 * STEPS.load(Ordering::Relaxed);
@@ -421,13 +421,13 @@ fn a_ladder_keeps_to_its_budget() {
 /// The same bits whoever computes them.
 #[test]
 fn threads_change_nothing() {
-    on(DESIGNATED[1], |ladder, _| {
+    on(DESIGNATED[1], |study, _| {
         let with = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             let all = || {
                 REGISTRY
                     .iter()
-                    .map(|row| ladder.method(row))
+                    .map(|row| study.method(row))
                     .collect::<Vec<_>>()
             };
             pool.expect("threads").install(all)
@@ -442,8 +442,8 @@ fn without_a_horizon_there_is_no_order() {
     let (system, _) = built(&scene);
     let truth = released(&scene);
     for until in [0.0, -1.0, f64::NAN] {
-        let ladder = Ladder::of_scene(&scene, &system, &truth, until);
-        let measured = ladder.method(method("rk4"));
+        let study = Study::of_scene(&scene, &system, &truth, until);
+        let measured = study.method(method("rk4"));
         assert_eq!(
             measured.observed.verdict,
             Verdict::Inconclusive(Reason::TooFew),

@@ -90,7 +90,7 @@ impl<'a> Errors<'a> {
         let (times, states) = self.states(kept)?;
         let mut off: Option<Off> = None;
         for k in 0..times.len() {
-            let distance = crate::measure::farthest(kept.x(k + 1), states.x(k));
+            let distance = crate::truth::farthest(kept.x(k + 1), states.x(k));
             let max = off.map_or(0.0, |off| off.max);
             off = Some(Off {
                 // NaN stays.

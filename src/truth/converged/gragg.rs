@@ -1,7 +1,6 @@
 //! Extrapolation of Gragg's explicit midpoint rule, at fixed steps.
 
-use super::precise::Precise;
-use super::stepper::{Stepper, fit};
+use super::stepper::{Precise, Stepper, fit};
 use crate::system::System;
 
 /// Numbers of substeps; the error of an even number has an expansion in h², so k of them give order

@@ -6,7 +6,7 @@ use crate::testkit::gauss::Gauss;
 use crate::testkit::line::released;
 use springcheck::integrators::adaptive::{Adaptive, Pair, REGISTRY};
 use springcheck::integrators::{Integrator, StepError, Tableau};
-use springcheck::measure::order::{Ladder, Verdict};
+use springcheck::measure::order::{Study, Verdict};
 use springcheck::system::{State, System};
 use springcheck::truth::Motion;
 
@@ -87,7 +87,7 @@ fn formulas_are_of_their_order_on_designated_scenes() {
     }
 }
 
-/// By the ladder that measures all other methods, too; on shorter runs its coarsest steps, 124 of them,
+/// By the study that measures all other methods, too; on shorter runs its coarsest steps, 124 of them,
 /// leave order 8 at the floor.
 #[test]
 fn formulas_are_of_their_order_on_an_oscillator() {
@@ -95,8 +95,8 @@ fn formulas_are_of_their_order_on_an_oscillator() {
     let (system, start) = built(&scene);
     let truth = released(&scene);
     for (pair, until) in REGISTRY.iter().zip([5.0, 20.0]) {
-        let ladder = Ladder::new(&system, start.clone(), &truth, 0.1, until);
-        let seen = ladder.measure(pair.order, &fixed(*pair)).observed;
+        let study = Study::new(&system, start.clone(), &truth, 0.1, until);
+        let seen = study.measure(pair.order, &fixed(*pair)).observed;
         assert_eq!(seen.verdict, Verdict::Meets, "{}: {seen:?}", pair.id);
     }
 }

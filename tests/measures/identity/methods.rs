@@ -108,7 +108,7 @@ fn a_thinned_record_replays_in_pairs() {
     let mut recorder = Recorder::new(steps, 12, timestep);
     let limits = Limits::new(system, None);
     run.expect("a run").finish(&limits, &mut recorder, &|_| {});
-    let rows = Rows::from(&recorder.finish());
+    let rows = recorder.finish().rows().clone();
     let identity = names(&scene, &rows, "heun", 1).unwrap();
     // One for each instant but the last; none of the long ones between.
     let instants = 9_000 / 5;

@@ -141,7 +141,7 @@ fn damaged_bytes_are_ignored() {
     ] {
         repair_law(&|bytes| bytes.truncate(keep)).unwrap();
     }
-    // Magic, version, key, a text, counts, a depth, states, checksum.
+    // Version, key, texts, depths, states, checksum.
     for at in [
         0,
         8,

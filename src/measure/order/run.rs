@@ -1,9 +1,12 @@
 //! One run at one step, held against the truth.
 
-use super::ladder::Build;
 use crate::engines::advance;
+use crate::integrators::Integrator;
 use crate::system::{State, System};
-use crate::truth::{Motion, States};
+use crate::truth::{Motion, States, farthest};
+
+/// Makes a fresh integrator for each run.
+pub type Build<'a> = &'a (dyn Fn() -> Box<dyn Integrator> + Sync);
 
 /// An error so many times the way the motion goes: the run has diverged (its energy is beyond 1e12
 /// times the motion's).
@@ -16,7 +19,7 @@ const MEMORY: u64 = 1 << 22;
 const DISTURBANCE: f64 = 1e-7;
 
 /// What is run: a system from a start, whose truth is known up to a time.
-pub(super) struct Course<'a> {
+pub(super) struct Problem<'a> {
     pub system: &'a (dyn System + Sync),
     pub start: State,
     pub motion: &'a dyn Motion,
@@ -39,31 +42,31 @@ pub(super) struct Grid {
 
 impl Grid {
     /// At about `wanted` instants, at most `most`.
-    pub fn new(course: &Course, wanted: u64, most: u64) -> Self {
-        let dim = course.system.dim();
+    pub fn new(problem: &Problem, wanted: u64, most: u64) -> Self {
+        let dim = problem.system.dim();
         let room = (MEMORY / (dim.max(1) as u64)).min(most).max(FEWEST);
         let instants = (wanted.clamp(FEWEST, room) - 1) | 1;
-        let usable = course.until > 0.0 && course.until.is_finite();
+        let usable = problem.until > 0.0 && problem.until.is_finite();
         let instants = if usable { instants } else { 0 };
         let times: Vec<f64> = (1..=instants)
-            .map(|k| course.until * (k as f64 / instants as f64))
+            .map(|k| problem.until * (k as f64 / instants as f64))
             .collect();
-        let truth = course.motion.states(&times);
+        let truth = problem.motion.states(&times);
         let each = || (0..times.len()).map(|k| truth.x(k));
         let reach = each()
-            .map(|x| farthest(x, &course.start.x))
+            .map(|x| farthest(x, &problem.start.x))
             .fold(0.0, f64::max);
         let size = each().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
         Self {
             instants,
-            until: course.until,
+            until: problem.until,
             reach,
             size,
             truth,
         }
     }
 
-    /// Steps of a rung that takes `m` between two instants.
+    /// Steps of a run that takes `m` between two instants.
     pub fn steps(&self, m: u64) -> u64 {
         self.instants.saturating_mul(m)
     }
@@ -71,17 +74,6 @@ impl Grid {
     /// Their size, s.
     pub fn step(&self, m: u64) -> f64 {
         self.until / self.steps(m) as f64
-    }
-
-    /// Largest magnitude each coordinate reaches, of positions or velocities.
-    fn largest(&self, values: &[f64], dim: usize) -> Vec<f64> {
-        let mut most = vec![0.0; dim];
-        for state in values.chunks_exact(dim.max(1)) {
-            for (most, value) in most.iter_mut().zip(state) {
-                *most = f64::max(*most, value.abs());
-            }
-        }
-        most
     }
 }
 
@@ -93,7 +85,7 @@ pub(super) struct Run {
     x: Vec<f64>,
 }
 
-impl Course<'_> {
+impl Problem<'_> {
     /// Runs `m` steps from instant to instant, from the start or from one disturbed.
     ///
     /// # Errors
@@ -133,11 +125,17 @@ impl Course<'_> {
     /// How far apart, m, a relative disturbance of the start as large as 1 would carry this run: what
     /// a rounding, which is a disturbance of eps, grows to. None where it cannot be told.
     pub fn amplification(&self, grid: &Grid, m: u64, build: Build, run: &Run) -> Option<f64> {
-        let dim = self.system.dim();
-        let (x, v) = (
-            grid.largest(&grid.truth.x, dim),
-            grid.largest(&grid.truth.v, dim),
-        );
+        let each = self.system.dim().max(1);
+        // The largest magnitude each coordinate reaches.
+        let [x, v] = [&grid.truth.x, &grid.truth.v].map(|values| {
+            let mut most = vec![0.0; each];
+            for state in values.chunks_exact(each) {
+                for (most, value) in most.iter_mut().zip(state) {
+                    *most = f64::max(*most, value.abs());
+                }
+            }
+            most
+        });
         let mut start = self.start.clone();
         for (i, inverse_mass) in self.system.inverse_mass().iter().enumerate() {
             if *inverse_mass > 0.0 {
@@ -148,22 +146,8 @@ impl Course<'_> {
             }
         }
         let other = self.run(grid, m, build, Some(start)).ok()?;
-        let each = dim.max(1);
         let states = run.x.chunks_exact(each).zip(other.x.chunks_exact(each));
         let apart = states.map(|(a, b)| farthest(a, b)).fold(0.0, f64::max);
         Some(apart / DISTURBANCE)
     }
-}
-
-/// Largest distance between the same particle of two states, m; NaN where one is not a number.
-fn farthest(a: &[f64], b: &[f64]) -> f64 {
-    let mut most = 0.0_f64;
-    for (a, b) in a.chunks(3).zip(b.chunks(3)) {
-        let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
-        if square.is_nan() {
-            return f64::NAN;
-        }
-        most = most.max(square);
-    }
-    most.sqrt()
 }

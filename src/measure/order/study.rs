@@ -1,20 +1,17 @@
 //! Runs a method at smaller and smaller steps until its errors show an order.
 
 use super::observed::{Observed, Point, RATIOS, Reason, Verdict, observed};
-use super::rung::{Course, Grid};
-use crate::integrators::{self, Integrator, Method, Settings};
+use super::run::{Build, Grid, Problem};
+use crate::integrators::{self, Method, Settings};
 use crate::scene::Scene;
 use crate::system::{ParticleSystem, State, System};
 use crate::truth::Motion;
 use rayon::prelude::*;
 
-/// Makes a fresh integrator for each run.
-pub type Build<'a> = &'a (dyn Fn() -> Box<dyn Integrator> + Sync);
-
-/// What a ladder may cost by default, in steps times coordinates: a fraction of a second for explicit
+/// What a study may cost by default, in steps times coordinates: a fraction of a second for explicit
 /// methods.
 pub const BUDGET: u64 = 4_000_000;
-/// And at least so many runs at the scene's own step, where one of them is long.
+/// Where a run at the scene's own step is long: so many of them at least.
 const RUNS: u64 = 4;
 /// A run closer to the truth than this share of the way the motion goes follows it, roughly.
 const FOLLOWS: f64 = 0.1;
@@ -28,17 +25,18 @@ const RESOLVED: f64 = 0.01;
 /// which may be in an error, that tenth changes a slope by at most ln 1.1 / ln 1.3 = 0.36.
 const CONTROL: (&str, f64) = ("rk4", 3.5);
 
-/// What part of the scene's own steps the coarsest rung has, and at most how many, up to order 4 and
+/// What part of the scene's own steps the coarsest level has, and at most how many, up to order 4 and
 /// above: high orders reach the floor at steps that look coarse, so they start coarser.
 const GRIDS: [(u64, u64); 2] = [(64, 511), (1024, 127)];
 
-/// The steps to measure orders with, on one motion; any number of methods may use it, also at once.
+/// A convergence study on one motion: the refinement levels to measure orders with. Any number of methods
+/// may use it, also at once.
 ///
-/// Rungs take N = M m steps over the same time, for whole m: 1, 2, 4, ..., or steps a factor 1.3 apart
+/// Levels take N = M m steps over the same time, for whole m: 1, 2, 4, ..., or steps a factor 1.3 apart
 /// above order 4. The error of each is the largest distance of any particle from the truth over the
-/// same M instants, the steps of the coarsest rung, so that two errors differ by the step alone.
-pub struct Ladder<'a> {
-    course: Course<'a>,
+/// same M instants, the steps of the coarsest level, so that two errors differ by the step alone.
+pub struct Study<'a> {
+    problem: Problem<'a>,
     /// Steps at the scene's own timestep.
     own: u64,
     budget: u64,
@@ -47,19 +45,19 @@ pub struct Ladder<'a> {
     grids: [Grid; 2],
 }
 
-/// What a ladder found.
+/// What a study found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     pub observed: Observed,
-    /// The rungs that gave an error, coarse to fine; `observed.used` are indices into them.
+    /// The levels that gave an error, coarse to fine; `observed.used` are indices into them.
     pub points: Vec<Point>,
-    /// The rungs that gave none: their step, s, and why.
+    /// The levels that gave none: their step, s, and why.
     pub left_out: Vec<(f64, String)>,
     /// Time errors were taken over, s.
     pub until: f64,
 }
 
-impl<'a> Ladder<'a> {
+impl<'a> Study<'a> {
     /// For any system and the motion that is its truth from `start` up to `until` seconds (not beyond
     /// the truth's horizon). Steps are chosen around `timestep`, s.
     ///
@@ -75,7 +73,7 @@ impl<'a> Ladder<'a> {
         let own = (until / timestep).ceil();
         let own = if own >= 1.0 { own as u64 } else { 0 };
         let run = own.saturating_mul(system.dim() as u64);
-        let course = Course {
+        let problem = Problem {
             system,
             start,
             motion,
@@ -83,9 +81,9 @@ impl<'a> Ladder<'a> {
         };
         // At once, not when first asked for: asked for by several threads, one would wait for a truth
         // that is computed in parallel and could be handed the work of those who wait for it.
-        let grids = GRIDS.map(|(share, most)| Grid::new(&course, own / share, most));
+        let grids = GRIDS.map(|(share, most)| Grid::new(&problem, own / share, most));
         Self {
-            course,
+            problem,
             own,
             budget: BUDGET.max(RUNS.saturating_mul(run)),
             settings: Settings::default(),
@@ -100,19 +98,20 @@ impl<'a> Ladder<'a> {
         motion: &'a dyn Motion,
         until: f64,
     ) -> Self {
+        // Not `min`, which would take NaN for the whole duration.
         let until = if until >= scene.duration {
             scene.duration
         } else {
             until
         };
         let start = ParticleSystem::initial_state(scene);
-        let mut ladder = Self::new(system, start, motion, scene.solver.timestep, until);
-        ladder.settings = Settings::stated(scene.solver.tolerance);
-        ladder
+        let mut study = Self::new(system, start, motion, scene.solver.timestep, until);
+        study.settings = Settings::stated(scene.solver.tolerance);
+        study
     }
 
-    /// With another bound on its cost, in steps times coordinates over all rungs and the control. One
-    /// coarse rung is run twice, to see how much rounding grows; that comes on top.
+    /// With another bound on its cost, in steps times coordinates over all levels and the control. One
+    /// coarse level is run twice, to see how much rounding grows; that comes on top.
     pub fn budget(mut self, budget: u64) -> Self {
         self.budget = budget;
         self
@@ -120,7 +119,7 @@ impl<'a> Ladder<'a> {
 
     /// Measures a method of the registry against its row: `order_damped` where there is damping.
     pub fn method(&self, method: &Method) -> Measured {
-        let damped = self.course.system.is_damped();
+        let damped = self.problem.system.is_damped();
         let stated = if damped {
             method.order_damped
         } else {
@@ -146,11 +145,11 @@ impl<'a> Ladder<'a> {
     /// steps too coarse.
     pub fn measure(&self, stated: u32, build: Build) -> Measured {
         let grid = self.grid(stated);
-        let mut rungs = multiples(stated)
+        let mut levels = multiples(stated)
             .take_while(|_| grid.instants > 0)
             .peekable();
-        let mut climb = Climb {
-            course: &self.course,
+        let mut runs = Runs {
+            problem: &self.problem,
             grid,
             build,
             left: self.budget,
@@ -160,16 +159,16 @@ impl<'a> Ladder<'a> {
             controls: Vec::new(),
         };
         let mut first = Vec::new();
-        while let Some(m) = rungs
-            .next_if(|&m| (first.len() <= RATIOS || grid.steps(m) <= self.own) && climb.spend(m))
+        while let Some(m) = levels
+            .next_if(|&m| (first.len() <= RATIOS || grid.steps(m) <= self.own) && runs.spend(m))
         {
             first.push(m);
         }
-        climb.run(&first);
+        runs.run(&first);
         loop {
-            let seen = observed(&climb.points, stated);
+            let seen = observed(&runs.points, stated);
             let doubt = match seen.verdict {
-                Verdict::Misses => climb.doubt(&seen, &self.settings),
+                Verdict::Misses => runs.doubt(&seen, &self.settings),
                 _ => None,
             };
             let finer_may_tell = doubt.is_some()
@@ -177,14 +176,22 @@ impl<'a> Ladder<'a> {
                     seen.verdict,
                     Verdict::Inconclusive(Reason::TooFew | Reason::NotAsymptotic)
                 );
-            match rungs.next().filter(|_| finer_may_tell) {
-                Some(m) if climb.spend(m) => climb.run(&[m]),
+            match levels.next().filter(|_| finer_may_tell) {
+                Some(m) if runs.spend(m) => runs.run(&[m]),
                 _ => {
+                    let observed = match doubt {
+                        Some(reason) => Observed {
+                            order: None,
+                            verdict: Verdict::Inconclusive(reason),
+                            ..seen
+                        },
+                        None => seen,
+                    };
                     return Measured {
-                        observed: doubted(seen, doubt),
-                        points: climb.points,
-                        left_out: climb.left_out,
-                        until: self.course.until,
+                        observed,
+                        points: runs.points,
+                        left_out: runs.left_out,
+                        until: self.problem.until,
                     };
                 }
             }
@@ -197,44 +204,33 @@ impl<'a> Ladder<'a> {
 }
 
 /// Steps between two instants, coarse to fine: a factor 2 apart, or about 1.3 above order 4.
-fn multiples(stated: u32) -> Box<dyn Iterator<Item = u64>> {
-    if stated <= 4 {
-        Box::new((0..40).map(|j| 1 << j))
-    } else {
-        Box::new((0..100).map(|j| (4.0 * 1.3_f64.powi(j)).round() as u64))
-    }
+fn multiples(stated: u32) -> impl Iterator<Item = u64> {
+    let (first, ratio, many) = match stated {
+        ..=4 => (1.0, 2.0_f64, 40),
+        _ => (4.0, 1.3, 100),
+    };
+    (0..many).map(move |j| (first * ratio.powi(j)).round() as u64)
 }
 
-fn doubted(seen: Observed, doubt: Option<Reason>) -> Observed {
-    match doubt {
-        Some(reason) => Observed {
-            order: None,
-            verdict: Verdict::Inconclusive(reason),
-            ..seen
-        },
-        None => seen,
-    }
-}
-
-/// One method on its way.
-struct Climb<'a> {
-    course: &'a Course<'a>,
+/// The runs of one method.
+struct Runs<'a> {
+    problem: &'a Problem<'a>,
     grid: &'a Grid,
     build: Build<'a>,
     /// Of the budget.
     left: u64,
     points: Vec<Point>,
     left_out: Vec<(f64, String)>,
-    /// See [`Course::amplification`].
+    /// See [`Problem::amplification`].
     amplification: Option<f64>,
-    /// Rungs the control has run, and its errors; None where it gave none.
+    /// Levels the control has run, and its errors; None where it gave none.
     controls: Vec<(u64, Option<f64>)>,
 }
 
-impl Climb<'_> {
-    /// Whether the budget allows for this rung; takes it.
+impl Runs<'_> {
+    /// Whether the budget allows for this level; takes it.
     fn spend(&mut self, m: u64) -> bool {
-        let dim = self.course.system.dim() as u64;
+        let dim = self.problem.system.dim() as u64;
         let cost = self.grid.steps(m).saturating_mul(dim);
         let affordable = cost <= self.left;
         if affordable {
@@ -243,7 +239,7 @@ impl Climb<'_> {
         affordable
     }
 
-    /// Why an order that misses need not be the method's fault, if so; see [`Ladder::measure`]. As far
+    /// Why an order that misses need not be the method's fault, if so; see [`Study::measure`]. As far
     /// as the budget allows to see.
     fn doubt(&mut self, seen: &Observed, settings: &Settings) -> Option<Reason> {
         let reach = self.grid.reach;
@@ -276,31 +272,31 @@ impl Climb<'_> {
 
     /// The control's error at a step, where it gives one and the budget allows.
     fn control(&mut self, h: f64, settings: &Settings) -> Option<f64> {
-        let m = (self.course.until / h / self.grid.instants as f64).round() as u64;
+        let m = (self.problem.until / h / self.grid.instants as f64).round() as u64;
         if let Some((_, error)) = self.controls.iter().find(|(at, _)| *at == m) {
             return *error;
         }
         let control = integrators::find(CONTROL.0).filter(|_| self.spend(m))?;
         let build = || (control.build)(settings);
-        let run = self.course.run(self.grid, m, &build, None);
+        let run = self.problem.run(self.grid, m, &build, None);
         let error = run.ok().map(|run| run.error);
         self.controls.push((m, error));
         error
     }
 
-    fn run(&mut self, rungs: &[u64]) {
-        let runs: Vec<_> = rungs
+    fn run(&mut self, levels: &[u64]) {
+        let runs: Vec<_> = levels
             .par_iter()
-            .map(|&m| self.course.run(self.grid, m, self.build, None))
+            .map(|&m| self.problem.run(self.grid, m, self.build, None))
             .collect();
-        for (&m, run) in rungs.iter().zip(runs) {
+        for (&m, run) in levels.iter().zip(runs) {
             let h = self.grid.step(m);
             match run {
                 Ok(run) => {
                     // The coarsest that follows the motion is enough, and cheap.
                     if self.amplification.is_none() && run.error < FOLLOWS * self.grid.reach {
                         self.amplification =
-                            self.course.amplification(self.grid, m, self.build, &run);
+                            self.problem.amplification(self.grid, m, self.build, &run);
                     }
                     self.points.push(Point {
                         h,
@@ -311,10 +307,10 @@ impl Climb<'_> {
                 Err(why) => self.left_out.push((h, why)),
             }
         }
-        let bar = self.course.motion.error_bar(self.course.until);
+        let bar = self.problem.motion.error_bar(self.problem.until);
         let response = self.amplification.unwrap_or(0.0) + self.grid.size;
         for point in &mut self.points {
-            let steps = (self.course.until / point.h).round();
+            let steps = (self.problem.until / point.h).round();
             // Each step rounds: at worst the same way each time, and a few dozen times at once.
             point.floor = 10.0 * bar + f64::EPSILON * (steps + 100.0) * response;
         }
