@@ -75,7 +75,7 @@ fn facts(report: &Report) -> String {
 }
 
 pub(super) fn images(report: &Report) -> String {
-    let wanted = FIGURES.iter().filter(|figure| (figure.wanted)(report));
+    let wanted = FIGURES.iter().filter(|figure| figure.wanted(report));
     wanted
         .map(|figure| format!("![{}]({})\n\n", figure.description, figure.file))
         .collect()

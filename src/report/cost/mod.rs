@@ -128,7 +128,7 @@ fn slope(curve: &CostCurve) -> String {
 }
 
 /// Whether anything was timed.
-fn is_timed(cost: &Cost) -> bool {
+pub fn is_timed(cost: &Cost) -> bool {
     let mut points = cost.curves.iter().flat_map(|curve| &curve.points);
     points.any(|point| point.wall_s.is_some())
 }

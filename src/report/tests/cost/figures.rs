@@ -107,7 +107,7 @@ fn rapier_is_dashed_and_left_out_where_it_does_not_count() {
 fn wide_spreads_have_whiskers() {
     let mut report = priced();
     let whiskers = |report: &Report, file: &str| {
-        let look = r##"stroke="#cc79a7" stroke-width="1" fill="none""##;
+        let look = r##"fill="none" stroke="#cc79a7" stroke-width="1" "##;
         figure(report, file).matches(look).count()
     };
     assert_eq!(whiskers(&report, "cost_time.svg"), 0);

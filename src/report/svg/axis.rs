@@ -1,4 +1,4 @@
-//! From values to places on an axis, and the ticks along it.
+//! The range of values a figure shows, from values to places on an axis, and the ticks along it.
 
 /// How values are spread over an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +50,32 @@ impl Axis {
         (self.forward(value) - lo) / (hi - lo)
     }
 
+    /// The value at a part of the axis: the inverse of [`Axis::place`].
+    pub fn at(&self, part: f64) -> f64 {
+        let [lo, hi] = self.range.map(|end| self.forward(end));
+        let forward = lo + part * (hi - lo);
+        match self.scale {
+            Scale::Linear => forward,
+            Scale::Log => 10_f64.powf(forward),
+            Scale::SymLog { linear } if forward.abs() <= 1.0 => forward * linear,
+            Scale::SymLog { linear } => {
+                forward.signum() * linear * 10_f64.powf(forward.abs() - 1.0)
+            }
+        }
+    }
+
+    /// From the outer edge of the first of several cells of one size to that of the last, given their
+    /// middles in ascending order: logarithmic where all are positive.
+    pub fn of_cells(middles: &[f64]) -> Axis {
+        let [first, last] = [middles.first(), middles.last()].map(|v| v.copied().unwrap_or(1.0));
+        let axis = Axis::logarithmic([first, last]);
+        let half = 0.5 / (middles.len().max(2) - 1) as f64;
+        Axis {
+            range: [axis.at(-half), axis.at(1.0 + half)],
+            ..axis
+        }
+    }
+
     fn forward(&self, value: f64) -> f64 {
         let value = value.clamp(-HUGE, HUGE);
         match self.scale {
@@ -89,6 +115,37 @@ impl Axis {
         }
         ticks
     }
+}
+
+/// Smallest and largest of the values that are finite; `None` without any. Of ranges: their ends,
+/// flattened.
+pub fn range(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
+    let finite = values.into_iter().filter(|v| v.is_finite());
+    finite.fold(None, |range, v| {
+        let [lo, hi] = range.unwrap_or([v, v]);
+        Some([v.min(lo), v.max(hi)])
+    })
+}
+
+/// Room on both sides, as a part of the range.
+pub fn padded([lo, hi]: [f64; 2], part: f64) -> [f64; 2] {
+    let room = part * (hi / 2.0 - lo / 2.0) * 2.0;
+    [lo - room, hi + room]
+}
+
+/// What the calm lines span, and of the wild ones (growing, diverged) as much as does not push the
+/// calm into a corner: each side gives way by at most half the calm span.
+pub fn tamed(calm: Option<[f64; 2]>, wild: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let span = |r: &[f64; 2]| r[1] - r[0];
+    let smallest = wild.iter().min_by(|a, b| span(a).total_cmp(&span(b)));
+    let core = calm.or(smallest.copied())?;
+    let room = span(&core) / 2.0;
+    Some(wild.iter().fold(core, |window, w| {
+        [
+            window[0].min(w[0].max(core[0] - room)),
+            window[1].max(w[1].min(core[1] + room)),
+        ]
+    }))
 }
 
 /// Room around a constant, order between the ends, nothing beyond [`HUGE`].
