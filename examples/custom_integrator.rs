@@ -80,8 +80,8 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         "\n{:<17} {:>12} {:>15}",
         scene.name, "m from truth", "m from rapier"
     );
-    for outcome in plan.execute(&Quiet)?.outcomes {
-        let off = outcome.position_error_m.map(|error| error.max);
+    for outcome in plan.execute(&Quiet)?.outcomes() {
+        let off = outcome.position_error_m.as_ref().map(|e| e.max);
         let apart = outcome.deviation_m.get("rapier").map(|d| d.max);
         let shown = |metres: Option<f64>| metres.map_or("-".into(), |m| format!("{m:.1e}"));
         println!(

@@ -34,7 +34,7 @@
 //! let scene = scene::parse(yaml, "oscillator.yml", crosscheck::names())?;
 //! let plan = Plan::new(&scene, &Choice::default_for(&scene));
 //! let report = plan.execute(&Quiet)?;
-//! let energy = report.outcomes[0].energy.as_ref().expect("it ran");
+//! let energy = report.outcomes()[0].energy.as_ref().expect("it ran");
 //! assert_eq!(energy.class, Some(EnergyClass::Growing));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

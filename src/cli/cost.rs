@@ -100,17 +100,10 @@ pub fn cost(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let progress = Progress::new(plan.work(), expected, quiet);
     let report = plan.execute(&host(&progress, None, &Cache::new()));
     progress.finish();
-    if let Some(place) = &place {
-        place.create()?;
-        place.write(&report)?;
-    }
-    if args.format == HUMAN {
-        let next = next(args, &scene, &report);
-        let otherwise = "springcheck cost --help";
-        super::print(&shown::human(&report, place.as_ref(), next, otherwise))?;
-    } else {
-        shown::print(&args.format, std::slice::from_ref(&report))?;
-    }
+    let report = shown::written(report, place.as_ref())?;
+    let next = next(args, &scene, &report);
+    let otherwise = "springcheck cost --help";
+    shown::print_one(&args.format, &report, place.as_ref(), next, otherwise)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -182,7 +175,7 @@ fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
             "springcheck cost {path}{duration} --timestep {steps}"
         ));
     }
-    let targets = &report.cost.as_ref()?.targets;
+    let targets = &report.cost()?.targets;
     let cheapest = targets.iter().rev().find_map(|t| t.cheapest.as_ref())?;
     Some(format!(
         "springcheck run {path}{duration} --integrators {} --timestep {}",

@@ -91,18 +91,11 @@ pub fn stability(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let progress = Progress::new(plan.steps()?, expected, quiet);
     let report = plan.execute(&host(&progress, None, &Cache::new()))?;
     progress.finish();
-    if let Some(place) = &place {
-        place.create()?;
-        place.write(&report)?;
-    }
-    if args.format == HUMAN {
-        let next = next(args, &scene, &report);
-        let otherwise = "springcheck stability --help";
-        super::print(&shown::human(&report, place.as_ref(), next, otherwise))?;
-    } else {
-        shown::print(&args.format, std::slice::from_ref(&report))?;
-    }
-    let rows = report.stability.iter().flat_map(|s| &s.rows);
+    let report = shown::written(report, place.as_ref())?;
+    let next = next(args, &scene, &report);
+    let otherwise = "springcheck stability --help";
+    shown::print_one(&args.format, &report, place.as_ref(), next, otherwise)?;
+    let rows = report.stability().into_iter().flat_map(|s| &s.rows);
     let unanswered = rows.filter(|row| !answered(row)).count();
     Ok(ExitCode::from(if unanswered > 0 { UNANSWERED } else { 0 }))
 }
@@ -219,8 +212,8 @@ fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
             format!("springcheck stability {path} --vary particles.drag=0.01..100")
         });
     }
-    let own = report.stability.iter().flat_map(|s| &s.rows);
-    let own = own.filter(|row| row.engine == report.scene.own_method);
+    let own = report.stability().into_iter().flat_map(|s| &s.rows);
+    let own = own.filter(|row| row.engine == report.header.scene.own_integrator);
     let limit = own.filter_map(StabilityRow::limit).next()?;
     let h = if limit > 0.0 && limit.is_finite() {
         shown::rounded(0.9 * limit).min(scene.duration)

@@ -1,10 +1,10 @@
 //! One trajectory that somebody else computed, against the truth and the laws.
 
-use super::plan::{Choice, Orders, Plan};
-use super::{Host, identity};
+use super::plan::{Choice, Expectations, Orders, Plan};
+use super::{Host, Measured, identity};
 use crate::engines::Solver;
 use crate::engines::external::{Failure, Program, Recording, Task};
-use crate::outcome::Report;
+use crate::outcome::{Beside, Body, Outcome, Report, Series};
 use crate::scene::Scene;
 use crate::trajectory::{Rows, SaveError};
 use crate::truth::Demand;
@@ -50,14 +50,26 @@ impl Comparison<'_> {
             // Every step of the rows is replayed below, not some of those recorded.
             identify: false,
             prove: false,
+            expectations: Expectations::Ignored,
         };
         let plan = Plan::new(self.scene, &choice);
-        let mut report = plan.execute(host)?;
+        let Measured {
+            header,
+            outcomes,
+            figures,
+        } = plan.measured(host)?;
         let (identified, fault) = identity::of_rows(&plan, &self.rows);
-        for outcome in &mut report.outcomes {
-            outcome.identified.clone_from(&identified);
-        }
-        report.fault = Some(fault);
-        Ok(report)
+        let named = outcomes.into_iter().map(|outcome| Outcome {
+            identified: identified.clone(),
+            ..outcome
+        });
+        Ok(Report {
+            header,
+            body: Body::Compare {
+                outcomes: named.collect(),
+                fault,
+            },
+            beside: Beside::Here(Series::Curves(figures)),
+        })
     }
 }

@@ -31,10 +31,10 @@ pub(super) fn effects(
     let start = ParticleSystem::initial_state(scene);
     let rows = system.effects().iter();
     rows.map(|(row, effect)| EffectUse {
-        id: row.id,
+        id: row.id.to_owned(),
         members: effect.members(),
         evaluations: forces + if effect.is_damped() { damping } else { 0 },
-        nanoseconds: Some(cost(effect.as_ref(), &start.x, &start.v)),
+        wall_ns: Some(cost(effect.as_ref(), &start.x, &start.v)),
     })
     .collect()
 }
@@ -51,7 +51,7 @@ pub(super) fn facts(scene: &Scene, effects: Vec<EffectUse>, scale: Option<f64>) 
         duration: scene.duration,
         energy_scale_j: scale,
         description: scene.description.clone(),
-        own_method: scene.solver.method.clone(),
+        own_integrator: scene.solver.method.clone(),
     }
 }
 

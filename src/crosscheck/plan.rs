@@ -23,6 +23,20 @@ pub struct Choice {
     pub identify: bool,
     /// Whether the twin proof is made.
     pub prove: bool,
+    /// What becomes of the scene's `expect`.
+    pub expectations: Expectations,
+}
+
+/// What becomes of what a scene expects of its engines.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub enum Expectations {
+    /// Nobody asks.
+    #[default]
+    Ignored,
+    /// A check for each, as [`expect::check`](super::expect::check) makes them.
+    Judged,
+    /// One check that is skipped, and why: the caller changed what they are about.
+    Skipped(String),
 }
 
 /// When orders are measured, which costs about two more runs of each method.
@@ -64,6 +78,7 @@ impl Choice {
             order: Orders::WhereCheap,
             identify: true,
             prove: true,
+            expectations: Expectations::Ignored,
         }
     }
 
@@ -159,6 +174,8 @@ pub struct Plan<'a> {
     pub identify: bool,
     /// As [`Choice::prove`].
     pub prove: bool,
+    /// As [`Choice::expectations`].
+    pub expectations: Expectations,
 }
 
 impl<'a> Plan<'a> {
@@ -178,6 +195,7 @@ impl<'a> Plan<'a> {
             order: choice.order,
             identify: choice.identify,
             prove: choice.prove,
+            expectations: choice.expectations.clone(),
         }
     }
 

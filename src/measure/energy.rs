@@ -19,7 +19,7 @@ pub struct EnergySeries {
     initial: f64,
     last: f64,
     kinetic_last: f64,
-    potential_last: BTreeMap<&'static str, f64>,
+    potential_last: BTreeMap<String, f64>,
     work: Work,
     /// Steps taken up to the last instant, and the largest term ever summed: what rounding grows with.
     steps: u64,
@@ -58,7 +58,7 @@ impl EnergySeries {
             last,
             kinetic_last: system.kinetic(run.v(end)),
             potential_last: effects
-                .map(|(row, effect)| (row.id, potential(effect.as_ref())))
+                .map(|(row, effect)| (row.id.to_owned(), potential(effect.as_ref())))
                 .collect(),
             work: run.work(end),
             steps: run.step(end),

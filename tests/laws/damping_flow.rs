@@ -210,11 +210,11 @@ fn ledger_law(scene: &Scene) -> Result<(), String> {
     choice.solvers = vec![Solver::method(verlet)];
     let report = Plan::new(scene, &choice).execute(&Quiet).expect("no files");
     let of = |id: &str| {
-        let effect = report.scene.effects.iter().find(|e| e.id == id);
+        let effect = report.header.scene.effects.iter().find(|e| e.id == id);
         effect.expect("in the ledger").evaluations
     };
     // One force a step and the first; dampers are asked more often.
-    let forces = report.outcomes[0].work.steps + 1;
+    let forces = report.outcomes()[0].work.steps + 1;
     if of("gravity") == forces && of("springs") > forces {
         Ok(())
     } else {

@@ -35,7 +35,7 @@ fn report(scene: &Scene, methods: &[&str]) -> Report {
 }
 
 fn outcome(scene: &Scene, method: &str) -> Outcome {
-    report(scene, &[method]).outcomes.remove(0)
+    report(scene, &[method]).outcomes()[0].clone()
 }
 
 fn class(outcome: &Outcome) -> Option<EnergyClass> {
@@ -153,18 +153,19 @@ fn a_scene_without_a_scale_says_why() {
     };
     let check = |report: &Report| {
         let found = report
+            .header
             .checks
             .iter()
             .find(|check| check.id == "energy-scale");
         found.map(|check| check.message.clone())
     };
     let unknown = with(Demand::None);
-    assert_eq!(unknown.scene.energy_scale_j, None);
+    assert_eq!(unknown.header.scene.energy_scale_j, None);
     assert!(check(&unknown).is_some_and(|message| message.contains("at rest")));
     // Of the truth the fall is known: m (g t)² / 2, with t = 5 s.
     let known = with(Demand::Auto);
     let fall = 0.5 * 2.0 * (9.81 * 5.0_f64).powi(2);
-    let scale = known.scene.energy_scale_j.expect("a scale");
+    let scale = known.header.scene.energy_scale_j.expect("a scale");
     assert!((scale / fall - 1.0).abs() < 4.0 * f64::EPSILON, "{scale}");
     assert_eq!(check(&known), None);
 }
@@ -310,7 +311,7 @@ fn an_implicit_step_that_cannot_be_solved_is_a_typed_failure_with_its_step() {
     assert_eq!(found.stopped_at_s, Some(0.0));
     // The others went on.
     let all = report(&scene, &["linearized_implicit", "implicit_euler"]);
-    assert_eq!(all.outcomes[1].status, Status::Completed);
+    assert_eq!(all.outcomes()[1].status, Status::Completed);
 }
 
 #[test]

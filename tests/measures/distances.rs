@@ -18,7 +18,7 @@ fn report(scene: &Scene, timesteps: &[f64]) -> Report {
 }
 
 fn deviations(report: &Report) -> Vec<(f64, Vec<&Deviation>)> {
-    let ours = report.outcomes.iter().filter(|o| o.engine != "rapier");
+    let ours = report.outcomes().iter().filter(|o| o.engine != "rapier");
     ours.map(|o| (o.timestep, o.deviation_m.values().collect()))
         .collect()
 }

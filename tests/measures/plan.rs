@@ -23,7 +23,7 @@ fn with(scene: &Scene, id: &str) -> Report {
 /// What an outcome says but for its name, its times and what only a registry row lets it say.
 fn told(report: &Report, engine: &str) -> String {
     let mut outcome: Outcome = report
-        .outcomes
+        .outcomes()
         .iter()
         .find(|outcome| outcome.engine == engine)
         .expect(engine)
@@ -52,21 +52,21 @@ fn it_stands_after_the_integrators_and_its_evaluations_count() {
         .expect("nothing is saved");
     let report = with(&scene, "symplectic_euler");
     let at = report
-        .outcomes
+        .outcomes()
         .iter()
         .position(|o| o.engine == "mine")
         .expect("a row");
-    assert_eq!(report.outcomes.len(), without.outcomes.len() + 1);
+    assert_eq!(report.outcomes().len(), without.outcomes().len() + 1);
     assert!(
-        report.outcomes[..=at]
+        report.outcomes()[..=at]
             .iter()
             .all(|o| o.kind == Kind::Integrator)
     );
     assert!(
-        report.outcomes[at + 1..]
+        report.outcomes()[at + 1..]
             .iter()
             .all(|o| o.kind == Kind::Rapier)
     );
-    let evaluations = |report: &Report| report.scene.effects[0].evaluations;
+    let evaluations = |report: &Report| report.header.scene.effects[0].evaluations;
     assert_eq!(evaluations(&report), evaluations(&without) + 500);
 }

@@ -5,7 +5,7 @@ use super::errors::Errors;
 use super::sweep::{Sweep, Swept};
 use crate::measure::cost::{self, Judged};
 use crate::engines::Solver;
-use crate::outcome::{Cost, CostCurve, CostPanels, Kind, TruthKind};
+use crate::outcome::{Cost, CostCurve, Kind, TruthKind};
 use crate::scene::Scene;
 
 pub(super) fn answer(
@@ -14,7 +14,6 @@ pub(super) fn answer(
     choice: &CostChoice,
     sweeps: &[Sweep],
     swept: Vec<Swept>,
-    panels: Option<CostPanels>,
 ) -> Cost {
     let curves: Vec<CostCurve> = sweeps
         .iter()
@@ -27,8 +26,6 @@ pub(super) fn answer(
         horizon_s: errors.floor().map(|_| errors.truth.horizon),
         floor_m: errors.floor(),
         targets: choice.targets.iter().map(target).collect(),
-        panels,
-        remarks: Vec::new(),
         curves,
     }
 }

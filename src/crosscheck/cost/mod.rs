@@ -19,7 +19,7 @@ use crate::engines::rapier::Settings;
 use crate::engines::{self, Limits, Setting, Solver};
 use crate::integrators::adaptive;
 use crate::measure;
-use crate::outcome::{Figures, Report, SCHEMA_VERSION};
+use crate::outcome::{Beside, Body, Header, Report, Series};
 use crate::scene::Scene;
 use crate::system::ParticleSystem;
 use crate::truth::{self, Demand};
@@ -150,17 +150,17 @@ impl<'a> CostPlan<'a> {
         let counted = Swept::evaluations(&swept, &self.sweeps);
         let panels = named.then(|| panels::panels(scene, &errors, &self.sweeps, &swept));
         let facts = ledger::facts(scene, ledger::effects(scene, system, counted), scale);
-        let cost = answer::answer(scene, &errors, &self.choice, &self.sweeps, swept, panels);
+        let cost = answer::answer(scene, &errors, &self.choice, &self.sweeps, swept);
         Report {
-            schema_version: SCHEMA_VERSION,
-            scene: facts,
-            truth: truths::facts(&truth),
-            outcomes: Vec::new(),
-            checks: ledger::no_scale(scale).into_iter().collect(),
-            fault: None,
-            stability: None,
-            cost: Some(cost),
-            figures: Figures::default(),
+            header: Header {
+                scene: facts,
+                truth: truths::facts(&truth),
+                checks: ledger::no_scale(scale).into_iter().collect(),
+            },
+            body: Body::Cost { outcomes: [], cost },
+            beside: panels.map_or(Beside::Nothing, |panels| {
+                Beside::Here(Series::Panels(panels))
+            }),
         }
     }
 

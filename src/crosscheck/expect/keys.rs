@@ -20,7 +20,7 @@ use Row::{Number, Scheme, Text, Words};
 /// Dotted paths into an outcome; `*` stands for each reference engine.
 ///
 /// Left out is what the expectation states itself (`engine`, `kind`, `timestep`, `substep`), what
-/// varies from run to run (`work.wall_s`), and lists.
+/// varies from run to run (`work.wall_s`), lists, and what the energy at the end is made of.
 const ROWS: &[(&str, Row)] = &[
     (
         "status",

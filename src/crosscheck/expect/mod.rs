@@ -5,9 +5,9 @@ mod keys;
 
 pub use keys::names;
 
-use super::plan::{Choice, Orders};
+use super::plan::{Choice, Expectations, Orders};
 use crate::engines::{Solver, catalogue};
-use crate::outcome::{Check, CheckStatus, Kind, Outcome, Report};
+use crate::outcome::{Check, CheckStatus, Kind, Outcome, Report, SceneFacts, Truth};
 use crate::scene::{Expectation, Scene};
 use crate::truth::Demand;
 
@@ -26,51 +26,80 @@ const OF_THE_TRUTH: &[&str] = &[
 /// One check for each key expected of an engine, on its outcome at the scene's own timestep; one
 /// that is skipped for each engine that did not run there, or one in all where none did.
 ///
-/// `scene` is the scene as its file states it: a report of another duration is not judged. Where a
-/// key has no value, the expectation fails.
+/// `scene` is the scene as its file states it: runs of another duration are not judged. Where a key has
+/// no value, the expectation fails.
 pub fn check(scene: &Scene, report: &Report) -> Vec<Check> {
-    if scene.expect.is_empty() {
-        return Vec::new();
+    Found {
+        truth: &report.header.truth,
+        scene: &report.header.scene,
+        outcomes: report.outcomes(),
     }
-    if report.scene.duration != scene.duration {
-        return vec![not_judged(&format!(
-            "they are about {:?} s, and {:?} s ran",
-            scene.duration, report.scene.duration
-        ))];
-    }
-    let timestep = scene.solver.timestep;
-    let outcome = |id: &str| -> Option<&Outcome> {
-        let of = |o: &&Outcome| o.engine == id && o.timestep == timestep;
-        report.outcomes.iter().find(of)
-    };
-    let subjects: Vec<Solver> = subjects(scene).collect();
-    if subjects.iter().all(|subject| outcome(&subject.id).is_none()) {
-        return vec![not_judged(&format!(
-            "none of the engines they are about ran at the scene's own timestep, {timestep:?} s; \
-             --integrators all runs every integrator"
-        ))];
-    }
-    let mut checks = Vec::new();
-    for subject in subjects {
-        let Some(outcome) = outcome(&subject.id) else {
-            let why = "did not run at the scene's own timestep";
-            checks.push(skipped(&subject.id, why.to_owned()));
-            continue;
+    .check(scene)
+}
+
+/// What a scene's runs left, as far as expectations are about it.
+pub(super) struct Found<'a> {
+    pub truth: &'a Truth,
+    pub scene: &'a SceneFacts,
+    pub outcomes: &'a [Outcome],
+}
+
+impl Found<'_> {
+    /// As [`check`].
+    fn check(&self, scene: &Scene) -> Vec<Check> {
+        if scene.expect.is_empty() {
+            return Vec::new();
+        }
+        if self.scene.duration != scene.duration {
+            return vec![not_judged(&format!(
+                "they are about {:?} s, and {:?} s ran",
+                scene.duration, self.scene.duration
+            ))];
+        }
+        let timestep = scene.solver.timestep;
+        let outcome = |id: &str| -> Option<&Outcome> {
+            let of = |o: &&Outcome| o.engine == id && o.timestep == timestep;
+            self.outcomes.iter().find(of)
         };
-        // Whatever an outcome holds has a JSON form.
-        let value = serde_json::to_value(outcome).unwrap_or_default();
-        let expected = expected_of(scene, &subject);
-        checks.extend(
-            expected
+        let subjects: Vec<Solver> = subjects(scene).collect();
+        if subjects.iter().all(|subject| outcome(&subject.id).is_none()) {
+            return vec![not_judged(&format!(
+                "none of the engines they are about ran at the scene's own timestep, {timestep:?} s; \
+             --integrators all runs every integrator"
+            ))];
+        }
+        let mut checks = Vec::new();
+        for subject in subjects {
+            let Some(outcome) = outcome(&subject.id) else {
+                let why = "did not run at the scene's own timestep";
+                checks.push(skipped(&subject.id, why.to_owned()));
+                continue;
+            };
+            // Whatever an outcome holds has a JSON form.
+            let value = serde_json::to_value(outcome).unwrap_or_default();
+            let expected = expected_of(scene, &subject);
+            let judged = expected
                 .into_iter()
-                .map(|expectation| judge::judge(expectation, outcome, &value, report)),
-        );
+                .map(|expectation| judge::judge(expectation, outcome, &value, self));
+            checks.extend(judged);
+        }
+        checks
     }
-    checks
+}
+
+impl Expectations {
+    /// The checks that say what came of them.
+    pub(super) fn checks(&self, scene: &Scene, found: &Found) -> Vec<Check> {
+        match self {
+            Self::Judged => found.check(scene),
+            Self::Skipped(why) if !scene.expect.is_empty() => vec![not_judged(why)],
+            Self::Ignored | Self::Skipped(_) => Vec::new(),
+        }
+    }
 }
 
 /// The one check that says why nothing was judged.
-pub fn not_judged(why: &str) -> Check {
+fn not_judged(why: &str) -> Check {
     skipped("scene", format!("expectations are not judged: {why}"))
 }
 
@@ -124,6 +153,7 @@ impl Choice {
             order: Orders::Never,
             identify: mentions(&["identified."]),
             prove: false,
+            expectations: Expectations::Judged,
         }
     }
 }

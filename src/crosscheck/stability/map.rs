@@ -147,7 +147,7 @@ impl Cells<'_> {
             .collect();
         StabilityMap {
             vary: self.plan.vary.id(),
-            unit: self.plan.vary.unit(),
+            unit: self.plan.vary.unit().to_owned(),
             values: self.plan.vary.values.clone(),
             timesteps_s: timesteps,
             steps_per_cell: self.steps,

@@ -16,7 +16,7 @@ use super::{Host, ledger};
 use crate::engines::{Solver, Tally};
 use crate::measure;
 use crate::measure::stability::{Linearised, is_linear};
-use crate::outcome::{Figures, Report, SCHEMA_VERSION, Stability, Truth, TruthKind};
+use crate::outcome::{Beside, Body, Header, Report, Stability, Truth, TruthKind};
 use crate::scene::Scene;
 use crate::system::ParticleSystem;
 use rayon::prelude::*;
@@ -90,21 +90,22 @@ impl StabilityPlan<'_> {
         };
         let scale = measure::energy_scale(scene, &system, None);
         Ok(Report {
-            schema_version: SCHEMA_VERSION,
-            scene: ledger::facts(scene, ledger::effects(scene, &system, tally.evaluations()), scale),
-            truth: Truth {
-                kind: TruthKind::None,
-                method: None,
-                error_bound_m: None,
-                horizon_s: None,
-                reason: Some("stability compares nothing with a truth".to_owned()),
+            header: Header {
+                scene: ledger::facts(scene, ledger::effects(scene, &system, tally.evaluations()), scale),
+                truth: Truth {
+                    kind: TruthKind::None,
+                    method: None,
+                    error_bound_m: None,
+                    horizon_s: None,
+                    reason: Some("stability compares nothing with a truth".to_owned()),
+                },
+                checks: Vec::new(),
             },
-            outcomes: Vec::new(),
-            checks: Vec::new(),
-            fault: None,
-            stability: Some(stability),
-            cost: None,
-            figures: Figures::default(),
+            body: Body::Stability {
+                outcomes: [],
+                stability,
+            },
+            beside: Beside::Nothing,
         })
     }
 

@@ -140,7 +140,8 @@ fn engines(
     cost: &Cost,
     place: impl Fn(&CostPoint) -> Option<[f64; 2]>,
 ) -> Vec<Engine> {
-    let own = |curve: &&crate::outcome::CostCurve| curve.engine == report.scene.own_method;
+    let own =
+        |curve: &&crate::outcome::CostCurve| curve.engine == report.header.scene.own_integrator;
     let first = cost.curves.iter().filter(own);
     let rest = cost.curves.iter().filter(|curve| !own(curve));
     let mut letters = [('a'..='z'), ('A'..='Z')];
@@ -160,7 +161,7 @@ fn engines(
             // More than 26 of a kind share the last.
             letter: letter.unwrap_or('0'),
             name: words::one_line(&curve.engine),
-            tone: if curve.engine == report.scene.own_method {
+            tone: if curve.engine == report.header.scene.own_integrator {
                 Some(Tone::Strong)
             } else if curve.is_ranked() {
                 None

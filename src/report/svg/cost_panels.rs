@@ -14,7 +14,7 @@ const CURVES: f64 = 110.0;
 const DIFFERENCES: f64 = 70.0;
 
 pub fn chart(report: &Report) -> Option<Chart> {
-    let shown = report.cost.as_ref()?.panels.as_ref()?;
+    let shown = report.panels()?;
     if lines(shown).all(|line| line.curve.is_empty()) {
         return None;
     }

@@ -10,7 +10,7 @@ mod precision;
 mod runs;
 mod stability;
 
-use super::words;
+use super::{view, words};
 use crate::outcome::{Outcome, Report};
 use chart::Chart;
 
@@ -37,8 +37,8 @@ impl Figure {
     }
 }
 
-/// Every figure there is, in the order reports show them.
-pub const FIGURES: &[Figure] = &[
+/// Of `run` and `compare`.
+pub(super) static OF_RUNS: &[Figure] = &[
     Figure {
         file: "plot.svg",
         description: "the curve the scene asks for",
@@ -54,6 +54,10 @@ pub const FIGURES: &[Figure] = &[
         description: "trajectories",
         chart: runs::trajectories,
     },
+];
+
+/// Of `stability`.
+pub(super) static OF_STABILITY: &[Figure] = &[
     Figure {
         file: "stability_map.svg",
         description: "what becomes of a run at each timestep, engine by engine",
@@ -64,6 +68,10 @@ pub const FIGURES: &[Figure] = &[
         description: "from where a step does not enlarge the spring's force",
         chart: stability::admissible,
     },
+];
+
+/// Of `cost`.
+pub(super) static OF_COST: &[Figure] = &[
     Figure {
         file: "cost_time.svg",
         description: "work-precision diagram: error over wall time",
@@ -86,15 +94,21 @@ pub const FIGURES: &[Figure] = &[
     },
 ];
 
-/// The figures this report has data for: file name and SVG.
+/// The figures this report has data for.
+pub(super) fn wanted(report: &Report) -> impl Iterator<Item = &'static Figure> {
+    let figures = view(report).figures().iter();
+    figures.filter(|figure| figure.wanted(report))
+}
+
+/// Those figures: file name and SVG.
 pub fn figures(report: &Report) -> Vec<(&'static str, String)> {
     let drawn = |figure: &Figure| Some((figure.file, (figure.chart)(report)?.draw()));
-    FIGURES.iter().filter_map(drawn).collect()
+    view(report).figures().iter().filter_map(drawn).collect()
 }
 
 /// A figure's title: the scene, then what is shown.
 fn heading(report: &Report, shown: &str) -> String {
-    let scene = shortened(&words::one_line(&report.scene.name), 45);
+    let scene = shortened(&words::one_line(&report.header.scene.name), 45);
     format!("{scene}: {}", shortened(&words::one_line(shown), 50))
 }
 
@@ -110,7 +124,7 @@ fn name(outcome: &Outcome) -> String {
 /// A panel's title where each engine has one; the scene's own integrator is pointed at.
 fn panel_title(report: &Report, engine: &str) -> String {
     let name = shortened(&words::one_line(engine), NAME);
-    if engine == report.scene.own_method {
+    if engine == report.header.scene.own_integrator {
         return format!("▸ {name}");
     }
     name

@@ -37,10 +37,10 @@ pub const BOUNDARY: [Stroke; 2] = [Stroke::new("#ffffff", "", 3.6), Stroke::new(
 
 /// The look of the outcome's engine.
 pub fn stroke(report: &Report, outcome: &Outcome) -> Stroke {
-    let alike = report.outcomes.iter().filter(|o| o.kind == outcome.kind);
+    let alike = report.outcomes().iter().filter(|o| o.kind == outcome.kind);
     let engines = alike.map(|o| &o.engine);
     let before: BTreeSet<&String> = engines.take_while(|e| **e != outcome.engine).collect();
-    let own = outcome.engine == report.scene.own_method;
+    let own = outcome.engine == report.header.scene.own_integrator;
     look(outcome.kind, before.len(), own)
 }
 
@@ -67,7 +67,7 @@ pub fn marked(report: &Report, curves: &[CostCurve]) -> Vec<(Stroke, Shape)> {
     let look = |(at, curve): (usize, &CostCurve)| {
         let before = curves.iter().take(at);
         let place = before.filter(|other| other.kind == curve.kind).count();
-        let own = curve.engine == report.scene.own_method;
+        let own = curve.engine == report.header.scene.own_integrator;
         let mut stroke = look(curve.kind, place, own);
         if curve.kind == Kind::Integrator {
             stroke.dash = "";
@@ -104,7 +104,7 @@ pub fn layer(report: &Report, outcome: &Outcome) -> u8 {
     match outcome.kind {
         Kind::Rapier => 3,
         _ if is_wild(outcome) => 0,
-        _ if outcome.engine == report.scene.own_method => 2,
+        _ if outcome.engine == report.header.scene.own_integrator => 2,
         _ => 1,
     }
 }

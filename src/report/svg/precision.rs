@@ -55,7 +55,7 @@ impl Diagram {
 
 /// Energy error over time, or over evaluations where nothing was timed.
 pub fn energy(report: &Report) -> Option<Chart> {
-    let timed = report.cost.as_ref().is_some_and(is_timed);
+    let timed = report.cost().is_some_and(is_timed);
     let judged = false;
     chart(report, Diagram { judged, timed })
 }
@@ -72,7 +72,7 @@ struct Line<'a> {
 
 /// The diagram, where some setting has both an error and a cost.
 pub fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
-    let cost = report.cost.as_ref()?;
+    let cost = report.cost()?;
     let looks = palette::marked(report, &cost.curves);
     let lines = cost.curves.iter().zip(looks).map(|(curve, look)| Line {
         curve,
@@ -97,7 +97,7 @@ pub fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
 
     let mut marks = levels(cost, &targets, axes, diagram);
     // The scene's own last: its line lies over the others.
-    lines.sort_by_key(|line| line.curve.engine == report.scene.own_method);
+    lines.sort_by_key(|line| line.curve.engine == report.header.scene.own_integrator);
     marks.extend(lines.iter().flat_map(|line| line.marks(axes, diagram)));
     let silent: Vec<String> = silent.iter().map(Line::name).collect();
     let note = format!("without numbers for this: {}", silent.join(", "));

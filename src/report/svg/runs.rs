@@ -8,7 +8,7 @@ use super::marks::{Line, Mark};
 use super::palette::{self, is_wild};
 use super::{TRUTH_NAME, heading, name, shortened};
 use crate::outcome::{Curves, Kind, Outcome, Report, Status, TruthCurves};
-use crate::report::notes::several_timesteps;
+use crate::report::run::several_timesteps;
 use crate::report::words;
 
 /// More panels than this are not drawn; the table has them all.
@@ -34,9 +34,9 @@ fn by_timestep(
     truth: impl Fn(&TruthCurves) -> Paths,
     paths: impl Fn(&Curves) -> Paths,
 ) -> Option<Vec<Runs<'_>>> {
-    let figures = &report.figures;
+    let figures = report.figures();
     let runs = figures.curves.iter();
-    let runs = runs.filter_map(|c| Some((report.outcomes.get(c.outcome)?, paths(c))));
+    let runs = runs.filter_map(|c| Some((report.outcomes().get(c.outcome)?, paths(c))));
     let runs: Vec<(&Outcome, Paths)> = runs.collect();
     let mut drawn = runs.iter().flat_map(|(_, paths)| paths);
     drawn.find(|path| !path.is_empty())?;
@@ -139,7 +139,7 @@ fn curves(
 
 /// The curve the scene asks for, over the range the scene states, else what the calm runs span.
 pub fn plot(report: &Report) -> Option<Chart> {
-    let asked = report.figures.plot.as_ref()?;
+    let asked = report.figures().plot.as_ref()?;
     let truth = |truth: &TruthCurves| over_time(&truth.t, &truth.plot);
     let panels = by_timestep(report, truth, |run| over_time(&run.t, &run.plot))?;
     let label = shortened(&words::one_line(&asked.label), 40);
@@ -157,7 +157,7 @@ pub fn energy(report: &Report) -> Option<Chart> {
         |_| Paths::new(),
         |run| over_time(&run.t, &run.energy),
     )?;
-    let y_title = match report.scene.energy_scale_j {
+    let y_title = match report.header.scene.energy_scale_j {
         Some(scale) => format!("(B − B(0)) / S,  S = {} J", words::short(scale)),
         None => "B − B(0)  (J)".into(),
     };
@@ -212,7 +212,7 @@ fn linear_part(sizes: &[f64]) -> Option<f64> {
 /// and the particles that never move.
 pub fn trajectories(report: &Report) -> Option<Chart> {
     let panels = by_timestep(report, |truth| truth.paths.clone(), |run| run.paths.clone())?;
-    let figures = &report.figures;
+    let figures = report.figures();
     let height = if panels.len() > 1 { 320.0 } else { 460.0 };
     let titles = figures
         .plane

@@ -23,7 +23,7 @@ const REST: Stroke = Stroke::new("#d55e00", "5 3", 1.4);
 /// The stability map: one panel an engine, timestep against the quantity varied, the predicted limit
 /// over it.
 pub fn map(report: &Report) -> Option<Chart> {
-    let map = report.stability.as_ref()?.map.as_ref()?;
+    let map = report.stability()?.map.as_ref()?;
     if map.engines.is_empty() || map.values.is_empty() || map.timesteps_s.is_empty() {
         return None;
     }
@@ -89,7 +89,7 @@ fn map_marks(map: &StabilityMap, engine: &MapPanel, axes: [Axis; 2]) -> Vec<Mark
 /// The classic picture of a stiff spring: from where a step from rest does not enlarge its force, one
 /// panel a stiffness.
 pub fn admissible(report: &Report) -> Option<Chart> {
-    let admissible = report.stability.as_ref()?.admissible.as_ref()?;
+    let admissible = report.stability()?.admissible.as_ref()?;
     if admissible.panels.is_empty() {
         return None;
     }

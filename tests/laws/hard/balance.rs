@@ -17,7 +17,7 @@ fn run(name: &str) -> Report {
     };
     let report = Plan::new(&scene, &choice).execute(remembering());
     let report = report.expect("no files");
-    let energy = report.outcomes[0].energy.as_ref().expect("an energy");
+    let energy = report.outcomes()[0].energy.as_ref().expect("an energy");
     assert_eq!(energy.class, Some(EnergyClass::Growing));
     report
 }
@@ -26,7 +26,7 @@ fn run(name: &str) -> Report {
 #[test]
 fn a_growing_balance_is_not_called_a_gain() {
     let report = run("test_equation");
-    let remarks = report.outcomes[0].remarks.join(" ");
+    let remarks = report.outcomes()[0].remarks.join(" ");
     assert!(
         remarks.contains("grows, though E itself falls"),
         "{remarks}"
@@ -42,7 +42,7 @@ fn a_growing_balance_is_not_called_a_gain() {
 #[test]
 fn a_gain_is() {
     let report = run("spin_axial");
-    let remarks = report.outcomes[0].remarks.join(" ");
+    let remarks = report.outcomes()[0].remarks.join(" ");
     assert!(
         remarks.contains("energy grows as its law says"),
         "{remarks}"

@@ -13,6 +13,7 @@ mod truths;
 use rayon::prelude::*;
 use springcheck::crosscheck::{Choice, Plan, expect, names};
 use springcheck::outcome::{CheckStatus, Outcome, Report, Status};
+use springcheck::report::json::Tool;
 use springcheck::scene::{self, Scene};
 use springcheck::engines::rapier;
 use springcheck::{integrators, report};
@@ -61,6 +62,7 @@ fn every_engine_does_what_is_expected() {
         let report = plan.execute(remembering()).expect("no files");
         let checks = expect::check(scene, &report);
         let mut wrong: Vec<String> = report
+            .header
             .checks
             .iter()
             .filter(|check| check.status == CheckStatus::Fail)
@@ -71,7 +73,7 @@ fn every_engine_does_what_is_expected() {
             )
             .map(|check| check.message.clone())
             .collect();
-        wrong.extend(report.outcomes.iter().filter_map(unclear));
+        wrong.extend(report.outcomes().iter().filter_map(unclear));
         wrong.extend(not_finite(&report));
         wrong
     });
@@ -98,15 +100,15 @@ fn unclear(outcome: &Outcome) -> Option<String> {
 /// Words for NaN and infinity, which the JSON would turn into null without a reason.
 fn not_finite(report: &Report) -> Vec<String> {
     let data = (
-        &report.scene,
-        &report.truth,
-        &report.outcomes,
-        &report.checks,
+        &report.header.scene,
+        &report.header.truth,
+        report.outcomes(),
+        &report.header.checks,
     );
     let shown = format!("{data:?}");
     let words = shown.split(|c: char| !c.is_alphanumeric() && c != '_');
     let bad = words.filter(|word| ["NaN", "inf"].contains(word));
-    let text = report::json::render(report);
+    let text = report::json::render(&Tool::this(), std::slice::from_ref(report));
     let read: Result<serde_json::Value, _> = serde_json::from_str(&text);
     let unread = read.err().map(|error| format!("its JSON: {error}"));
     bad.map(|word| format!("its report holds {word}"))

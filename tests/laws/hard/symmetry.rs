@@ -22,7 +22,7 @@ fn errors(scene: &Scene) -> (Vec<f64>, f64) {
         let error = o.position_error_m.as_ref().expect("a truth");
         error.max
     };
-    let mut errors: Vec<f64> = report.outcomes.iter().map(error).collect();
+    let mut errors: Vec<f64> = report.outcomes().iter().map(error).collect();
     let mutant = errors.pop().expect("the last row");
     (errors, mutant)
 }
@@ -165,7 +165,7 @@ fn rapier_as_shipped_slows_fast_scenes_down() {
         .execute(&Quiet)
         .expect("nothing is saved");
     let off = report
-        .outcomes
+        .outcomes()
         .iter()
         .map(|o| o.position_error_m.as_ref().expect("a truth").last);
     let [free, held]: [f64; 2] = off.collect::<Vec<_>>().try_into().expect("two rows");

@@ -40,8 +40,9 @@ fn all() -> Vec<&'static Method> {
 fn cost(scene: &Scene, choice: &CostChoice) -> Cost {
     CostPlan::new(scene, choice)
         .execute(&Quiet)
-        .cost
+        .cost()
         .expect("the cost of a sweep")
+        .clone()
 }
 
 fn of<'a>(cost: &'a Cost, engine: &str) -> &'a CostCurve {

@@ -5,14 +5,19 @@ use springcheck::crosscheck::cost::{CostChoice, CostPlan};
 use springcheck::crosscheck::Quiet;
 use springcheck::engines;
 use springcheck::integrators;
-use springcheck::outcome::{Cost, Kind, Report, Status};
+use springcheck::outcome::{Body, Cost, Kind, Report, Status};
 use springcheck::scene::Scene;
 use springcheck::truth::Demand;
 
 /// Everything but the clock's: points, slopes, fronts, who reaches what and why not.
 fn counted(report: &Report) -> String {
     let mut report = report.clone();
-    let cost = report.cost.as_mut().expect("a cost");
+    let Body::Cost { cost, .. } = &mut report.body else {
+        panic!("no cost");
+    };
+    for effect in &mut report.header.scene.effects {
+        effect.wall_ns = None;
+    }
     for curve in &mut cost.curves {
         for point in &mut curve.points {
             point.wall_s = None;

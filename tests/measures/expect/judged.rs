@@ -2,7 +2,7 @@
 
 use super::{oscillator, run};
 use springcheck::crosscheck::{Choice, expect, names};
-use springcheck::outcome::{Check, CheckStatus, Report};
+use springcheck::outcome::{Body, Check, CheckStatus, Outcome, Report};
 use springcheck::scene::{self, Expectation, Scene, Wanted, Whom};
 use springcheck::truth::Demand;
 use springcheck::engines::rapier;
@@ -109,12 +109,20 @@ fn bounds() {
     );
 }
 
+/// Its first outcome, to be changed.
+fn first(report: &mut Report) -> &mut Outcome {
+    match &mut report.body {
+        Body::Run { outcomes } => &mut outcomes[0],
+        _ => panic!("no run"),
+    }
+}
+
 #[test]
 fn text_and_nulls() {
     // Nobody fails here, so the reason is put in; whoever completes gives none.
     let (scene, mut report, _) = judged("  rk4: {reason: {contains: particle 1}}");
     let mut status = |reason: Option<&str>| {
-        report.outcomes[0].reason = reason.map(str::to_owned);
+        first(&mut report).reason = reason.map(str::to_owned);
         expect::check(&scene, &report)[0].clone()
     };
     let right = status(Some("in step 3: particle 1 is no longer finite"));
@@ -163,7 +171,7 @@ fn text_and_nulls() {
 fn a_status_says_what_led_to_it() {
     let scene = oscillator("  rk4: {status: completed}");
     let mut report = run(&scene, &Choice::expected(&scene));
-    let outcome = &mut report.outcomes[0];
+    let outcome = first(&mut report);
     outcome.status = springcheck::outcome::Status::Diverged;
     outcome.reason = Some("in step 7: particle 1 is no longer finite".into());
     let message = &expect::check(&scene, &report)[0].message;
@@ -183,7 +191,7 @@ fn all_rest_and_own_lines() {
     );
     // Two keys of every integrator, nothing of engines, and nothing else runs.
     assert_eq!(checks.len(), 2 * integrators::REGISTRY.len());
-    assert_eq!(report.outcomes.len(), integrators::REGISTRY.len());
+    assert_eq!(report.outcomes().len(), integrators::REGISTRY.len());
     assert!(checks.iter().all(|c| c.status == CheckStatus::Pass));
     let from = |subject: &str| {
         let check = checks.iter().find(|c| c.subject == subject);
@@ -209,10 +217,14 @@ fn only_what_is_expected_runs() {
         "  rapier-forces: {status: completed}\n  heun: {deviation_m.rapier.max: {above: 0}}",
     );
     let report = run(&scene, &Choice::expected(&scene));
-    let ran: Vec<&str> = report.outcomes.iter().map(|o| o.engine.as_str()).collect();
+    let ran: Vec<&str> = report
+        .outcomes()
+        .iter()
+        .map(|o| o.engine.as_str())
+        .collect();
     // rapier because the deviation is from it.
     assert_eq!(ran, ["heun", "rapier", "rapier-forces"]);
-    assert!(report.checks.iter().all(|check| check.id != "order"));
+    assert!(report.header.checks.iter().all(|check| check.id != "order"));
     let checks = expect::check(&scene, &report);
     assert!(
         checks.iter().all(|c| c.status == CheckStatus::Pass),
@@ -228,7 +240,7 @@ fn what_is_left_out_changes_no_key() {
     let mut scene = scene::read(path.as_ref(), names()).expect("a shipped scene");
     scene.duration = 0.1;
     let value = |report: &Report, key: &str| {
-        let outcome = serde_json::to_value(&report.outcomes[0]).expect("JSON");
+        let outcome = serde_json::to_value(&report.outcomes()[0]).expect("JSON");
         let found = key
             .split('.')
             .try_fold(&outcome, |value, key| value.get(key));

@@ -19,7 +19,12 @@ const LEFT_OUT: &[&str] = &[
     "work.wall_s.median",
     "work.wall_s.mad",
     "energy.drift_per_s_ci",
+    "energy.kinetic_final_j",
+    "energy.potential_final_j.springs",
+    "energy.dissipated_j",
+    "energy.injected_j",
     "identified.equivalent",
+    "remarks",
 ];
 
 /// Every path to a value that is no mapping; a null only where nothing else was seen there.
@@ -47,7 +52,7 @@ fn everything() -> BTreeMap<String, Value> {
     let mut choice = Choice::default_for(&scene);
     choice.solvers.extend(engines::find("rapier-converged"));
     let mut found = BTreeMap::new();
-    for outcome in run(&scene, &choice).outcomes {
+    for outcome in run(&scene, &choice).outcomes() {
         let value = serde_json::to_value(outcome).expect("JSON");
         leaves("", &value, &mut found);
     }

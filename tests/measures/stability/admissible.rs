@@ -22,9 +22,8 @@ fn picture(scene: &Scene, stiffnesses: &[f64]) -> Admissible {
     };
     let report = plan.execute(&Quiet).expect("two free particles");
     report
-        .stability
-        .expect("limits")
-        .admissible
+        .stability()
+        .and_then(|limits| limits.admissible.clone())
         .expect("a picture")
 }
 

@@ -14,15 +14,10 @@ const REACHED: [&str; 6] = [
 /// Exactly the contract's keys, and null only where it allows it.
 pub fn keep_the_contract(report: &Value) {
     let top = [
-        "schema_version",
-        "scene",
-        "truth",
-        "outcomes",
-        "checks",
-        "cost",
+        "verb", "series", "scene", "truth", "outcomes", "checks", "cost",
     ];
     assert_eq!(keys(report), set(&top));
-    assert_eq!(report["schema_version"], 1);
+    assert_eq!(report["verb"], "cost");
     assert_eq!(report["outcomes"], Value::Array(Vec::new()));
     let cost = &report["cost"];
     let wanted = ["duration_s", "horizon_s", "floor_m", "targets", "curves"];

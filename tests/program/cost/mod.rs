@@ -41,7 +41,13 @@ fn json(args: &[&str]) -> Value {
     let (code, out, err) = output(&args);
     assert_eq!((code, err.as_str()), (0, ""), "{args:?}");
     assert!(!out.contains("NaN") && !out.contains("inf,"), "{args:?}");
-    serde_json::from_str(&out).expect("JSON on stdout")
+    report(&out)
+}
+
+/// The one report of a JSON text.
+fn report(text: &str) -> Value {
+    let mut document: Value = serde_json::from_str(text).expect("JSON");
+    document["reports"][0].take()
 }
 
 /// With the small sweep's flags.

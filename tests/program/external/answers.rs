@@ -28,8 +28,7 @@ fn outcome(scene: &Scene, solver: impl Fn(&Task) -> Rows + Send + Sync + 'static
     let program = Arc::new(Computed(solver));
     choice.solvers.push(Solver::program("mine", program));
     let report = Plan::new(scene, &choice).execute(&Quiet).expect("no files");
-    let mut outcomes = report.outcomes;
-    let mine = outcomes.pop().expect("an outcome");
+    let mine = report.outcomes().last().expect("an outcome").clone();
     assert_eq!((mine.engine.as_str(), mine.kind), ("mine", Kind::External));
     mine
 }

@@ -42,7 +42,8 @@ fn run(scene: &str, external: &str, more: &[&str]) -> (Value, String) {
     .concat();
     let (code, out, err) = output(&args);
     assert_eq!(code, 0, "{external}: {err}");
-    (serde_json::from_str(&out).expect("JSON on stdout"), err)
+    let mut document: Value = serde_json::from_str(&out).expect("JSON on stdout");
+    (document["reports"][0].take(), err)
 }
 
 fn outcomes(report: &Value) -> &Vec<Value> {

@@ -86,12 +86,7 @@ fn comparisons_have_the_contracts_keys() {
     assert_eq!(
         keys(&clean),
         set(&[
-            "schema_version",
-            "scene",
-            "truth",
-            "outcomes",
-            "checks",
-            "fault"
+            "verb", "series", "scene", "truth", "outcomes", "checks", "fault"
         ])
     );
     assert_eq!(

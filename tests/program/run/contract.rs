@@ -7,9 +7,10 @@ fn the_json_has_exactly_the_contracts_keys() {
     let report = json(&["run", SCENE, "--format", "json"]);
     assert_eq!(
         keys(&report),
-        set(&["schema_version", "scene", "truth", "outcomes", "checks"])
+        set(&["verb", "scene", "truth", "outcomes", "checks", "series"])
     );
-    assert_eq!(report["schema_version"], 1);
+    assert_eq!(report["verb"], "run");
+    assert_eq!(report["series"], false);
     assert_eq!(
         keys(&report["scene"]),
         set(&[
@@ -20,12 +21,14 @@ fn the_json_has_exactly_the_contracts_keys() {
             "effects",
             "timestep",
             "duration",
-            "energy_scale_j"
+            "energy_scale_j",
+            "description",
+            "own_integrator"
         ])
     );
     assert_eq!(
         keys(&report["scene"]["effects"][0]),
-        set(&["id", "members", "evaluations"])
+        set(&["id", "members", "evaluations", "wall_ns"])
     );
     assert_eq!(
         keys(&report["truth"]),
@@ -50,6 +53,7 @@ fn the_json_has_exactly_the_contracts_keys() {
                 "momentum",
                 "work",
                 "identified",
+                "remarks",
             ])
         );
         assert_eq!(
@@ -62,6 +66,10 @@ fn the_json_has_exactly_the_contracts_keys() {
                 "drift_per_s_ci",
                 "fluctuation",
                 "class",
+                "kinetic_final_j",
+                "potential_final_j",
+                "dissipated_j",
+                "injected_j",
             ])
         );
         assert_eq!(

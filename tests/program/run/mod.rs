@@ -34,17 +34,22 @@ fn output(args: &[&str]) -> (i32, String, String) {
 fn json(args: &[&str]) -> Value {
     let (code, out, err) = output(args);
     assert_eq!(code, 0, "{err}");
-    serde_json::from_str(&out).expect("JSON on stdout")
+    report(&out)
+}
+
+/// The one report of a JSON text.
+fn report(text: &str) -> Value {
+    let mut document: Value = serde_json::from_str(text).expect("JSON");
+    assert_eq!(document["schema_version"], 2);
+    assert_eq!(document["reports"].as_array().map(Vec::len), Some(1));
+    document["reports"][0].take()
 }
 
 /// The exit code beside what stands on stdout.
 fn json_of(args: &[&str]) -> (i32, Value) {
     let (code, out, err) = output(args);
-    let report = serde_json::from_str(&out);
-    (
-        code,
-        report.unwrap_or_else(|_| panic!("no JSON: {out}{err}")),
-    )
+    assert!(!out.is_empty(), "{err}");
+    (code, report(&out))
 }
 
 fn keys(value: &Value) -> BTreeSet<&str> {
@@ -100,11 +105,15 @@ fn a_run_prints_a_table_and_writes_a_report() {
         "plot.svg",
         "report.json",
         "report.md",
+        "report.series",
         "trajectories.svg",
     ];
     assert_eq!(files(&place), expected.map(String::from).into());
-    for name in files(&place) {
-        let text = std::fs::read_to_string(place.join(&name)).expect("text");
+    for name in files(&place)
+        .iter()
+        .filter(|name| !name.ends_with(".series"))
+    {
+        let text = std::fs::read_to_string(place.join(name)).expect("text");
         assert!(!text.contains("NaN") && !text.contains("inf "), "{name}");
     }
 }
@@ -113,6 +122,9 @@ fn a_run_prints_a_table_and_writes_a_report() {
 fn without_times(mut report: Value) -> Value {
     for outcome in report["outcomes"].as_array_mut().expect("outcomes") {
         outcome["work"]["wall_s"] = Value::Null;
+    }
+    for effect in report["scene"]["effects"].as_array_mut().expect("effects") {
+        effect["wall_ns"] = Value::Null;
     }
     report
 }
@@ -138,7 +150,7 @@ fn two_runs_and_any_number_of_threads_give_the_same_bits() {
             .env("RAYON_NUM_THREADS", threads)
             .output()
             .expect("it runs");
-        without_times(serde_json::from_slice(&output.stdout).expect("JSON"))
+        without_times(report(&String::from_utf8_lossy(&output.stdout)))
     };
     let serial = run("1");
     assert_eq!(serial, run("4"));
@@ -203,7 +215,7 @@ fn several_timesteps_and_several_scenes() {
         .collect();
     let wanted = ["rk4", "midpoint"].map(|id| [0.01, 0.05, 0.15].map(|h| (id.to_owned(), h)));
     assert_eq!(found, wanted.concat());
-    let both = json(&[
+    let (_, both, _) = output(&[
         "run",
         SCENE,
         "scenes/pa1/scene00.yml",
@@ -212,7 +224,8 @@ fn several_timesteps_and_several_scenes() {
         "--duration",
         "0.1",
     ]);
-    assert_eq!(both.as_array().map(Vec::len), Some(2));
+    let both: Value = serde_json::from_str(&both).expect("JSON");
+    assert_eq!(both["reports"].as_array().map(Vec::len), Some(2));
 }
 
 #[test]

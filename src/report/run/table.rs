@@ -1,78 +1,70 @@
-//! The table of outcomes.
+//! The table of outcomes, in the terminal and in Markdown.
 
-use super::WIDTH;
-use super::columns::{Column, fitted, laid_out};
-use super::fit::{clip, pad, wrap};
-use super::paint::{Tone, mark};
+use super::{references, several_timesteps};
 use crate::outcome::{EnergyClass, Outcome, Report, Status};
-use crate::report::notes::{references, several_timesteps};
+use crate::report::markdown::escape;
+use crate::report::table::{Mark, Table};
+use crate::report::terminal::WIDTH;
+use crate::report::terminal::fit::{clip, pad, wrap};
+use crate::report::terminal::paint::{Tone, mark};
 use crate::report::words::{self, NOTHING};
-use comfy_table::CellAlignment;
 
-/// The table's lines and its legend.
-pub fn table(report: &Report) -> Vec<String> {
-    let (columns, left_out) = match fitted(columns(report, ' ')) {
-        (columns, left_out) if left_out.is_empty() => (columns, left_out),
-        _ => fitted(columns(report, '\n')),
-    };
-    let mut lines = laid_out(&columns);
+/// The terminal's lines and their legend.
+pub fn lines(report: &Report) -> Vec<String> {
+    let (mut lines, mut left_out) = table(report, ' ').in_terminal();
+    if !left_out.is_empty() {
+        (lines, left_out) = table(report, '\n').in_terminal();
+    }
     let legend = wrap(&legend(report, &left_out), WIDTH, "");
     lines.extend(legend.iter().map(|line| mark(Tone::Dim, line)));
     lines
 }
 
+pub fn markdown(report: &Report) -> String {
+    table(report, ' ').in_markdown()
+}
+
 /// `fold` stands between the parts of a header that may go on two lines.
-fn columns(report: &Report, fold: char) -> Vec<Column> {
-    use CellAlignment::{Left, Right};
-    let outcomes = &report.outcomes;
-    let column =
-        |header: &str, alignment, spare, cell: &dyn Fn(&Outcome) -> (String, Option<Tone>)| {
-            let cells = outcomes.iter().map(cell).collect();
-            Column {
-                header: header.into(),
-                alignment,
-                spare,
-                cells,
-            }
-        };
-    let mut columns = vec![column("  engine", Left, 0, &|o| engine(report, o))];
+fn table(report: &Report, fold: char) -> Table<'_, Outcome> {
+    let outcomes = report.outcomes();
+    let mut table = Table::new(outcomes);
+    let own = &report.header.scene.own_integrator;
+    table.engines(|o| (words::engine(o), Mark::of(&o.engine, own)));
     if several_timesteps(report) {
-        columns.push(column("h (s)", Right, 0, &|o| {
-            (words::short(o.timestep), None)
-        }));
+        table.right("h (s)", "h (s)", 0, |o| words::short(o.timestep));
     }
-    columns.push(column("status", Left, 0, &status));
+    table.left("status", "status", status);
     let classes = class_width(outcomes);
-    columns.push(column("energy", Left, 0, &|o| energy(o, classes)));
+    table.left("energy", "", |o| energy(o, classes));
+    table.markdown("energy", |o| {
+        let class = o.energy.as_ref().and_then(|e| e.class);
+        class.map_or(NOTHING, words::class).into()
+    });
+    table.markdown("energy error", |o| {
+        let error = o.energy.as_ref().map(words::energy_error);
+        let error = error.filter(|text| !text.is_empty());
+        error.unwrap_or(NOTHING.into())
+    });
     for (rank, reference) in references(report).into_iter().enumerate() {
         let name = clip(&words::one_line(reference), 14);
         let header = match fold {
             '\n' => format!("m from\n{}", name.replace('-', "-\n")),
             _ => format!("m from\n{name}"),
         };
-        let cell = |o: &Outcome| (deviation(o, reference), None);
-        columns.push(column(&header, Right, rank as u8, &cell));
+        let long = format!("deviation from {} (m)", escape(reference));
+        table.right(&header, &long, rank as u8, |o| deviation(o, reference));
     }
     if outcomes.iter().any(|o| o.position_error_m.is_some()) {
-        columns.push(column("m from\ntruth", Right, 0, &|o| {
-            (error(report, o), None)
-        }));
+        table.right("m from\ntruth", "error (m)", 0, |o| error(report, o));
     }
-    columns.push(column("force\nevals", Right, 2, &|o| (forces(o), None)));
-    columns.push(column("time", Right, 0, &|o| (words::wall_time(o), None)));
+    table.markdown("steps", |o| words::count(o.work.steps));
+    table.right("force\nevals", "force evaluations", 2, |o| {
+        let evaluations = o.work.force_evaluations;
+        evaluations.map_or(NOTHING.into(), words::count)
+    });
     // A trajectory from a file has neither.
-    columns.retain(|column| !column.is_empty());
-    columns
-}
-
-fn engine(report: &Report, outcome: &Outcome) -> (String, Option<Tone>) {
-    let own = outcome.engine == report.scene.own_method;
-    let name = words::one_line(&words::engine(outcome));
-    if own {
-        (format!("▸ {name}"), Some(Tone::Strong))
-    } else {
-        (format!("  {name}"), None)
-    }
+    table.right("time", "time", 0, words::wall_time);
+    table
 }
 
 fn status(outcome: &Outcome) -> (String, Option<Tone>) {
@@ -110,36 +102,30 @@ fn energy(outcome: &Outcome, classes: usize) -> (String, Option<Tone>) {
 }
 
 fn deviation(outcome: &Outcome, reference: &str) -> String {
-    if outcome.engine == reference {
-        return NOTHING.into();
+    match outcome.deviation_m.get(reference) {
+        Some(deviation) if outcome.engine != reference => words::sci(deviation.max),
+        _ => NOTHING.into(),
     }
-    let deviation = outcome.deviation_m.get(reference);
-    deviation.map_or(NOTHING.into(), |d| words::sci(d.max))
 }
 
 fn error(report: &Report, outcome: &Outcome) -> String {
     let error = outcome.position_error_m.as_ref();
-    error.map_or(NOTHING.into(), |e| words::truth_error(e.max, &report.truth))
-}
-
-fn forces(outcome: &Outcome) -> String {
-    outcome
-        .work
-        .force_evaluations
-        .map_or(NOTHING.into(), words::count)
+    error.map_or(NOTHING.into(), |e| {
+        words::truth_error(e.max, &report.header.truth)
+    })
 }
 
 fn legend(report: &Report, left_out: &[String]) -> String {
-    let scale = match report.scene.energy_scale_j {
+    let scale = match report.header.scene.energy_scale_j {
         Some(scale) => format!("over S = {} J", words::short(scale)),
         None => "(this scene has no scale)".into(),
     };
     let mut text = format!("▸ own integrator | energy: largest error {scale}");
-    if report.outcomes.iter().any(|o| !o.deviation_m.is_empty()) {
+    if report.outcomes().iter().any(|o| !o.deviation_m.is_empty()) {
         text += " | m from: largest distance of a particle";
     }
     let at_floor = |o: &Outcome| error(report, o) == "floor";
-    if report.outcomes.iter().any(at_floor) {
+    if report.outcomes().iter().any(at_floor) {
         text += " | floor: below ten times the truth's own error";
     }
     if !left_out.is_empty() {

@@ -1,9 +1,8 @@
 //! Which scheme a trajectory follows, and where it stops following it, in words.
 
-use super::notes::listed;
-use super::words;
+use super::{listed, words};
 use crate::integrators;
-use crate::outcome::{Fault, Identified, Kind, Outcome, Quantity, Report, Undecided};
+use crate::outcome::{Body, Fault, Identified, Kind, Outcome, Quantity, Report, Undecided};
 
 /// At most so many equivalent schemes are named.
 const NAMED: usize = 6;
@@ -73,7 +72,10 @@ fn equivalent(found: &Identified) -> String {
 
 /// Where a trajectory leaves its scheme, a line each; empty where it does not.
 pub fn fault(report: &Report) -> Vec<String> {
-    let Some(fault) = report.fault.as_ref().and_then(Option::as_ref) else {
+    let Body::Compare {
+        fault: Some(fault), ..
+    } = &report.body
+    else {
         return Vec::new();
     };
     let Fault { step, particle, .. } = fault;
@@ -100,8 +102,10 @@ fn vector(value: [Option<f64>; 3]) -> String {
 
 /// The verdict of a comparison in one clause; None in a report without one.
 pub fn verdict(report: &Report) -> Option<String> {
-    let fault = report.fault.as_ref()?;
-    let outcome = report.outcomes.first()?;
+    let Body::Compare { outcomes, fault } = &report.body else {
+        return None;
+    };
+    let outcome = outcomes.first()?;
     let name = words::one_line(&outcome.engine);
     let Some(found) = &outcome.identified else {
         return Some(format!("{name} holds too few steps to be replayed"));
