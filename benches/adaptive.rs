@@ -55,12 +55,7 @@ fn finished(solver: &Solver, scene: &Scene, system: &ParticleSystem, setting: Se
     run
 }
 
-fn by_pair(
-    scene: &Scene,
-    system: &ParticleSystem,
-    pair: &'static Pair,
-    tolerance: f64,
-) -> Run {
+fn by_pair(scene: &Scene, system: &ParticleSystem, pair: &'static Pair, tolerance: f64) -> Run {
     let setting = Setting::Tolerance {
         tolerance,
         duration: scene.duration,

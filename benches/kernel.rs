@@ -1,10 +1,9 @@
 //! What a step costs per spring: one thread, several, and effects nobody calls for. Compare
 //! figures of one run only.
 
-#[path = "../tests/testkit/cloth.rs"]
-mod cloth;
+#[path = "../tests/testkit/mod.rs"]
+mod testkit;
 
-use cloth::{cloth, shuffled};
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use rayon::ThreadPoolBuilder;
@@ -13,6 +12,7 @@ use springcheck::integrators::{self, Settings};
 use springcheck::scene::{DampingModel, Scene};
 use springcheck::system::{ParticleSystem, Power, System};
 use std::hint::black_box;
+use testkit::cloth::{cloth, shuffled};
 
 /// Steps of one method on a scene, on so many threads. Criterion's elements are springs.
 fn steps(

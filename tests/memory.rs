@@ -1,7 +1,7 @@
 //! What a running simulation keeps: bytes per spring of a large cloth.
 
-#[path = "testkit/cloth.rs"]
-mod cloth;
+#[path = "testkit/mod.rs"]
+mod testkit;
 
 use springcheck::integrators::{self, Settings};
 use springcheck::scene::{DampingModel, Scene};
@@ -36,7 +36,7 @@ fn a_running_simulation_takes_under_100_bytes_per_spring() {
     // 595,978 springs with dampers between 99,856 particles. A spring takes 32 bytes, and one in
     // twenty has a copy; each has a sixth of a particle, which takes 16 bytes of weight and 24 for
     // each vector: inverse mass, x, v, then a with symplectic Euler, nine vectors with rk4.
-    let cloth = || cloth::cloth(316, 0.01, DampingModel::Axial);
+    let cloth = || testkit::cloth::cloth(316, 0.01, DampingModel::Axial);
     for (method, vectors) in [("symplectic_euler", 4.0), ("rk4", 12.0)] {
         let [worst, running] = bytes_per_spring(method, cloth(), false);
         let derived = 32.0 * 1.05 + (24.0 * vectors + 16.0) / 5.97;

@@ -9,11 +9,7 @@ use springcheck::outcome::Kind;
 use springcheck::scene::Scene;
 
 /// The integrators of these ids in this order, all of them for `all`, and the `usual` ones for none.
-pub fn integrators(
-    ids: &[String],
-    scene: &Scene,
-    usual: &[Solver],
-) -> anyhow::Result<Vec<Solver>> {
+pub fn integrators(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
     let known = || format!("integrators: {}, or all", integrators::ids().join(", "));
     let find = |id: &str| integrators::find(id).map(Solver::method);
     match ids {
@@ -38,7 +34,11 @@ pub fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Re
     let all = others.first().is_some_and(|id| id == "all");
     let mut chosen = integrators(&others, scene, usual).with_context(known)?;
     chosen.extend(if all && pairs.is_empty() {
-        usual.iter().filter(|s| s.as_pair().is_some()).cloned().collect()
+        usual
+            .iter()
+            .filter(|s| s.as_pair().is_some())
+            .cloned()
+            .collect()
     } else {
         pairs
     });
@@ -47,11 +47,7 @@ pub fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Re
 
 /// The engines of these ids, none for `none`, and the `usual` ones without ids; after them the rapier rows
 /// with settings of the user's own, the same settings once.
-pub fn engines(
-    ids: &[String],
-    rapier: &[Custom],
-    usual: &[Solver],
-) -> anyhow::Result<Vec<Solver>> {
+pub fn engines(ids: &[String], rapier: &[Custom], usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
     let known = || format!("engines: {}, or none", engines::rapier::IDS.join(", "));
     let find = |id: &str| engines::find(id).filter(|solver| solver.kind == Kind::Rapier);
     let mut chosen = match ids {

@@ -128,10 +128,7 @@ fn read(args: &Args) -> anyhow::Result<Scene> {
 }
 
 fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
-    chosen::without_timestep(
-        &args.rapier,
-        "swept; leave dt out, or give --timestep",
-    )?;
+    chosen::without_timestep(&args.rapier, "swept; leave dt out, or give --timestep")?;
     if args.targets.len() > MOST || args.timestep.len() > MOST {
         bail!("at most {MOST} targets and {MOST} timesteps");
     }
@@ -140,7 +137,11 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
     targets.sort_by(|a, b| b.total_cmp(a));
     targets.dedup();
     let mut solvers = chosen::with_pairs(&args.integrators, scene, &usual.solvers)?;
-    solvers.extend(chosen::engines(&args.engines, &args.rapier, &usual.solvers)?);
+    solvers.extend(chosen::engines(
+        &args.engines,
+        &args.rapier,
+        &usual.solvers,
+    )?);
     let choice = CostChoice {
         solvers,
         targets,

@@ -2,10 +2,10 @@
 
 use clap::ValueEnum;
 use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
+use springcheck::engines::catalogue;
 use springcheck::integrators::adaptive::{self, Estimate};
 use springcheck::integrators::{EnergyLaw, Method, PerStep, Stable};
 use springcheck::measure::identify::{MISTAKES, Mistake, Wrong};
-use springcheck::engines::catalogue;
 use springcheck::outcome::Kind;
 use springcheck::{effects, integrators};
 use std::process::ExitCode;

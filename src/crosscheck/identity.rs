@@ -26,7 +26,10 @@ pub(super) fn of_run(plan: &Plan, case: &Case, run: &Ran) -> Option<Identified> 
 fn expected(plan: &Plan, case: &Case) -> Option<(&'static str, u32)> {
     let joints = case.solver.kind == Kind::Rapier && plan.scene.springs.len() > 1;
     let rapier = joints.then_some(("linearized_implicit_material", case.solver.substeps));
-    case.solver.as_method().map(|method| (method.id, 1)).or(rapier)
+    case.solver
+        .as_method()
+        .map(|method| (method.id, 1))
+        .or(rapier)
 }
 
 /// The scheme of rows, by all of their steps, and the first of these that leaves it.

@@ -12,7 +12,10 @@ const VISIBLE: f64 = 0.01;
 
 impl StepLimits {
     pub(super) fn new(plan: &Plan) -> Self {
-        let wanted = plan.cases.iter().any(|case| case.solver.as_method().is_some());
+        let wanted = plan
+            .cases
+            .iter()
+            .any(|case| case.solver.as_method().is_some());
         Self(wanted.then(|| {
             let start = ParticleSystem::initial_state(plan.scene);
             Linearised::brief(&plan.system, start.t, &start.x, &start.v)

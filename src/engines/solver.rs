@@ -164,11 +164,7 @@ impl Solver {
         }
     }
 
-    pub(super) fn integrator(
-        id: Cow<'static, str>,
-        summary: &'static str,
-        source: Source,
-    ) -> Self {
+    pub(super) fn integrator(id: Cow<'static, str>, summary: &'static str, source: Source) -> Self {
         Self {
             id,
             kind: Kind::Integrator,

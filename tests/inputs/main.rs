@@ -4,4 +4,6 @@
 //! A new key of a scene file and a new format of a trajectory belong here, and what fuzzing finds.
 
 mod scenes;
+#[path = "../testkit/mod.rs"]
+mod testkit;
 mod trajectories;

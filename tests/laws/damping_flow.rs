@@ -1,6 +1,7 @@
 //! The exact flow of the damping, against an eigendecomposition of the dense damping matrix in the
 //! metric of the masses; and how its passes are counted.
 
+use crate::testkit::scenes::{free, spring};
 use crate::testkit::{Build, Random, advance, built, method, own, swinging_triangle};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use springcheck::crosscheck::{Choice, Plan, Quiet};
@@ -18,26 +19,23 @@ fn chain(damping: f64, model: DampingModel) -> Scene {
     let mut scene = swinging_triangle(0.0, model);
     let mut random = Random(9);
     scene.particles = (0..31)
-        .map(|i| Particle {
-            position: [
+        .map(|i| {
+            let position = [
                 0.1 * i as f64,
                 0.05 * random.next(),
                 0.05 * random.next() - 0.1,
-            ],
-            velocity: [random.next(), random.next(), random.next()],
-            fixed: i == 0,
-            mass: 1.0 + 0.5 * random.next(),
-            radius: 0.1,
-            drag: 0.0,
+            ];
+            Particle {
+                velocity: [random.next(), random.next(), random.next()],
+                fixed: i == 0,
+                ..free(position, 1.0 + 0.5 * random.next())
+            }
         })
         .collect();
     scene.springs = (0..30)
         .map(|i| Spring {
-            ends: [i, i + 1],
-            stiffness: 100.0,
-            cubic: 0.0,
             damping,
-            rest_length: 0.1,
+            ..spring([i, i + 1], 100.0, 0.1)
         })
         .collect();
     scene

@@ -3,23 +3,17 @@
 use crate::testkit::gauss::Gauss;
 use crate::testkit::line::{Line, released};
 use crate::testkit::mutants::{self, Step, mutant};
+use crate::testkit::scenes::shipped;
 use crate::testkit::{built, method, own};
-use springcheck::crosscheck;
 use springcheck::integrators::{
     DampingTreatment, Integrator, REGISTRY, Splitting, Stage, StepError,
 };
 use springcheck::measure::order::{Measured, RATIOS, Reason, Study, Verdict, check, observed};
 use springcheck::outcome::CheckStatus;
-use springcheck::scene::{self, Scene};
+use springcheck::scene::Scene;
 use springcheck::system::{ParticleSystem, State, System};
 use springcheck::truth::Motion;
-use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
-
-fn shipped(path: &str) -> Scene {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    scene::read(&root.join(path), crosscheck::names()).expect("a valid scene")
-}
 
 /// The scenes that say in their description that they are made for this.
 const DESIGNATED: [&str; 3] = [

@@ -1,28 +1,23 @@
 //! What the report's numbers mean: each definition against a case worked out by hand.
 
+use crate::testkit::scenes::{self, parsed};
 use crate::testkit::{free_triangle, swinging_triangle};
-use springcheck::crosscheck::{self, Choice, Plan, Quiet};
+use springcheck::crosscheck::{Choice, Plan, Quiet};
 use springcheck::engines::{Limits, Setting, Solver};
 use springcheck::integrators;
 use springcheck::measure::{self, deviation};
 use springcheck::outcome::{EnergyClass, Outcome, Report, Status};
-use springcheck::scene::{self, DampingModel, Scene, Wind};
+use springcheck::scene::{DampingModel, Scene, Wind};
 use springcheck::system::ParticleSystem;
 use springcheck::trajectory::{Recorder, Trajectory};
 use springcheck::truth::Demand;
 
-fn read(yaml: &str) -> Scene {
-    scene::parse(yaml.as_bytes(), "test.yml", crosscheck::names()).expect("a valid scene")
-}
-
 /// The oscillator k = 50, m = 1, A = 0.5 at rest length 0, without gravity.
 fn oscillator(timestep: f64, damping: f64) -> Scene {
-    read(&format!(
-        "solver: {{type: explicit_euler, timestep: {timestep}, gravity: 0}}\n\
-         duration: 10\ndamping_model: isotropic\n\
-         particles: [{{pos: [0, 0, 0], fixed: true}}, {{pos: [0.5, 0, 0], mass: 1}}]\n\
-         springs: [{{particle_ids: [0, 1], stiffness: 50, rest_length: 0, damping: {damping}}}]\n"
-    ))
+    let mut scene = scenes::oscillator(50.0, 0.5);
+    (scene.solver.timestep, scene.duration) = (timestep, 10.0);
+    scene.springs[0].damping = damping;
+    scene
 }
 
 fn report(scene: &Scene, methods: &[&str]) -> Report {
@@ -65,14 +60,14 @@ fn the_energy_scale_is_kinetic_plus_elastic_else_weight_times_size_else_none() {
     let hanging = "solver: {type: rk4, timestep: 0.01}\n\
                    particles: [{pos: [1, 2, 105], fixed: true}, {pos: [3, 3, 107], mass: 2}]\n\
                    springs: [{particle_ids: [0, 1], stiffness: 50}]\n";
-    let weight = scale(&read(hanging)).expect("a scale");
+    let weight = scale(&parsed(hanging)).expect("a scale");
     assert!(
         (weight - 2.0 * 9.81 * 6.0).abs() < 1e-13 * weight,
         "{weight}"
     );
     // Rest lengths two last bits off the distance leave k d² / 2 of rounding, not energy; a part in
     // 1e9 is stretch.
-    let mut rounded = read(hanging);
+    let mut rounded = parsed(hanging);
     let length = rounded.springs[0].rest_length;
     rounded.springs[0].rest_length = length.next_up().next_up();
     let found = scale(&rounded).expect("a scale");
@@ -86,7 +81,7 @@ fn the_energy_scale_is_kinetic_plus_elastic_else_weight_times_size_else_none() {
     );
     // A lone particle at rest has neither energy nor size.
     let lone = "solver: {type: rk4, timestep: 0.01}\nparticles: [{pos: [0, 0, 3], mass: 2}]\n";
-    assert_eq!(scale(&read(lone)), None);
+    assert_eq!(scale(&parsed(lone)), None);
 }
 
 #[test]
@@ -119,7 +114,7 @@ fn a_run_stops_in_the_step_its_energy_passes_a_billion_scales_squared() {
 #[test]
 fn a_long_fall_is_no_divergence_however_small_the_scale() {
     // S = m v² / 2 = 1e-12 J, 1e12 times of which is 1 J; the fall gains 2.4e3 J.
-    let falling = read(
+    let falling = parsed(
         "solver: {type: rk4, timestep: 0.01}\n\
          particles: [{pos: [0, 0, 3], mass: 2, vel: [1.0e-6, 0, 0]}]\n",
     );
@@ -143,7 +138,7 @@ fn a_long_fall_is_no_divergence_however_small_the_scale() {
 #[test]
 fn a_scene_without_a_scale_says_why() {
     let lone = "solver: {type: rk4, timestep: 0.01}\nparticles: [{pos: [0, 0, 3], mass: 2}]\n";
-    let scene = read(lone);
+    let scene = parsed(lone);
     let with = |truth| {
         let choice = Choice {
             truth,
@@ -294,7 +289,7 @@ fn momentum_is_reported_where_the_scene_conserves_it() {
 fn an_implicit_step_that_cannot_be_solved_is_a_typed_failure_with_its_step() {
     // Half compressed, a spring's stiffness across is -k, and h² k = m: nothing holds the particle
     // sideways in the linearised step, to the last bit.
-    let scene = read(
+    let scene = parsed(
         "solver: {type: linearized_implicit, timestep: 0.125, gravity: 0}\n\
          particles:\n\
          - {pos: [0, 0, 0], fixed: true}\n\

@@ -1,9 +1,10 @@
 //! Distances from a reference engine: of what has no size, and at which timestep.
 
-use springcheck::crosscheck::{self, Choice, Plan, Quiet};
+use crate::testkit::scenes::parsed;
+use springcheck::crosscheck::{Choice, Plan, Quiet};
 use springcheck::effects;
 use springcheck::outcome::{Deviation, Report};
-use springcheck::scene::{self, DampingModel, Scene};
+use springcheck::scene::{DampingModel, Scene};
 use springcheck::system::{ParticleSystem, State, System};
 
 /// Explicit Euler and rapier, whose four iterations a step are four steps of symplectic Euler.
@@ -25,13 +26,11 @@ fn deviations(report: &Report) -> Vec<(f64, Vec<&Deviation>)> {
 
 #[test]
 fn a_lone_particle_is_measured_by_the_way_the_reference_goes() {
-    let lone = scene::parse(
-        b"solver: {type: rk4, timestep: 0.01}\nduration: 1\n\
-          particles: [{pos: [0, 0, 3], mass: 2}]\n",
-        "lone.yml",
-        crosscheck::names(),
+    let lone = parsed(
+        "solver: {type: rk4, timestep: 0.01}\nduration: 1\n\
+         particles: [{pos: [0, 0, 3], mass: 2}]\n",
     );
-    let report = report(&lone.expect("a valid scene"), &[0.01]);
+    let report = report(&lone, &[0.01]);
     let found = deviations(&report)[0].1[0];
     // In units of g h²: explicit Euler falls n (n - 1) / 2, rapier n (n + 1/4) / 2, so they are 5/8 n
     // apart, and 1 % of rapier's way in 100 steps, 50.125, is passed at n = 81. (Of our own way,

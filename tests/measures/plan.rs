@@ -1,14 +1,14 @@
 //! A row of the caller's own in a plan.
 
-use springcheck::crosscheck::{self, Choice, Plan, Quiet};
+use crate::testkit::scenes::shipped;
+use springcheck::crosscheck::{Choice, Plan, Quiet};
 use springcheck::engines::Solver;
 use springcheck::integrators::{self, Settings};
 use springcheck::outcome::{Kind, Outcome, Report};
-use springcheck::scene::{self, Scene};
+use springcheck::scene::Scene;
 
 fn circle() -> Scene {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/oscillator/circle.yml");
-    scene::read(path.as_ref(), crosscheck::names()).expect("a scene")
+    shipped("oscillator/circle.yml")
 }
 
 /// The default rows and `mine`, which is this method.

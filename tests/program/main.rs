@@ -8,3 +8,5 @@ mod examples;
 mod external;
 mod run;
 mod stability;
+#[path = "../testkit/mod.rs"]
+mod testkit;

@@ -1,8 +1,10 @@
 //! The verb as its users run it.
 
-use assert_cmd::Command;
+use crate::testkit::program::{
+    self, answer, array, files, keys, leave, number, refuse, set, springcheck, tidy, well_formed,
+    word,
+};
 use serde_json::Value;
-use std::collections::BTreeSet;
 
 const SCENE: &str = "scenes/oscillator/circle.yml";
 /// A small map: what it shows does not matter where it is used.
@@ -15,43 +17,8 @@ const MAP: [&str; 6] = [
     "120000",
 ];
 
-fn springcheck() -> Command {
-    let mut command = Command::cargo_bin("springcheck").expect("the binary");
-    command.current_dir(env!("CARGO_MANIFEST_DIR"));
-    command.env("SPRINGCHECK_CACHE", "");
-    command
-}
-
-fn output(args: &[&str]) -> (i32, String, String) {
-    let output = springcheck()
-        .arg("stability")
-        .args(args)
-        .output()
-        .expect("it runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
-}
-
 fn json(args: &[&str]) -> Value {
-    let args = [args, &["--format", "json"]].concat();
-    let (code, out, err) = output(&args);
-    assert_eq!(code, 0, "{err}");
-    let mut document: Value = serde_json::from_str(&out).expect("JSON on stdout");
-    document["reports"][0].take()
-}
-
-fn keys(value: &Value) -> BTreeSet<&str> {
-    let object = value.as_object().expect("an object");
-    object.keys().map(String::as_str).collect()
-}
-
-fn set<'a>(keys: &[&'a str]) -> BTreeSet<&'a str> {
-    keys.iter().copied().collect()
-}
-
-fn array(value: &Value) -> &Vec<Value> {
-    value.as_array().expect("an array")
+    program::json(&[&["stability"], args].concat())
 }
 
 #[test]
@@ -149,7 +116,6 @@ fn the_map_changes_where_theory_says() {
     .concat();
     let report = json(&args);
     let map = &report["stability"]["map"];
-    let number = |value: &Value| value.as_f64().expect("a number");
     let (stiffnesses, timesteps) = (array(&map["values"]), array(&map["timesteps_s"]));
     let wrong = |limit_of: &dyn Fn(usize) -> f64| {
         let mut wrong = 0;
@@ -210,16 +176,16 @@ fn an_engine_that_equals_a_method_has_its_prediction() {
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     let run = |threads: &str| {
-        let output = springcheck()
+        let mut command = springcheck();
+        command
             .args(["stability", "scenes/pa1/scene01.yml", "--format", "json"])
             .args(["--integrators", "rk4,symplectic_euler,implicit_euler"])
             .args(["--engines", "rapier"])
             .args(MAP)
-            .env("RAYON_NUM_THREADS", threads)
-            .output()
-            .expect("it runs");
-        assert_eq!(output.status.code(), Some(0));
-        String::from_utf8(output.stdout).expect("UTF-8")
+            .env("RAYON_NUM_THREADS", threads);
+        let (code, report, _) = answer(&mut command);
+        assert_eq!(code, 0);
+        program::without_times(program::report(&report))
     };
     let serial = run("1");
     assert_eq!(serial, run("4"));
@@ -228,13 +194,16 @@ fn any_number_of_threads_gives_the_same_bytes() {
 #[test]
 fn it_prints_a_table_and_writes_a_report() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().to_str().expect("UTF-8");
-    let args = [&[SCENE, "--quiet", "--output", out][..], &MAP].concat();
-    let (code, table, err) = output(&args);
+    let args = [
+        "stability",
+        SCENE,
+        "--quiet",
+        "--output",
+        word(folder.path()),
+    ];
+    let (code, table, err) = program::output(&[&args[..], &MAP].concat());
     assert_eq!((code, err.as_str()), (0, ""));
-    for line in table.lines() {
-        assert!(line.chars().count() <= 100, "{line}");
-    }
+    tidy(&table);
     for id in springcheck::integrators::ids()
         .into_iter()
         .chain(["rapier"])
@@ -246,31 +215,13 @@ fn it_prints_a_table_and_writes_a_report() {
     assert!(tail[1].starts_with("report: ") && tail[1].ends_with("stability.md"));
     assert!(tail[2].contains("explicit_euler"), "{}", tail[2]);
     let place = folder.path().join("oscillator/circle");
-    let files: BTreeSet<String> = std::fs::read_dir(&place)
-        .expect("a folder")
-        .map(|entry| {
-            entry
-                .expect("a file")
-                .file_name()
-                .into_string()
-                .expect("UTF-8")
-        })
-        .collect();
     let expected = ["stability.json", "stability.md", "stability_map.svg"];
-    assert_eq!(files, expected.map(String::from).into());
-    for name in &files {
-        let text = std::fs::read_to_string(place.join(name)).expect("text");
-        assert!(!text.contains("NaN") && !text.contains("inf "), "{name}");
-        if name.ends_with(".svg") {
-            roxmltree::Document::parse(&text).expect("well-formed");
-        }
-    }
+    assert_eq!(files(&place), expected.map(String::from).into());
+    well_formed(&place);
 }
 
 #[test]
 fn usage_errors_exit_with_2_and_write_nothing() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().join("out");
     let budget = [
         SCENE,
         "--vary",
@@ -306,41 +257,14 @@ fn usage_errors_exit_with_2_and_write_nothing() {
         (&[SCENE, "--rapier", "dt=0.1"], "leave dt out"),
         (&[SCENE, "--timestep", "0"], "--timestep"),
     ];
-    for (args, says) in cases {
-        let args = [args, &["--output", out.to_str().expect("UTF-8")]].concat();
-        let (code, stdout, stderr) = output(&args);
-        assert_eq!(code, 2, "{args:?}: {stderr}");
-        assert!(stdout.is_empty(), "{args:?}: {stdout}");
-        assert!(stderr.contains(says), "{args:?}: {stderr}");
-        assert!(!stderr.contains("panicked"), "{stderr}");
-        assert!(!out.exists(), "{args:?} wrote something");
-    }
+    refuse("stability", &cases);
 }
 
 /// Long enough a text to fill no pipe's buffer before the reader has gone.
 #[test]
 fn a_reader_that_leaves_is_no_error() {
-    use std::process::{Command, Stdio};
-    let mut child = Command::new(assert_cmd::cargo::cargo_bin("springcheck"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args([
-            "stability",
-            SCENE,
-            "--format",
-            "markdown",
-            "--integrators",
-            "rk4",
-        ])
-        .args(["--engines", "none"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("it starts");
-    drop(child.stdout.take());
-    let output = child.wait_with_output().expect("it ends");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(stderr.is_empty(), "{stderr}");
-    assert_eq!(output.status.code(), Some(0));
+    let args = ["stability", SCENE, "--format", "markdown"];
+    leave(&[&args[..], &["--integrators", "rk4", "--engines", "none"]].concat());
 }
 
 /// All remarks of an engine.

@@ -1,7 +1,7 @@
 //! Cloths built in memory: what the spring kernel is tested and timed on.
-#![allow(dead_code)] // each user takes its own part
 
-use springcheck::scene::{Axis, DampingModel, Particle, Scene, Solver, Spring};
+use super::scenes::{empty, fixed, free, spring};
+use springcheck::scene::{DampingModel, Particle, Scene, Solver, Spring};
 
 /// m between neighbours.
 const SPACING: f64 = 0.1;
@@ -13,22 +13,18 @@ pub fn cloth(n: usize, damping: f64, model: DampingModel) -> Scene {
     let wave = |p: usize, by: usize| ((p * by) % 13) as f64 / 13.0 - 0.5;
     let particles = (0..n * n).map(|p| {
         let (row, column) = (p / n, p % n);
-        let fixed = row == 0 && (column == 0 || column == n - 1);
+        let held = row == 0 && (column == 0 || column == n - 1);
+        let position = [
+            SPACING * (row as f64 + 0.1 * wave(p, 5)),
+            SPACING * (column as f64 + 0.1 * wave(p, 7)),
+            2.0 + 0.1 * SPACING * wave(p, 11),
+        ];
+        if held {
+            return fixed(position);
+        }
         Particle {
-            position: [
-                SPACING * (row as f64 + 0.1 * wave(p, 5)),
-                SPACING * (column as f64 + 0.1 * wave(p, 7)),
-                2.0 + 0.1 * SPACING * wave(p, 11),
-            ],
-            velocity: if fixed {
-                [0.0; 3]
-            } else {
-                [wave(p, 3), wave(p, 2), wave(p, 6)]
-            },
-            fixed,
-            mass: 0.01,
-            radius: 0.1,
-            drag: 0.0,
+            velocity: [wave(p, 3), wave(p, 2), wave(p, 6)],
+            ..free(position, 0.01)
         }
     });
     let mut springs = Vec::new();
@@ -37,35 +33,27 @@ pub fn cloth(n: usize, damping: f64, model: DampingModel) -> Scene {
             let (to_row, to) = (row + down, column as isize + right);
             if to_row < n && (0..n as isize).contains(&to) {
                 let square = (down * down) as f64 + (right * right) as f64;
+                let ends = [row * n + column, to_row * n + to as usize];
                 springs.push(Spring {
-                    ends: [row * n + column, to_row * n + to as usize],
-                    stiffness: 100.0,
-                    cubic: 0.0,
                     damping,
-                    rest_length: SPACING * square.sqrt(),
+                    ..spring(ends, 100.0, SPACING * square.sqrt())
                 });
             }
         }
     }
     Scene {
         name: format!("cloth {n} x {n}"),
-        description: None,
-        file: String::new(),
         solver: Solver {
             method: "symplectic_euler".into(),
             timestep: 1e-4,
             gravity: -9.81,
-            tolerance: None,
+            ..empty().solver
         },
         duration: 1.0,
-        up: Axis::Z,
         damping_model: model,
-        plot: None,
         particles: particles.collect(),
         springs,
-        gravitational: Vec::new(),
-        wind: None,
-        expect: Vec::new(),
+        ..empty()
     }
 }
 

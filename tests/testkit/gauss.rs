@@ -1,9 +1,9 @@
 //! A reference made of another formula than any method under test: Gauss-Legendre with three stages,
 //! order 6.
-#![allow(dead_code)]
 
 use springcheck::system::{State, System};
 use springcheck::truth::{Motion, States};
+use std::sync::Mutex;
 
 /// Nodes and matrix of the three-stage Gauss method (Hairer, Lubich, Wanner, Geometric Numerical
 /// Integration, II.1.3), with r = sqrt(15).
@@ -52,6 +52,8 @@ pub struct Gauss<'a> {
     start: State,
     h: f64,
     bar: f64,
+    /// What was asked for before: every method of an order study asks for the same times.
+    known: Mutex<Vec<(Vec<f64>, States)>>,
 }
 
 impl<'a> Gauss<'a> {
@@ -61,18 +63,17 @@ impl<'a> Gauss<'a> {
             start,
             h,
             bar: 0.0,
+            known: Mutex::default(),
         };
         let times: Vec<f64> = (1..=50).map(|k| until * f64::from(k) / 50.0).collect();
-        let ours = fine.states(&times);
+        let ours = fine.integrate(&times);
         fine.h = 2.0 * h;
-        fine.bar = super::distance(&ours.x, &fine.states(&times).x);
+        fine.bar = super::distance(&ours.x, &fine.integrate(&times).x);
         fine.h = h;
         fine
     }
-}
 
-impl Motion for Gauss<'_> {
-    fn states(&self, times: &[f64]) -> States {
+    fn integrate(&self, times: &[f64]) -> States {
         let mut state = self.start.clone();
         let mut states = States {
             dim: state.x.len(),
@@ -89,6 +90,18 @@ impl Motion for Gauss<'_> {
             states.x.extend_from_slice(&state.x);
             states.v.extend_from_slice(&state.v);
         }
+        states
+    }
+}
+
+impl Motion for Gauss<'_> {
+    fn states(&self, times: &[f64]) -> States {
+        let mut known = self.known.lock().expect("no panic");
+        if let Some((_, states)) = known.iter().find(|(asked, _)| asked == times) {
+            return states.clone();
+        }
+        let states = self.integrate(times);
+        known.push((times.to_vec(), states.clone()));
         states
     }
 

@@ -1,5 +1,4 @@
 //! Motions along a line, as formulas.
-#![allow(dead_code)]
 
 use springcheck::scene::Scene;
 use springcheck::truth::{Motion, States};

@@ -5,6 +5,8 @@ pub mod cloth;
 pub mod gauss;
 pub mod line;
 pub mod mutants;
+pub mod program;
+pub mod scenes;
 
 pub use springcheck::conformance::Build;
 pub use springcheck::conformance::systems::{Oscillator, free_triangle, swinging_triangle};
@@ -12,6 +14,25 @@ use springcheck::effects::Effect;
 use springcheck::integrators::{Integrator, Method, REGISTRY, Settings};
 use springcheck::scene::{DampingModel, GravitationalPair, Scene, Wind};
 use springcheck::system::{ParticleSystem, Power, State, System};
+
+/// All of these in a whole run, which `SPRINGCHECK_WHOLE=1` asks for as CI does; else one in `of`,
+/// beginning with number `at`: what lies in a loop over at least `of` cases that hands in its own number
+/// meets them all.
+pub fn part<A>(all: &[A], of: usize, at: usize) -> Vec<&A> {
+    let whole = std::env::var("SPRINGCHECK_WHOLE").is_ok_and(|value| value == "1");
+    let (first, every) = if whole { (0, 1) } else { (at % of, of) };
+    all.iter().skip(first).step_by(every).collect()
+}
+
+/// Every row with every one of `others` in a whole run, else with one of them in turn: see [`part`].
+pub fn crossed<'a, A, B>(rows: &'a [A], others: &'a [B]) -> Vec<(&'a A, &'a B)> {
+    let with = |(at, row)| {
+        part(others, others.len(), at)
+            .into_iter()
+            .map(move |other| (row, other))
+    };
+    rows.iter().enumerate().flat_map(with).collect()
+}
 
 /// The row's own integrator.
 pub fn own(method: &'static Method) -> impl Fn() -> Box<dyn Integrator> {

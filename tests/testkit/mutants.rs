@@ -1,5 +1,4 @@
 //! Integrators with the faults people write. Each law test must fail on the ones it names.
-#![allow(dead_code)]
 
 pub mod numerics;
 pub mod physics;

@@ -1,20 +1,15 @@
 //! Numbers other programs and papers publish, reproduced by the shipped scenes. Each is asserted of a
 //! wrong variant too, which has to fail it.
 
+use crate::testkit::scenes::shipped;
 use crate::testkit::{advance, method, own};
-use springcheck::crosscheck::{self, Choice, Expectations, Orders, Plan, Quiet};
+use springcheck::crosscheck::{Choice, Expectations, Orders, Plan, Quiet};
 use springcheck::engines::{Solver, rapier::Settings};
 use springcheck::scene::{self, Scene};
 use springcheck::system::{ParticleSystem, State, System};
 use springcheck::truth::Demand;
-use std::path::Path;
 
 const SIXTIETH: f64 = 1.0 / 60.0;
-
-fn shipped(path: &str) -> Scene {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    scene::read(&root.join(path), crosscheck::names()).expect("a valid scene")
-}
 
 /// rapier at its defaults but for `n` substeps.
 fn rapier(n: u32) -> Solver {

@@ -3,8 +3,8 @@
 use super::CostChoice;
 use super::errors::Errors;
 use super::sweep::{Sweep, Swept};
-use crate::measure::cost::{self, Judged};
 use crate::engines::Solver;
+use crate::measure::cost::{self, Judged};
 use crate::outcome::{Cost, CostCurve, Kind, TruthKind};
 use crate::scene::Scene;
 

@@ -105,7 +105,11 @@ const SMALL: f64 = 1e-2;
 
 impl Swept {
     /// Adds a point where its setting belongs.
-    pub fn insert(&mut self, setting: Setting, (point, kept, counts): (CostPoint, Samples, Counts)) {
+    pub fn insert(
+        &mut self,
+        setting: Setting,
+        (point, kept, counts): (CostPoint, Samples, Counts),
+    ) {
         let at = self.settings.partition_point(|s| s.is_no_finer(&setting));
         self.settings.insert(at, setting);
         self.points.insert(at, point);

@@ -62,7 +62,10 @@ impl Found<'_> {
             self.outcomes.iter().find(of)
         };
         let subjects: Vec<Solver> = subjects(scene).collect();
-        if subjects.iter().all(|subject| outcome(&subject.id).is_none()) {
+        if subjects
+            .iter()
+            .all(|subject| outcome(&subject.id).is_none())
+        {
             return vec![not_judged(&format!(
                 "none of the engines they are about ran at the scene's own timestep, {timestep:?} s; \
              --integrators all runs every integrator"

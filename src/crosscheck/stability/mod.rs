@@ -91,7 +91,11 @@ impl StabilityPlan<'_> {
         let scale = measure::energy_scale(scene, &system, None);
         Ok(Report {
             header: Header {
-                scene: ledger::facts(scene, ledger::effects(scene, &system, tally.evaluations()), scale),
+                scene: ledger::facts(
+                    scene,
+                    ledger::effects(scene, &system, tally.evaluations()),
+                    scale,
+                ),
                 truth: Truth {
                     kind: TruthKind::None,
                     method: None,
@@ -118,7 +122,11 @@ impl StabilityPlan<'_> {
             Some(map) => map.cells(self.scene, self.solvers.len())?.steps(),
             None => 0,
         };
-        Ok(self.steps_by_row().iter().sum::<u64>().saturating_add(of_map))
+        Ok(self
+            .steps_by_row()
+            .iter()
+            .sum::<u64>()
+            .saturating_add(of_map))
     }
 
     /// Of each row's search, in the order of the rows: what it mostly takes.

@@ -4,6 +4,7 @@ mod accepted;
 mod refused;
 mod upset;
 
+use crate::testkit::scenes::{files, folders};
 use springcheck::crosscheck;
 use springcheck::scene::{self, Names, Scene, SceneError};
 use std::sync::LazyLock;
@@ -44,14 +45,7 @@ fn complete(text: &str) -> String {
 
 /// The bytes of every shipped scene, with its path.
 fn shipped() -> Vec<(std::path::PathBuf, Vec<u8>)> {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let mut files: Vec<_> = ["golden", "hard", "order", "oscillator", "pa1"]
-        .iter()
-        .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
-        .map(|entry| entry.unwrap().path())
-        .collect();
-    files.sort();
-    files
+    files(&folders())
         .into_iter()
         .map(|path| (path.clone(), std::fs::read(path).unwrap()))
         .collect()

@@ -1,6 +1,7 @@
 //! Work integrals are advanced with the weights of the formula.
 
-use super::{pair, run, shipped, slope, tolerances};
+use super::{pair, run, slope, tolerances};
+use crate::testkit::scenes::shipped;
 use springcheck::integrators::Tableau;
 use springcheck::integrators::adaptive::{Pair, REGISTRY};
 use springcheck::scene::Scene;

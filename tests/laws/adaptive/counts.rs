@@ -1,7 +1,8 @@
 //! Evaluations, and the stages that are reused.
 
-use super::{pair, run, shipped};
+use super::{pair, run};
 use crate::testkit::built;
+use crate::testkit::scenes::shipped;
 use springcheck::engines::{AdaptiveEngine, Engine};
 use springcheck::integrators::adaptive::{Adaptive, Pair, REGISTRY};
 use springcheck::system::{Power, State, System};

@@ -1,7 +1,8 @@
 //! Where steps end, and that the same run gives the same bits.
 
-use super::{chain, pair, run, shipped};
+use super::{chain, pair, run};
 use crate::testkit::built;
+use crate::testkit::scenes::shipped;
 use springcheck::engines::{AdaptiveEngine, Engine};
 use springcheck::integrators::adaptive::{Adaptive, REGISTRY};
 use springcheck::scene::Scene;

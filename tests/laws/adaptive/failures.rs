@@ -1,6 +1,7 @@
 //! Steps that are rejected, and runs that end early.
 
-use super::{pair, run, shipped};
+use super::{pair, run};
+use crate::testkit::scenes::shipped;
 use springcheck::engines::Engine;
 use springcheck::integrators::StepError;
 use springcheck::integrators::adaptive::{Adaptive, Estimate, Pair, REGISTRY};

@@ -8,40 +8,24 @@ mod orders;
 mod tableaux;
 mod tolerance;
 
-use springcheck::crosscheck;
 use springcheck::engines::{AdaptiveEngine, Engine};
 use springcheck::integrators::adaptive::{self, Pair};
-use springcheck::scene::{self, Scene};
+use springcheck::scene::Scene;
 use springcheck::system::{ParticleSystem, State};
-use std::fmt::Write;
-use std::path::Path;
 
 fn pair(id: &str) -> &'static Pair {
     adaptive::find(id).unwrap_or_else(|| panic!("no pair {id}"))
 }
 
-fn shipped(path: &str) -> Scene {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    scene::read(&root.join(path), crosscheck::names()).expect("a valid scene")
-}
-
 /// A chain of five links let go sideways, with dampers.
 fn chain() -> Scene {
-    let mut yaml = "solver: {type: rk4, timestep: 0.001}\nduration: 1\nparticles:\n\
-                    - {pos: [0, 0, 4], fixed: true}\n"
-        .to_owned();
-    for i in 1..=5 {
-        let _ = writeln!(yaml, "- {{pos: [{}, 0, 4], mass: 0.1}}", 0.1 * f64::from(i));
+    let mut scene = crate::testkit::scenes::chain(5, 0.1, 0.1, 100.0);
+    scene.solver.gravity = -9.81;
+    scene.duration = 1.0;
+    for spring in &mut scene.springs {
+        spring.damping = 0.1;
     }
-    yaml += "springs:\n";
-    for i in 0..5 {
-        let ends = [i, i + 1];
-        let _ = writeln!(
-            yaml,
-            "- {{particle_ids: {ends:?}, stiffness: 100, damping: 0.1}}"
-        );
-    }
-    scene::parse(yaml.as_bytes(), "chain.yml", crosscheck::names()).expect("a valid scene")
+    scene
 }
 
 /// A run to the end of a scene: the engine there, and its states, the start included.

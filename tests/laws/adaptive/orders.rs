@@ -1,9 +1,10 @@
 //! The observed order of the formulas, at fixed steps.
 
-use super::{pair, shipped};
+use super::pair;
 use crate::testkit::built;
 use crate::testkit::gauss::Gauss;
 use crate::testkit::line::released;
+use crate::testkit::scenes::shipped;
 use springcheck::integrators::adaptive::{Adaptive, Pair, REGISTRY};
 use springcheck::integrators::{Integrator, StepError, Tableau};
 use springcheck::measure::order::{Study, Verdict};

@@ -1,7 +1,8 @@
 //! Errors are proportional to the tolerance.
 
-use super::{chain, pair, run, shipped, slope, tolerances};
+use super::{chain, pair, run, slope, tolerances};
 use crate::testkit::line::released;
+use crate::testkit::scenes::shipped;
 use springcheck::integrators::adaptive::{Estimate, Pair, REGISTRY};
 use springcheck::scene::Scene;
 use springcheck::system::ParticleSystem;

@@ -10,41 +10,40 @@ mod sweeps;
 mod symmetry;
 mod truths;
 
+use crate::testkit::scenes::{all_shipped, files, shipped};
 use rayon::prelude::*;
-use springcheck::crosscheck::{Choice, Plan, expect, names};
+use springcheck::crosscheck::{Choice, Plan, expect};
+use springcheck::engines::rapier;
 use springcheck::outcome::{CheckStatus, Outcome, Report, Status};
 use springcheck::report::json::Tool;
-use springcheck::scene::{self, Scene};
-use springcheck::engines::rapier;
+use springcheck::scene::Scene;
 use springcheck::{integrators, report};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 use truths::remembering;
 
 /// Every file of `scenes/hard`, by its stem.
 fn scenes() -> Vec<(String, Scene)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/hard");
-    let entries = std::fs::read_dir(folder).expect("scenes/hard");
-    let mut files: Vec<PathBuf> = entries
-        .map(|entry| entry.expect("an entry").path())
-        .collect();
-    files.sort();
-    assert!(!files.is_empty());
-    let read = |path: PathBuf| {
-        let scene = scene::read(&path, names()).unwrap_or_else(|error| panic!("{error}"));
-        let stem = path.file_stem().expect("a name").to_string_lossy();
-        (stem.into_owned(), scene)
+    let stem = |path: &PathBuf| {
+        path.file_stem()
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned()
     };
-    files.into_iter().map(read).collect()
+    let stems = files(&["hard"]).iter().map(stem).collect::<Vec<_>>();
+    stems.into_iter().zip(all_shipped(&["hard"])).collect()
 }
 
 /// A scene of `scenes/hard`.
 fn scene(name: &str) -> Scene {
-    let path = format!("scenes/hard/{name}.yml");
-    scene::read(path.as_ref(), names()).expect("a scene")
+    shipped(&format!("hard/{name}.yml"))
 }
 
-/// Panics with everything wrong with any scene.
+/// Panics with everything wrong with any scene. One test at a time: each uses all threads anyway, and
+/// the next finds the truths that the one before has computed.
 fn each_scene(judge: impl Fn(&str, &Scene) -> Vec<String> + Sync) {
+    static TURN: Mutex<()> = Mutex::new(());
+    let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let wrong: Vec<String> = scenes()
         .par_iter()
         .flat_map_iter(|(stem, scene)| {
@@ -52,6 +51,7 @@ fn each_scene(judge: impl Fn(&str, &Scene) -> Vec<String> + Sync) {
             wrong.into_iter().map(move |said| format!("{stem}: {said}"))
         })
         .collect();
+    drop(turn);
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 

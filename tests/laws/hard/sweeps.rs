@@ -3,8 +3,8 @@
 
 use super::scene;
 use crate::testkit::distance;
-use springcheck::engines::Setting;
 use springcheck::engines;
+use springcheck::engines::Setting;
 use springcheck::scene::{Scene, Spring};
 use springcheck::system::ParticleSystem;
 

@@ -2,6 +2,7 @@
 //! particle.
 
 use super::{SOLVED, stage};
+use crate::testkit::scenes::{fixed, free, shipped, spring};
 use crate::testkit::{Random, built, method, own, swinging_triangle};
 use springcheck::integrators::{Integrator, Settings, StepError};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring, Wind};
@@ -9,23 +10,10 @@ use springcheck::system::{Jacobian, Linearization, State, System};
 
 /// A particle of this mass at rest, fixed for a mass of 0.
 fn particle(position: [f64; 3], mass: f64) -> Particle {
-    Particle {
-        position,
-        velocity: [0.0; 3],
-        fixed: mass == 0.0,
-        mass: if mass == 0.0 { 1.0 } else { mass },
-        radius: 0.01,
-        drag: 0.0,
-    }
-}
-
-fn spring(ends: [usize; 2], stiffness: f64, rest_length: f64) -> Spring {
-    Spring {
-        ends,
-        stiffness,
-        cubic: 0.0,
-        damping: 0.0,
-        rest_length,
+    if mass == 0.0 {
+        fixed(position)
+    } else {
+        free(position, mass)
     }
 }
 
@@ -306,9 +294,7 @@ fn a_refused_step_leaves_the_state() {
 
 /// The most linear solves any of these steps takes.
 fn most_solves(id: &str, name: &str, h: f64, steps: usize) -> u64 {
-    let path = format!("scenes/hard/{name}.yml");
-    let scene = springcheck::scene::read(path.as_ref(), springcheck::crosscheck::names());
-    let (system, mut state) = built(&scene.expect("a scene"));
+    let (system, mut state) = built(&shipped(&format!("hard/{name}.yml")));
     let mut integrator = own(method(id))();
     let mut most = 0;
     for _ in 0..steps {

@@ -3,6 +3,7 @@
 
 mod hard;
 use crate::testkit::mutants::{self, mutant};
+use crate::testkit::scenes::{free, spring};
 use crate::testkit::{Build, Random, built, method, own, swinging_triangle};
 use springcheck::integrators::{Integrator, Settings, StepError};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
@@ -13,25 +14,22 @@ use springcheck::system::{Jacobian, Linearization, ParticleSystem, Power, State,
 fn strip(rows: usize) -> Scene {
     let mut scene = swinging_triangle(0.0, DampingModel::Axial);
     let mut random = Random(5);
-    let particle = |i: usize, random: &mut Random| Particle {
-        position: [
+    let particle = |i: usize, random: &mut Random| {
+        let position = [
             0.5 * (i / 2) as f64 + 0.05 * random.next(),
             0.5 * (i % 2) as f64 + 0.05 * random.next(),
             0.05 * random.next(),
-        ],
-        velocity: [random.next(), random.next(), random.next()],
-        fixed: i < 2,
-        mass: 1.0 + 0.5 * random.next(),
-        radius: 0.1,
-        drag: 0.0,
+        ];
+        Particle {
+            velocity: [random.next(), random.next(), random.next()],
+            fixed: i < 2,
+            ..free(position, 1.0 + 0.5 * random.next())
+        }
     };
     scene.particles = (0..2 * rows).map(|i| particle(i, &mut random)).collect();
-    let spring = |ends: [usize; 2]| Spring {
-        ends,
-        stiffness: 200.0,
-        cubic: 0.0,
+    let spring = |ends| Spring {
         damping: 0.7,
-        rest_length: 0.5,
+        ..spring(ends, 200.0, 0.5)
     };
     scene.springs = (0..2 * rows - 2)
         .flat_map(|i| [Some([i, i + 2]), (i % 2 == 0).then_some([i, i + 3])])

@@ -5,11 +5,10 @@ mod modes;
 mod resonance;
 mod stages;
 
-use springcheck::scene::{self, Scene};
-use std::path::Path;
+use crate::testkit::scenes::shipped;
+use springcheck::scene::Scene;
 
 /// A shipped hard scene.
 fn hard(name: &str) -> Scene {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/hard");
-    scene::read(&root.join(name), springcheck::crosscheck::names()).expect("a valid scene")
+    shipped(&format!("hard/{name}"))
 }

@@ -1,86 +1,27 @@
 //! The scenes the twins are proved on, built in code: the course's seven, and one per effect.
 
-use springcheck::crosscheck;
-use springcheck::scene::{
-    self, Axis, DampingModel, GravitationalPair, Particle, Scene, Solver, Spring, Wind,
-};
-use std::path::Path;
+use crate::testkit::scenes::{self, all_shipped, shipped, spring};
+pub use crate::testkit::scenes::{fixed, free};
+use springcheck::scene::{DampingModel, GravitationalPair, Scene, Solver, Spring, Wind};
 
 /// Nothing in it: gravity along z, a step of 5e-4 s, one second.
 pub fn empty(name: &str) -> Scene {
     Scene {
         name: name.to_owned(),
-        description: None,
-        file: String::new(),
         solver: Solver {
             method: "symplectic_euler".to_owned(),
             timestep: 5e-4,
             gravity: -9.81,
-            tolerance: None,
+            ..scenes::empty().solver
         },
         duration: 1.0,
-        up: Axis::Z,
-        damping_model: DampingModel::Axial,
-        plot: None,
-        particles: Vec::new(),
-        springs: Vec::new(),
-        gravitational: Vec::new(),
-        wind: None,
-        expect: Vec::new(),
+        ..scenes::empty()
     }
-}
-
-pub fn free(position: [f64; 3], mass: f64) -> Particle {
-    Particle {
-        position,
-        velocity: [0.0; 3],
-        fixed: false,
-        mass,
-        radius: 0.1,
-        drag: 0.0,
-    }
-}
-
-pub fn fixed(position: [f64; 3]) -> Particle {
-    Particle {
-        fixed: true,
-        ..free(position, 0.1)
-    }
-}
-
-/// A shipped scene.
-fn shipped(path: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("scenes")
-        .join(path);
-    scene::read(&path, crosscheck::names()).expect("a valid scene")
 }
 
 /// The course's scene of this number, 0 to 6.
 pub fn course(number: usize) -> Scene {
     shipped(&format!("pa1/scene{number:02}.yml"))
-}
-
-/// Every file of a folder of scenes, by name.
-fn folder(name: &str) -> Vec<Scene> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("scenes")
-        .join(name);
-    let entries = std::fs::read_dir(path).expect("a folder");
-    let mut files: Vec<_> = entries
-        .map(|entry| {
-            entry
-                .expect("an entry")
-                .file_name()
-                .into_string()
-                .expect("UTF-8")
-        })
-        .collect();
-    files.sort();
-    files
-        .iter()
-        .map(|file| shipped(&format!("{name}/{file}")))
-        .collect()
 }
 
 /// One mass on one spring along x, without gravity; displaced by `amplitude`.
@@ -89,13 +30,7 @@ pub fn oscillator(k: f64, m: f64, amplitude: f64, rest_length: f64, timestep: f6
     scene.solver.gravity = 0.0;
     scene.solver.timestep = timestep;
     scene.particles = vec![fixed([0.; 3]), free([rest_length + amplitude, 0., 0.], m)];
-    scene.springs = vec![Spring {
-        ends: [0, 1],
-        stiffness: k,
-        cubic: 0.0,
-        damping: 0.0,
-        rest_length,
-    }];
+    scene.springs = vec![spring([0, 1], k, rest_length)];
     scene
 }
 
@@ -172,8 +107,7 @@ pub fn mirrored() -> Vec<Scene> {
         // h w = 2.12: symplectic Euler grows.
         ..oscillator(50., 1., 0.5, 0.5, 0.3)
     };
-    let mut scenes = folder("pa1");
-    scenes.extend(folder("oscillator"));
+    let mut scenes = all_shipped(&["pa1", "oscillator"]);
     assert!(scenes.len() >= 14);
     scenes.extend([stiff, isotropic(), drag(), wind(), drag_and_wind()]);
     scenes

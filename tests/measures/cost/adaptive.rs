@@ -1,14 +1,15 @@
 //! Adaptive pairs beside fixed steps, and integrators of the caller's own.
 
-use super::{choice, cost, of, read};
+use super::{choice, cost, of};
 use crate::testkit::mutants;
+use crate::testkit::scenes::shipped;
 use springcheck::engines::Solver;
 use springcheck::integrators::{self, Settings, adaptive};
 use springcheck::outcome::{Kind, Status};
 
 #[test]
 fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {
-    let scene = read("oscillator/oscillator.yml");
+    let scene = shipped("oscillator/oscillator.yml");
     let mut choice = choice(
         integrators::REGISTRY
             .iter()
@@ -66,7 +67,7 @@ fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {
 
 #[test]
 fn an_integrator_of_ones_own_gets_a_curve_like_any_other() {
-    let scene = read("oscillator/oscillator.yml");
+    let scene = shipped("oscillator/oscillator.yml");
     let method = integrators::find("velocity_verlet").expect("a method");
     let mut choice = choice(vec![method]);
     choice.budget_s = 0.5;

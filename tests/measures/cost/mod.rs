@@ -4,22 +4,13 @@ mod adaptive;
 mod sweep;
 mod theory;
 
+use springcheck::crosscheck::Quiet;
 use springcheck::crosscheck::cost::{CostChoice, CostPlan};
 use springcheck::engines::Solver;
-use springcheck::crosscheck::{self, Quiet};
 use springcheck::integrators::{self, Method};
 use springcheck::outcome::{Cost, CostCurve};
-use springcheck::scene::{self, Scene};
+use springcheck::scene::Scene;
 use springcheck::truth::Demand;
-use std::path::Path;
-
-/// A scene of this repository.
-fn read(name: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("scenes")
-        .join(name);
-    scene::read(&path, crosscheck::names()).expect("a valid scene")
-}
 
 /// These methods over a small budget, no engines.
 fn choice(methods: Vec<&'static Method>) -> CostChoice {
@@ -27,7 +18,7 @@ fn choice(methods: Vec<&'static Method>) -> CostChoice {
         solvers: methods.into_iter().map(Solver::method).collect(),
         targets: vec![1e-2, 1e-3, 1e-4],
         settings: 10,
-        budget_s: 4.0,
+        budget_s: 1.5,
         timesteps: None,
         truth: Demand::Auto,
     }

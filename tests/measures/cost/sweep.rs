@@ -1,8 +1,9 @@
 //! Laws every sweep keeps: settings, reasons, the same answer however many threads.
 
-use super::{all, choice, cost, of, read};
-use springcheck::crosscheck::cost::{CostChoice, CostPlan};
+use super::{all, choice, cost, of};
+use crate::testkit::scenes::shipped;
 use springcheck::crosscheck::Quiet;
+use springcheck::crosscheck::cost::{CostChoice, CostPlan};
 use springcheck::engines;
 use springcheck::integrators;
 use springcheck::outcome::{Body, Cost, Kind, Report, Status};
@@ -47,10 +48,12 @@ fn on_threads(threads: usize, scene: &Scene, choice: &CostChoice) -> Report {
 
 #[test]
 fn all_but_the_clock_is_the_same_on_every_number_of_threads() {
-    let scene = read("pa1/scene03.yml");
+    let scene = shipped("pa1/scene03.yml");
     let mut choice = choice(all());
     let rapier = engines::rapier::IDS.iter();
-    choice.solvers.extend(rapier.filter_map(|id| engines::find(id)));
+    choice
+        .solvers
+        .extend(rapier.filter_map(|id| engines::find(id)));
     (choice.budget_s, choice.settings) = (1.0, 4);
     let [one, four] = [1, 4].map(|threads| counted(&on_threads(threads, &scene, &choice)));
     assert_eq!(one, four);
@@ -116,7 +119,7 @@ fn every_sweep_keeps_its_laws() {
         "hard/stiff_beside_soft.yml",
         "hard/pleiades.yml",
     ] {
-        let mut scene = read(name);
+        let mut scene = shipped(name);
         scene.duration = scene.duration.min(3.0);
         let mut choice = choice(all());
         choice.solvers.extend(engines::find("rapier"));
@@ -127,7 +130,7 @@ fn every_sweep_keeps_its_laws() {
 
 #[test]
 fn a_target_between_two_settings_is_met_closely() {
-    let scene = read("oscillator/oscillator.yml");
+    let scene = shipped("oscillator/oscillator.yml");
     let cost = cost(
         &scene,
         &choice(vec![
@@ -148,7 +151,7 @@ fn a_target_between_two_settings_is_met_closely() {
 
 #[test]
 fn what_diverges_and_what_cannot_be_judged_say_so() {
-    let mut scene = read("oscillator/oscillator.yml");
+    let mut scene = shipped("oscillator/oscillator.yml");
     scene.springs[0].stiffness = 1e6;
     let mut choice = choice(vec![integrators::find("explicit_euler").expect("a method")]);
     // h w = 10 and 20: amplitudes grow by these factors every step.
@@ -179,7 +182,7 @@ fn what_diverges_and_what_cannot_be_judged_say_so() {
 
 #[test]
 fn below_the_truths_own_bar_nobody_reaches_anything() {
-    let scene = read("oscillator/oscillator.yml");
+    let scene = shipped("oscillator/oscillator.yml");
     let mut choice = choice(vec![integrators::find("rk4").expect("a method")]);
     choice.targets = vec![1e-15];
     choice.budget_s = 0.5;
@@ -195,7 +198,7 @@ fn below_the_truths_own_bar_nobody_reaches_anything() {
 
 #[test]
 fn a_budget_too_small_tries_no_more_settings_than_a_slope_needs() {
-    let scene = read("hard/chain_20.yml");
+    let scene = shipped("hard/chain_20.yml");
     let method = integrators::find("implicit_euler").expect("a method");
     let steps = |settings: usize, budget_s: f64| {
         let mut choice = choice(vec![method]);

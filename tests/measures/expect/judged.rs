@@ -2,11 +2,11 @@
 
 use super::{oscillator, run};
 use springcheck::crosscheck::{Choice, expect, names};
-use springcheck::outcome::{Body, Check, CheckStatus, Outcome, Report};
-use springcheck::scene::{self, Expectation, Scene, Wanted, Whom};
-use springcheck::truth::Demand;
 use springcheck::engines::rapier;
 use springcheck::integrators;
+use springcheck::outcome::{Body, Check, CheckStatus, Outcome, Report};
+use springcheck::scene::{Expectation, Scene, Wanted, Whom};
+use springcheck::truth::Demand;
 
 fn judged(expect: &str) -> (Scene, Report, Vec<Check>) {
     let scene = oscillator(expect);
@@ -235,9 +235,8 @@ fn only_what_is_expected_runs() {
 
 #[test]
 fn what_is_left_out_changes_no_key() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/pa1/scene01.yml");
     // From rest, so that the energy scale is the truth's; a deviation is from an engine that runs.
-    let mut scene = scene::read(path.as_ref(), names()).expect("a shipped scene");
+    let mut scene = crate::testkit::scenes::shipped("pa1/scene01.yml");
     scene.duration = 0.1;
     let value = |report: &Report, key: &str| {
         let outcome = serde_json::to_value(&report.outcomes()[0]).expect("JSON");

@@ -3,9 +3,10 @@
 mod judged;
 mod table;
 
-use springcheck::crosscheck::{Choice, Plan, Quiet, names};
+use crate::testkit::scenes::parsed;
+use springcheck::crosscheck::{Choice, Plan, Quiet};
 use springcheck::outcome::Report;
-use springcheck::scene::{self, Scene};
+use springcheck::scene::Scene;
 
 /// One mass on one spring without rest length, a turn and a half in 100 steps; with this `expect`.
 fn oscillator(expect: &str) -> Scene {
@@ -14,7 +15,7 @@ fn oscillator(expect: &str) -> Scene {
          - {{pos: [0, 0, 0], fixed: true}}\n- {{pos: [1, 0, 0], mass: 1}}\n\
          springs: [{{particle_ids: [0, 1], stiffness: 1, rest_length: 0}}]\nexpect:\n{expect}\n"
     );
-    scene::parse(yaml.as_bytes(), "oscillator.yml", names()).unwrap_or_else(|e| panic!("{e}"))
+    parsed(&yaml)
 }
 
 fn run(scene: &Scene, choice: &Choice) -> Report {

@@ -2,24 +2,16 @@
 //! has one.
 
 use super::record::{fault_of, question, rows, run, thinned};
-use springcheck::crosscheck;
+use crate::testkit::part;
+use crate::testkit::scenes::all_shipped;
 use springcheck::integrators::REGISTRY;
 use springcheck::measure::identify::{Candidate, first_fault, identify};
-use springcheck::scene::{self, Scene};
+use springcheck::scene::Scene;
 use springcheck::system::{ParticleSystem, State};
 use springcheck::trajectory::{Precision, Rows};
-use std::path::{Path, PathBuf};
 
 fn shipped() -> Vec<Scene> {
-    let mut files: Vec<PathBuf> = Vec::new();
-    for folder in ["scenes/pa1", "scenes/oscillator"] {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-        let entries = std::fs::read_dir(folder).expect("scenes");
-        files.extend(entries.map(|entry| entry.expect("a scene").path()));
-    }
-    files.sort();
-    let read = |file: &PathBuf| scene::read(file, crosscheck::names()).expect("a scene");
-    files.iter().map(read).collect()
+    all_shipped(&["pa1", "oscillator"])
 }
 
 /// The forms a run may come in: precisions, with and without velocities, thinned.
@@ -43,15 +35,15 @@ fn forms(scene: &Scene, states: &[State]) -> Vec<Rows> {
 
 #[test]
 fn what_follows_its_scheme_has_no_fault_on_shipped_scenes() {
-    for scene in shipped() {
+    for (number, scene) in shipped().into_iter().enumerate() {
         let system = ParticleSystem::new(&scene);
         // Six hundred coordinates take their time.
         let steps = if scene.particles.len() > 30 { 6 } else { 150 };
-        for method in REGISTRY {
+        for (at, method) in REGISTRY.iter().enumerate() {
             let own = Candidate::method(&system, method, 1);
             let states = run(&scene, steps, |_| &own, |_, _| {});
-            for rows in forms(&scene, &states) {
-                let fault = fault_of(&scene, &rows, method.id);
+            for rows in part(&forms(&scene, &states), 3, at + number) {
+                let fault = fault_of(&scene, rows, method.id);
                 assert_eq!(
                     fault, None,
                     "{} {} {:?}",

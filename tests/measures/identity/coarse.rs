@@ -1,7 +1,7 @@
 //! Rounded data: named where it can be, and said to be too coarse where not.
 
 use super::*;
-use crate::testkit::swinging_triangle;
+use crate::testkit::{crossed, swinging_triangle};
 use springcheck::integrators::REGISTRY;
 use springcheck::measure::identify::Sameness;
 use springcheck::scene::DampingModel;
@@ -54,21 +54,19 @@ fn honest(identity: &Identity, method: &str, substeps: u32) -> Result<(), String
 
 #[test]
 fn what_is_said_of_rounded_data_holds() {
+    let cases = [(0.7, 1), (0.0, 3)];
+    let cases = cases.map(|case| ROUNDINGS.map(|precision| (case, precision)));
+    let tried = crossed(REGISTRY, cases.as_flattened());
     let mut decided = 0;
-    for (damping, substeps) in [(0.7, 1), (0.0, 3)] {
-        let scene = swinging_triangle(damping, DampingModel::Axial);
-        // Every other one: each is tried with every rounding.
-        for method in REGISTRY.iter().step_by(2) {
-            let rows = run(&scene, method.id, substeps, 200);
-            for precision in ROUNDINGS {
-                let identity = name(&scene, &rounded(rows.clone(), precision));
-                honest(&identity, method.id, substeps).unwrap();
-                decided += usize::from(identity.decisive);
-            }
-        }
+    for (method, ((damping, substeps), precision)) in &tried {
+        let scene = swinging_triangle(*damping, DampingModel::Axial);
+        let rows = run(&scene, method.id, *substeps, 200);
+        let identity = name(&scene, &rounded(rows, *precision));
+        honest(&identity, method.id, *substeps).unwrap();
+        decided += usize::from(identity.decisive);
     }
     // The rest are methods of high order, which such data does not tell apart at this step.
-    assert!(decided >= 27, "{decided} of 54");
+    assert!(2 * decided >= tried.len(), "{decided} of {}", tried.len());
 }
 
 /// First-order methods differ by h², which six digits show at h = 0.01.
@@ -116,17 +114,17 @@ fn the_law_of_rounded_data_kills_mutants() {
     assert!(honest(&name(&stiffer, &rows), "explicit_euler", 1).is_err());
 }
 
-/// Single transitions are too coarse for six digits at a small step; longer stretches are not.
+/// Single transitions are too coarse for five decimals at a small step; longer stretches are not.
 #[test]
 fn differences_add_up_over_longer_stretches() {
     let mut scene = swinging_triangle(0.0, DampingModel::Axial);
-    scene.solver.timestep = 1e-4;
+    scene.solver.timestep = 1e-3;
     for id in [
         "explicit_euler",
         "symplectic_euler",
         "symplectic_euler_drift_first",
     ] {
-        let rows = rounded(run(&scene, id, 1, 2000), Precision::Decimals(6));
+        let rows = rounded(run(&scene, id, 1, 300), Precision::Decimals(5));
         let identity = name(&scene, &rows);
         let rest = identity
             .equivalent

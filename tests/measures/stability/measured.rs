@@ -1,7 +1,8 @@
 //! Measured limits against the kit's one-step matrices, on scenes whose forces are linear, and what
 //! the measurement does where there is no theory.
 
-use crate::testkit::method;
+use crate::testkit::scenes::{self, parsed};
+use crate::testkit::{crossed, method};
 use rayon::prelude::*;
 use springcheck::conformance::measured_limit;
 use springcheck::conformance::systems::Oscillator;
@@ -9,7 +10,7 @@ use springcheck::engines::{Engine, IntegratorEngine, Setting, Unsupported};
 use springcheck::integrators::{EnergyLaw, Method, REGISTRY, Settings, Stable};
 use springcheck::measure::stability::{Limit, Make, Measured, classify, measure};
 use springcheck::outcome::Cell;
-use springcheck::scene::{Scene, parse};
+use springcheck::scene::Scene;
 use springcheck::system::{ParticleSystem, State};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -22,32 +23,18 @@ const UPTO: f64 = 12.0;
 const ZETAS: [f64; 5] = [0.0, 0.1, 0.5, 1.0, 2.0];
 const PATIENT: u64 = 100_000_000;
 
-fn scene(yaml: &str) -> Scene {
-    parse(
-        yaml.as_bytes(),
-        "test.yml",
-        springcheck::crosscheck::names(),
-    )
-    .unwrap()
-}
-
 /// One particle on a spring of rest length 0, off the axes and under gravity.
 fn oscillator(zeta: f64) -> Scene {
-    scene(&format!(
-        "solver: {{type: explicit_euler, timestep: 0.01}}
-damping_model: isotropic
-particles:
-- {{pos: [0, 0, 0], fixed: true}}
-- {{pos: [0.5, 0.1, 0.2], mass: 1}}
-springs: [{{particle_ids: [0, 1], stiffness: 49, rest_length: 0, damping: {}}}]
-",
-        2.0 * zeta * W
-    ))
+    let mut scene = scenes::oscillator(W * W, 0.5);
+    (scene.solver.timestep, scene.solver.gravity) = (0.01, -9.81);
+    scene.particles[1].position = [0.5, 0.1, 0.2];
+    scene.springs[0].damping = 2.0 * zeta * W;
+    scene
 }
 
 /// Wall, 1 kg, 2 kg, wall; springs of 40, 30 and 20 N/m.
 fn network() -> Scene {
-    scene(
+    parsed(
         "solver: {type: explicit_euler, timestep: 0.01}
 particles:
 - {pos: [0, 0, 0], fixed: true}
@@ -70,7 +57,7 @@ fn network_w() -> f64 {
 
 /// Drag alone: v' = -4 v and v' = -0.5 v, the textbook's test equation.
 fn drag() -> Scene {
-    scene(
+    parsed(
         "solver: {type: explicit_euler, timestep: 0.01}
 particles:
 - {pos: [0, 0, 0], vel: [1, 0, 0], mass: 1, drag: 4}
@@ -128,11 +115,9 @@ fn linear_methods() -> Vec<&'static Method> {
 
 #[test]
 fn limits_of_every_method_are_those_of_theory() {
-    let cases: Vec<_> = linear_methods()
-        .into_iter()
-        .flat_map(|m| ZETAS.map(|zeta| (m, zeta)))
-        .collect();
-    cases.par_iter().for_each(|&(method, zeta)| {
+    let methods = linear_methods();
+    let cases = crossed(&methods, &ZETAS);
+    cases.par_iter().for_each(|&(&method, &zeta)| {
         let theory = theory(method, zeta);
         // As the prediction hands it in, without which a gap in the stable region (PEFRL's from
         // 2.989 to 3.505) may be stepped over.
@@ -287,18 +272,16 @@ fn smooth_in_theory(method: &Method, zeta: f64) -> Option<f64> {
 
 #[test]
 fn smooth_up_to_where_an_eigenvalue_turns_negative() {
-    for method in linear_methods() {
-        for zeta in [1.5, 2.0] {
-            let expected = smooth_in_theory(method, zeta);
-            let theory = theory(method, zeta);
-            let found = found(&engine(method), &oscillator(zeta), theory.map(|z| z / W));
-            let measured = found.smooth_below_s.map(|h| W * h);
-            match (measured, expected) {
-                (Some(m), Some(e)) => {
-                    assert!((m / e - 1.0).abs() < PROMISED, "{} {m} {e}", method.id)
-                }
-                (m, e) => assert_eq!(m, e, "{} {zeta}", method.id),
+    for (&method, &zeta) in crossed(&linear_methods(), &[1.5, 2.0]) {
+        let expected = smooth_in_theory(method, zeta);
+        let theory = theory(method, zeta);
+        let found = found(&engine(method), &oscillator(zeta), theory.map(|z| z / W));
+        let measured = found.smooth_below_s.map(|h| W * h);
+        match (measured, expected) {
+            (Some(m), Some(e)) => {
+                assert!((m / e - 1.0).abs() < PROMISED, "{} {m} {e}", method.id)
             }
+            (m, e) => assert_eq!(m, e, "{} {zeta}", method.id),
         }
     }
     // Nothing is smooth that oscillates.
@@ -355,7 +338,7 @@ fn stability_need_not_be_monotone() {
 
 /// A spring pulled tight, with a damper along it.
 fn taut() -> Scene {
-    scene(
+    parsed(
         "solver: {type: explicit_euler, timestep: 0.001, gravity: 0}
 particles:
 - {pos: [0, 0, 0], fixed: true}
@@ -392,18 +375,9 @@ fn a_motion_hidden_by_symmetry_is_shaken_out() {
 
 /// `links` masses of 0.1 kg hanging on springs of 0.1 m, at rest length.
 fn chain(links: usize, stiffness: f64) -> Scene {
-    let mut yaml = "solver: {type: symplectic_euler, timestep: 0.0166666666}\nparticles:\n- {pos: [0, 0, 0], fixed: true}\n".to_owned();
-    for i in 1..=links {
-        yaml += &format!("- {{pos: [{}, 0, 0], mass: 0.1}}\n", 0.1 * i as f64);
-    }
-    yaml += "springs:\n";
-    for i in 0..links {
-        yaml += &format!(
-            "- {{particle_ids: [{i}, {}], stiffness: {stiffness}}}\n",
-            i + 1
-        );
-    }
-    scene(&yaml)
+    let mut scene = scenes::chain(links, 0.1, 0.1, stiffness);
+    (scene.solver.timestep, scene.solver.gravity) = (1.0 / 60.0, -9.81);
+    scene
 }
 
 fn rapier(scene: &Scene, h: f64) -> Result<Box<dyn Engine>, Unsupported> {

@@ -1,14 +1,11 @@
 //! What a map varies.
 
+use crate::testkit::scenes::shipped;
 use springcheck::crosscheck::stability::{Range, Vary};
-use springcheck::scene::{self, Scene};
+use springcheck::scene::Scene;
 
 fn circle() -> Scene {
-    scene::read(
-        "scenes/oscillator/circle.yml".as_ref(),
-        springcheck::crosscheck::names(),
-    )
-    .expect("a shipped scene")
+    shipped("oscillator/circle.yml")
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::*;
 #[test]
 fn it_prints_a_table_and_writes_a_report() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().to_str().expect("UTF-8");
+    let out = word(folder.path());
     let args = [&[SCENE, "--output", out][..], &SMALL].concat();
     let (code, table, err) = output(&args);
     // Not a terminal, and little to do: no bar and no announcement, with or without --quiet.
@@ -37,7 +37,7 @@ fn it_prints_a_table_and_writes_a_report() {
 #[test]
 fn named_timesteps_are_exactly_those_and_draw_a_picture() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().to_str().expect("UTF-8");
+    let out = word(folder.path());
     // 0.15 does not divide 5, and one is named twice.
     let steps = [SCENE, "--timestep", ".15,.01,.05,.05", "--output", out];
     let who = ["--integrators", "rk4,dop853,symplectic_euler"];
@@ -64,29 +64,6 @@ fn named_timesteps_are_exactly_those_and_draw_a_picture() {
     }
 }
 
-/// As wide as promised, nothing that is no number, no colour where nobody looks.
-pub fn tidy(table: &str) {
-    for line in table.lines() {
-        assert!(line.chars().count() <= 100, "{line}");
-    }
-    for wrong in ["NaN", "inf ", "null", "\u{1b}"] {
-        assert!(!table.contains(wrong), "{wrong} in\n{table}");
-    }
-}
-
-pub fn well_formed(place: &Path) {
-    for name in files(place)
-        .iter()
-        .filter(|name| !name.ends_with(".series"))
-    {
-        let text = std::fs::read_to_string(place.join(name)).expect("text");
-        assert!(!text.contains("NaN") && !text.contains("inf "), "{name}");
-        if name.ends_with(".svg") {
-            roxmltree::Document::parse(&text).expect("well-formed");
-        }
-    }
-}
-
 #[test]
 fn what_takes_no_part_is_not_explained() {
     let args = ["scenes/hard/pleiades.yml", "--format", "markdown"];
@@ -106,12 +83,11 @@ fn other_formats_write_no_files() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     for format in ["json", "markdown"] {
         let mut command = springcheck();
-        let scene = root.join(SCENE);
-        command.current_dir(folder.path()).arg("cost").arg(scene);
-        let output = command.args(SMALL).args(["--format", format]).output();
-        let output = output.expect("it runs");
-        assert_eq!(output.status.code(), Some(0));
-        assert!(output.stderr.is_empty() && !output.stdout.is_empty());
+        let command = command.current_dir(folder.path()).arg("cost");
+        let command = command.arg(root.join(SCENE)).args(SMALL);
+        let (code, out, err) = answer(command.args(["--format", format]));
+        assert_eq!((code, err.as_str()), (0, ""));
+        assert!(!out.is_empty());
         assert_eq!(files(folder.path()), BTreeSet::new(), "{format}");
     }
 }

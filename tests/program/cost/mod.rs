@@ -5,7 +5,9 @@ mod keys;
 mod scenes;
 mod usage;
 
-use assert_cmd::Command;
+use crate::testkit::program::{
+    self, answer, array, files, keys, number, refuse, set, springcheck, tidy, well_formed, word,
+};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -21,24 +23,12 @@ const SMALL: [&str; 6] = [
     "rk4,symplectic_euler,dormand_prince54",
 ];
 
-fn springcheck() -> Command {
-    let mut command = Command::cargo_bin("springcheck").expect("the binary");
-    command.current_dir(env!("CARGO_MANIFEST_DIR"));
-    command.env("SPRINGCHECK_CACHE", "");
-    command
-}
-
 fn output(args: &[&str]) -> (i32, String, String) {
-    let output = springcheck().arg("cost").args(args).output();
-    let output = output.expect("it runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
+    program::output(&[&["cost"], args].concat())
 }
 
 fn json(args: &[&str]) -> Value {
-    let args = [args, &["--format", "json"]].concat();
-    let (code, out, err) = output(&args);
+    let (code, out, err) = output(&[args, &["--format", "json"]].concat());
     assert_eq!((code, err.as_str()), (0, ""), "{args:?}");
     assert!(!out.contains("NaN") && !out.contains("inf,"), "{args:?}");
     report(&out)
@@ -55,23 +45,6 @@ fn small(args: &[&str]) -> Value {
     json(&[args, &SMALL].concat())
 }
 
-fn keys(value: &Value) -> BTreeSet<&str> {
-    let object = value.as_object().expect("an object");
-    object.keys().map(String::as_str).collect()
-}
-
-fn set<'a>(keys: &[&'a str]) -> BTreeSet<&'a str> {
-    keys.iter().copied().collect()
-}
-
-fn array(value: &Value) -> &Vec<Value> {
-    value.as_array().expect("an array")
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().expect("a number")
-}
-
 fn curves(report: &Value) -> &Vec<Value> {
     array(&report["cost"]["curves"])
 }
@@ -82,17 +55,9 @@ fn engines(report: &Value) -> Vec<&str> {
     engines.map(|e| e.as_str().expect("an id")).collect()
 }
 
-/// Files below a folder, by their names.
-fn files(folder: &Path) -> BTreeSet<String> {
-    let entries = std::fs::read_dir(folder).expect("a folder");
-    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.expect("a file").file_name();
-    let names = entries.map(|entry| name(entry).into_string().expect("UTF-8"));
-    names.collect()
-}
-
 /// A scene of the test's own: its file, which lives as long as the folder does.
 fn scene(folder: &tempfile::TempDir, text: &str) -> String {
     let path = folder.path().join("scene.yml");
     std::fs::write(&path, text).expect("written");
-    path.to_str().expect("UTF-8").to_owned()
+    program::word(&path).to_owned()
 }

@@ -1,6 +1,5 @@
 //! Scenes at the edge, and the same scene twice.
 
-use super::files::tidy;
 use super::keys::keep_the_contract;
 use super::*;
 
@@ -35,9 +34,9 @@ fn two_runs_are_equal_but_for_the_clock() {
         let mut command = springcheck();
         command.args(["cost", "scenes/pa1/scene01.yml", "--format", "json"]);
         command.args(SMALL).env("RAYON_NUM_THREADS", threads);
-        let output = command.output().expect("it runs");
-        assert_eq!(output.status.code(), Some(0));
-        let mut report = report(&String::from_utf8_lossy(&output.stdout));
+        let (code, report, _) = answer(&mut command);
+        assert_eq!(code, 0);
+        let mut report = program::report(&report);
         let clock = report.to_string();
         without_the_clock(&mut report);
         (clock, report.to_string())
@@ -59,7 +58,7 @@ fn all_may_diverge() {
          springs: [{particle_ids: [0, 1], stiffness: 1.e+10, rest_length: 0}]\n",
     );
     let out = folder.path().join("out");
-    let out = out.to_str().expect("UTF-8");
+    let out = word(&out);
     let who = ["--integrators", "explicit_euler,rk4", "--engines", "none"];
     let args = [&[&file, "--timestep", ".01,.02"][..], &who].concat();
     let report = json(&args);
@@ -104,7 +103,7 @@ fn rest_one_particle_and_no_springs_have_answers() {
             assert!(rk4.clone().all(|rank| !rank["reached"].is_null()), "{text}");
         }
         let out = folder.path().join("out");
-        let flags = ["--output", out.to_str().expect("UTF-8")];
+        let flags = ["--output", word(&out)];
         let (code, table, err) = output(&[&[&file[..]][..], &SMALL, &flags].concat());
         assert_eq!((code, err.as_str()), (0, ""));
         tidy(&table);
@@ -115,7 +114,7 @@ fn rest_one_particle_and_no_springs_have_answers() {
 #[test]
 fn the_next_command_runs() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().to_str().expect("UTF-8");
+    let out = word(folder.path());
     for flags in [
         &["--duration", "1e-9"][..],
         &["--duration", "0.015"],
@@ -135,8 +134,7 @@ fn the_next_command_runs() {
         let mut command = springcheck();
         command.args(next.split(' '));
         command.args(["--engines", "none", "--output", out]);
-        let output = command.output().expect("it runs");
-        let err = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(0), "{next}: {err}");
+        let (code, _, err) = answer(&mut command);
+        assert_eq!(code, 0, "{next}: {err}");
     }
 }

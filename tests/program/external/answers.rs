@@ -1,11 +1,12 @@
 //! The library's side, without any process: what becomes of the rows a program gives.
 
-use springcheck::crosscheck::{self, Choice, Plan, Quiet};
+use crate::testkit::scenes::parsed;
+use springcheck::crosscheck::{Choice, Plan, Quiet};
 use springcheck::engines::Solver;
 use springcheck::engines::external::{Failure, Program, Recording, Task};
 use springcheck::integrators::{self, Settings};
 use springcheck::outcome::{EnergyClass, Kind, Outcome, Status, Undecided};
-use springcheck::scene::{self, Scene};
+use springcheck::scene::Scene;
 use springcheck::system::ParticleSystem;
 use springcheck::trajectory::{Precision, Rows};
 use std::sync::Arc;
@@ -75,7 +76,7 @@ springs: [{{particle_ids: [0, 1], stiffness: 50, damping: 1, rest_length: 0}}]
 wind: {{direction: [1, 0, 0], strength: 2}}
 "
     );
-    scene::parse(yaml.as_bytes(), "damped.yml", crosscheck::names()).expect("a scene")
+    parsed(&yaml)
 }
 
 fn balance_error(scene: &Scene, every: u64) -> f64 {
@@ -100,14 +101,14 @@ fn the_balance_closes_by_the_trapezoidal_rule_of_the_rows() {
 #[test]
 fn a_divergence_is_found_in_the_rows_as_it_would_be_in_a_run() {
     // Explicit Euler beyond its limit: at h ω = 2.1 the amplitude grows by sqrt(1 + z²) a step.
-    let yaml = b"solver: {type: explicit_euler, timestep: 0.3, gravity: 0}
+    let yaml = "solver: {type: explicit_euler, timestep: 0.3, gravity: 0}
 duration: 60
 particles:
 - {pos: [0, 0, 0], fixed: true}
 - {pos: [0.5, 0, 0], mass: 1}
 springs: [{particle_ids: [0, 1], stiffness: 50, rest_length: 0}]
 ";
-    let scene = scene::parse(yaml, "fast.yml", crosscheck::names()).expect("a scene");
+    let scene = parsed(yaml);
     let mine = outcome(&scene, |task| rows(task, "explicit_euler", 1));
     assert_eq!(mine.status, Status::Diverged);
     // E grows by 1 + z² = 5.5 a step from E(0) = S: past 1e12 S after ln 1e12 / ln 5.5 = 16.2 steps.

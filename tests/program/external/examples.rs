@@ -1,12 +1,12 @@
 //! The programs in `examples/` and the loop in `docs/external.md`, as a reader would run them.
 
-use super::{has, outcomes, output, run, theirs};
+use super::{has, run, theirs};
+use crate::testkit::program::{outcomes, output};
+use crate::testkit::scenes::shipped;
 use serde_json::Value;
-use springcheck::crosscheck;
 use springcheck::integrators::{self, Settings};
-use springcheck::scene::{self, Scene};
+use springcheck::scene::Scene;
 use springcheck::system::{ParticleSystem, State};
-use std::path::Path;
 
 const NET: &str = "scenes/pa1/scene04.yml";
 
@@ -97,7 +97,7 @@ fn agrees(report: &Value, sigma: f64) {
 }
 
 fn net() -> Scene {
-    scene::read(Path::new(NET), crosscheck::names()).expect("a scene")
+    shipped("pa1/scene04.yml")
 }
 
 #[test]

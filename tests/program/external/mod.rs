@@ -5,31 +5,12 @@ mod examples;
 mod failures;
 mod flags;
 
-use assert_cmd::Command;
+use crate::testkit::program::{outcomes, output, word};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Undamped, one free particle on a spring: 500 steps of 0.01 s.
 const SCENE: &str = "scenes/oscillator/circle.yml";
-
-fn springcheck() -> Command {
-    let mut command = Command::cargo_bin("springcheck").expect("the binary");
-    command.current_dir(env!("CARGO_MANIFEST_DIR"));
-    // Not the user's.
-    command.env(
-        "SPRINGCHECK_CACHE",
-        concat!(env!("CARGO_TARGET_TMPDIR"), "/cache"),
-    );
-    command
-}
-
-/// Exit code, stdout, stderr.
-fn output(args: &[&str]) -> (i32, String, String) {
-    let output = springcheck().args(args).output().expect("it runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
-}
 
 /// The report of a run with one integrator, rapier-forces and a program, and its stderr.
 fn run(scene: &str, external: &str, more: &[&str]) -> (Value, String) {
@@ -46,10 +27,6 @@ fn run(scene: &str, external: &str, more: &[&str]) -> (Value, String) {
     (document["reports"][0].take(), err)
 }
 
-fn outcomes(report: &Value) -> &Vec<Value> {
-    report["outcomes"].as_array().expect("outcomes")
-}
-
 /// The program's outcome, which is the last.
 fn theirs(report: &Value) -> &Value {
     outcomes(report).last().expect("an outcome")
@@ -57,7 +34,7 @@ fn theirs(report: &Value) -> &Value {
 
 /// What `run --save csv` wrote of symplectic Euler on [`SCENE`], every `every`-th step.
 fn saved(folder: &Path, every: &str) -> PathBuf {
-    let out = folder.to_str().expect("UTF-8");
+    let out = word(folder);
     let (code, _, err) = output(&[
         "run",
         SCENE,
@@ -75,16 +52,6 @@ fn saved(folder: &Path, every: &str) -> PathBuf {
     ]);
     assert_eq!(code, 0, "{err}");
     folder.join("oscillator/circle/symplectic_euler@0.01.csv")
-}
-
-/// A file's text with each line changed, beside it.
-fn altered(file: &Path, name: &str, change: impl Fn(usize, &str) -> Option<String>) -> PathBuf {
-    let text = std::fs::read_to_string(file).expect("text");
-    let lines = text.lines().enumerate();
-    let lines: Vec<String> = lines.filter_map(|(at, line)| change(at, line)).collect();
-    let path = file.with_file_name(name);
-    std::fs::write(&path, lines.join("\n") + "\n").expect("written");
-    path
 }
 
 /// Whether a command that a test needs is there. Without it the test says so and ends; where

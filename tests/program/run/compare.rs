@@ -1,6 +1,9 @@
 //! `compare`: trajectories come back as what they are, and what is wrong with them is found.
 
-use super::{json_of, keys, output, set, springcheck};
+use crate::testkit::program::{
+    altered, json_of, keys, outcomes, output, refuse_all, set, tidy, with_fields, word,
+};
+use crate::testkit::scenes::parsed;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -9,7 +12,7 @@ const METHODS: &str = "explicit_euler,symplectic_euler,midpoint,velocity_verlet,
 
 /// Runs the scene for half a second and saves every `every`-th step; the report and the folder.
 fn saved(folder: &Path, kind: &str, every: &str) -> (Value, PathBuf) {
-    let out = folder.to_str().expect("UTF-8");
+    let out = word(folder);
     let (code, report) = json_of(&[
         "run",
         SCENE,
@@ -25,29 +28,23 @@ fn saved(folder: &Path, kind: &str, every: &str) -> (Value, PathBuf) {
         every,
         "--output",
         out,
-        "--format",
-        "json",
     ]);
     assert_eq!(code, 0);
     (report, folder.join("pa1/scene04"))
 }
 
 fn compared(file: &Path, more: &[&str]) -> (i32, Value) {
-    let file = file.to_str().expect("UTF-8");
-    let args = [
-        &["compare", file, "--scene", SCENE, "--format", "json"],
-        more,
-    ]
-    .concat();
-    json_of(&args)
+    json_of(&[&["compare", word(file), "--scene", SCENE], more].concat())
 }
 
-/// The file of one method, its bytes changed.
-fn changed(file: &Path, change: impl Fn(&str) -> String) -> PathBuf {
-    let text = std::fs::read_to_string(file).expect("a saved CSV");
-    let other = file.with_extension("changed.csv");
-    std::fs::write(&other, change(&text)).expect("a folder to write to");
-    other
+/// The file of one method with the fields of its rows changed.
+fn changed(file: &Path, change: impl Fn(usize, &mut Vec<String>)) -> PathBuf {
+    altered(file, "changed.csv", change)
+}
+
+/// The time of a row; none of the header.
+fn time(fields: &[String]) -> Option<f64> {
+    fields[0].parse().ok()
 }
 
 #[test]
@@ -55,7 +52,7 @@ fn what_run_saves_comes_back_as_itself() {
     for (kind, every) in [("npz", "1"), ("csv", "1"), ("npz", "7")] {
         let folder = tempfile::tempdir().expect("a folder");
         let (report, place) = saved(folder.path(), kind, every);
-        for ran in report["outcomes"].as_array().expect("outcomes") {
+        for ran in outcomes(&report) {
             let method = ran["engine"].as_str().expect("an id");
             let (code, back) = compared(&place.join(format!("{method}@0.0005.{kind}")), &[]);
             let found = &back["outcomes"][0];
@@ -122,20 +119,11 @@ fn comparisons_have_the_contracts_keys() {
 
 /// Particle 3's vz after step 400 doubled, which particles 2 to 4 feel from step 400 on.
 fn doubled(file: &Path) -> PathBuf {
-    changed(file, |text| {
-        let lines = text.lines().map(|line| {
-            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
-            if fields[1] == "3"
-                && fields[0]
-                    .parse::<f64>()
-                    .is_ok_and(|t| (t - 0.2).abs() < 1e-9)
-            {
-                let v: f64 = fields[7].parse().expect("a number");
-                fields[7] = format!("{:?}", 2.0 * v);
-            }
-            fields.join(",")
-        });
-        lines.collect::<Vec<_>>().join("\n")
+    changed(file, |_, fields| {
+        if fields[1] == "3" && time(fields).is_some_and(|t| (t - 0.2).abs() < 1e-9) {
+            let v: f64 = fields[7].parse().expect("a number");
+            fields[7] = format!("{:?}", 2.0 * v);
+        }
     })
 }
 
@@ -155,7 +143,7 @@ fn the_first_fault_is_named_by_step_and_particle() {
 #[test]
 fn positions_alone_name_the_scheme() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().to_str().expect("UTF-8");
+    let out = word(folder.path());
     // Coarse steps, in which the schemes differ by more than positions are rounded.
     let (code, _) = json_of(&[
         "run",
@@ -172,14 +160,10 @@ fn positions_alone_name_the_scheme() {
         "csv",
         "--output",
         out,
-        "--format",
-        "json",
     ]);
     assert_eq!(code, 0);
-    let file = changed(&folder.path().join("pa1/scene04/rk4@0.02.csv"), |text| {
-        let cut = |line: &str| line.split(',').take(5).collect::<Vec<_>>().join(",");
-        text.lines().map(cut).collect::<Vec<_>>().join("\n")
-    });
+    let file = folder.path().join("pa1/scene04/rk4@0.02.csv");
+    let file = changed(&file, |_, fields| fields.truncate(5));
     let (code, report) = compared(&file, &["--timestep", "0.02"]);
     let outcome = &report["outcomes"][0];
     assert_eq!(outcome["identified"]["method"], "rk4", "{outcome:#}");
@@ -193,15 +177,10 @@ fn what_no_scheme_explains_is_undecided() {
     let folder = tempfile::tempdir().expect("a folder");
     let (_, place) = saved(folder.path(), "csv", "1");
     // A limp in every step: vx a thousandth larger.
-    let file = changed(&place.join("rk4@0.0005.csv"), |text| {
-        let lines = text.lines().enumerate().map(|(at, line)| {
-            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
-            if let Ok(v) = fields[5].parse::<f64>() {
-                fields[5] = format!("{:?}", v * (1.0 + 1e-3 * (at as f64).sin()));
-            }
-            fields.join(",")
-        });
-        lines.collect::<Vec<_>>().join("\n")
+    let file = changed(&place.join("rk4@0.0005.csv"), |at, fields| {
+        if let Ok(v) = fields[5].parse::<f64>() {
+            fields[5] = format!("{:?}", v * (1.0 + 1e-3 * (at as f64).sin()));
+        }
     });
     let (code, report) = compared(&file, &[]);
     let identified = &report["outcomes"][0]["identified"];
@@ -225,7 +204,7 @@ fn the_step_can_be_told() {
     assert_eq!(identified["substeps"], 2, "{identified:#}");
     let (code, _, err) = output(&[
         "compare",
-        file.to_str().expect("UTF-8"),
+        word(&file),
         "--scene",
         SCENE,
         "--timestep",
@@ -240,20 +219,11 @@ fn the_table_says_who_it_is_and_what_is_wrong() {
     let folder = tempfile::tempdir().expect("a folder");
     let (_, place) = saved(folder.path(), "csv", "1");
     let file = doubled(&place.join("midpoint@0.0005.csv"));
-    let file = file.to_str().expect("UTF-8");
+    let file = word(&file);
     let out = folder.path().join("reports");
-    let (code, table, err) = output(&[
-        "compare",
-        file,
-        "--scene",
-        SCENE,
-        "--output",
-        out.to_str().expect("UTF-8"),
-    ]);
+    let (code, table, err) = output(&["compare", file, "--scene", SCENE, "--output", word(&out)]);
     assert_eq!((code, err.as_str()), (1, ""));
-    for line in table.lines() {
-        assert!(line.chars().count() <= 100, "{line}");
-    }
+    tidy(&table);
     for part in [
         "midpoint",
         "step 399",
@@ -264,35 +234,17 @@ fn the_table_says_who_it_is_and_what_is_wrong() {
     ] {
         assert!(table.contains(part), "{part} in\n{table}");
     }
-    let wrong = springcheck()
-        .args(["compare", "no such file", "--scene", SCENE])
-        .output()
-        .expect("it runs");
-    assert_eq!(wrong.status.code(), Some(2));
-}
-
-/// The fields of each row changed, given its time.
-fn rows(text: &str, change: impl Fn(f64, &mut Vec<String>)) -> String {
-    let lines = text.lines().map(|line| {
-        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
-        if let Ok(t) = fields[0].parse() {
-            change(t, &mut fields);
-        }
-        fields.join(",")
-    });
-    lines.collect::<Vec<_>>().join("\n")
+    refuse_all(&["compare", "no such file", "--scene", SCENE], &[]);
 }
 
 #[test]
 fn what_is_fixed_must_not_move() {
     let folder = tempfile::tempdir().expect("a folder");
     let (_, place) = saved(folder.path(), "csv", "1");
-    let file = changed(&place.join("rk4@0.0005.csv"), |text| {
-        rows(text, |t, fields| {
-            if fields[1] == "1" && t > 0.0999 {
-                fields[2] = "0.001".to_owned();
-            }
-        })
+    let file = changed(&place.join("rk4@0.0005.csv"), |_, fields| {
+        if fields[1] == "1" && time(fields).is_some_and(|t| t > 0.0999) {
+            fields[2] = "0.001".to_owned();
+        }
     });
     let (code, report) = compared(&file, &[]);
     let fault = &report["fault"];
@@ -309,22 +261,28 @@ fn what_is_fixed_must_not_move() {
     );
 }
 
+/// A row as it would be so many seconds later.
+fn later(fields: &mut [String], seconds: f64) {
+    if let Some(t) = time(fields) {
+        fields[0] = format!("{:?}", t + seconds);
+    }
+}
+
 #[test]
 fn rows_that_begin_late_are_judged_from_the_start() {
     let folder = tempfile::tempdir().expect("a folder");
     let (_, place) = saved(folder.path(), "csv", "1");
     let file = place.join("rk4@0.0005.csv");
     // Without the first instant it is what it was.
-    let late = changed(&file, |text| {
-        let lines = text.lines().filter(|line| !line.starts_with("0.0,"));
-        lines.collect::<Vec<_>>().join("\n")
+    let late = changed(&file, |_, fields| {
+        if fields[0] == "0.0" {
+            fields.clear();
+        }
     });
     let (code, report) = compared(&late, &[]);
     assert_eq!(code, 0, "{:#}", report["fault"]);
     // Every state under the time of the next: the first step stands still.
-    let shifted = changed(&file, |text| {
-        rows(text, |t, fields| fields[0] = format!("{:?}", t + 0.0005))
-    });
+    let shifted = changed(&file, |_, fields| later(fields, 0.0005));
     let (code, report) = compared(&shifted, &[]);
     assert_eq!((code, &report["fault"]["step"]), (1, &0.into()));
 }
@@ -343,9 +301,10 @@ fn what_a_file_follows_early_need_not_be_what_it_follows() {
         .iter()
         .map(|l| l.split(',').collect())
         .collect();
-    let mut later = scene.replace("  timestep: 0.0005", "  timestep: 0.0005\n  gravity: 0");
-    let from = later.find("particles:").expect("particles");
-    let to = later.find("springs:").expect("springs");
+    let mut weightless_text =
+        scene.replace("  timestep: 0.0005", "  timestep: 0.0005\n  gravity: 0");
+    let from = weightless_text.find("particles:").expect("particles");
+    let to = weightless_text.find("springs:").expect("springs");
     let particles: String = states
         .iter()
         .enumerate()
@@ -362,21 +321,20 @@ fn what_a_file_follows_early_need_not_be_what_it_follows() {
             )
         })
         .collect();
-    later.replace_range(from..to, &format!("particles:\n{particles}\n"));
+    weightless_text.replace_range(from..to, &format!("particles:\n{particles}\n"));
     // Rest lengths are those of the scene as it begins.
-    let lengths = rest_lengths(&scene);
-    for length in lengths {
-        later = later.replacen(
+    for length in parsed(&scene).springs.iter().map(|s| s.rest_length) {
+        weightless_text = weightless_text.replacen(
             "damping: 0.01}",
             &format!("damping: 0.0100, rest_length: {length:?}}}"),
             1,
         );
     }
-    std::fs::write(&weightless, later).expect("written");
+    std::fs::write(&weightless, weightless_text).expect("written");
     let out = folder.path().join("later");
     let (code, _) = json_of(&[
         "run",
-        weightless.to_str().expect("UTF-8"),
+        word(&weightless),
         "--duration",
         "0.45",
         "--integrators",
@@ -386,14 +344,12 @@ fn what_a_file_follows_early_need_not_be_what_it_follows() {
         "--save",
         "csv",
         "--output",
-        out.to_str().expect("UTF-8"),
-        "--format",
-        "json",
+        word(&out),
     ]);
     assert_eq!(code, 0);
     let second = find(&out, "symplectic_euler@0.0005.csv");
     let second = std::fs::read_to_string(second).expect("saved");
-    let tail = rows(&second, |t, fields| fields[0] = format!("{:?}", t + 0.05));
+    let tail = with_fields(&second, |_, fields| later(fields, 0.05));
     let tail = tail.lines().skip(1 + 5);
     let joined: Vec<&str> = head.iter().copied().chain(tail).collect();
     let file = folder.path().join("joined.csv");
@@ -405,18 +361,6 @@ fn what_a_file_follows_early_need_not_be_what_it_follows() {
         "gravity_forgotten(symplectic_euler)"
     );
     assert_eq!(report["fault"]["step"], 100);
-}
-
-/// Initial distances of the spring's ends, in the order of the file.
-fn rest_lengths(yaml: &str) -> Vec<f64> {
-    let scene =
-        springcheck::scene::parse(yaml.as_bytes(), "scene", springcheck::crosscheck::names());
-    let scene = scene.expect("a scene");
-    scene
-        .springs
-        .iter()
-        .map(|spring| spring.rest_length)
-        .collect()
 }
 
 /// The file of this name somewhere below a folder.

@@ -1,10 +1,11 @@
 //! The JSON's keys and the default engines, to the letter.
 
-use super::{SCENE, json, keys, set};
+use super::SCENE;
+use crate::testkit::program::{json, keys, outcomes, set};
 
 #[test]
 fn the_json_has_exactly_the_contracts_keys() {
-    let report = json(&["run", SCENE, "--format", "json"]);
+    let report = json(&["run", SCENE]);
     assert_eq!(
         keys(&report),
         set(&["verb", "scene", "truth", "outcomes", "checks", "series"])
@@ -35,7 +36,7 @@ fn the_json_has_exactly_the_contracts_keys() {
         set(&["kind", "method", "error_bound_m", "horizon_s", "reason"])
     );
     assert_eq!(report["truth"]["kind"], "closed_form");
-    for outcome in report["outcomes"].as_array().expect("outcomes") {
+    for outcome in outcomes(&report) {
         assert_eq!(
             keys(outcome),
             set(&[
@@ -103,10 +104,8 @@ fn the_json_has_exactly_the_contracts_keys() {
 
 #[test]
 fn the_default_engines_come_in_the_contracts_order() {
-    let report = json(&["run", "scenes/oscillator/circle.yml", "--format", "json"]);
-    let engines: Vec<&str> = report["outcomes"]
-        .as_array()
-        .expect("outcomes")
+    let report = json(&["run", "scenes/oscillator/circle.yml"]);
+    let engines: Vec<&str> = outcomes(&report)
         .iter()
         .map(|o| o["engine"].as_str().expect("an id"))
         .collect();
@@ -131,12 +130,7 @@ fn the_default_engines_come_in_the_contracts_order() {
     assert!((ratio / 1.005_f64.powi(500) - 1.0).abs() < 1e-12, "{ratio}");
     assert_eq!(energy["class"], "growing");
     assert_eq!(report["outcomes"][1]["energy"]["class"], "bounded");
-    let report = json(&[
-        "run",
-        "scenes/oscillator/oscillator.yml",
-        "--format",
-        "json",
-    ]);
+    let report = json(&["run", "scenes/oscillator/oscillator.yml"]);
     let rapier = &report["outcomes"][6];
     assert_eq!(
         (&rapier["engine"], &rapier["energy"]["class"]),

@@ -6,84 +6,21 @@ mod errors;
 mod saved;
 mod truth;
 
-use assert_cmd::Command;
+use crate::testkit::program::{
+    self, answer, array, files, json, leave, outcomes, output, springcheck, tidy, well_formed, word,
+};
 use serde_json::Value;
-use std::collections::BTreeSet;
-use std::path::Path;
-
-fn springcheck() -> Command {
-    let mut command = Command::cargo_bin("springcheck").expect("the binary");
-    command.current_dir(env!("CARGO_MANIFEST_DIR"));
-    // Not the user's.
-    command.env(
-        "SPRINGCHECK_CACHE",
-        concat!(env!("CARGO_TARGET_TMPDIR"), "/cache"),
-    );
-    command
-}
 
 const SCENE: &str = "scenes/pa1/scene01.yml";
-
-fn output(args: &[&str]) -> (i32, String, String) {
-    let output = springcheck().args(args).output().expect("it runs");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
-    let code = output.status.code().expect("no signal");
-    (code, text(output.stdout), text(output.stderr))
-}
-
-fn json(args: &[&str]) -> Value {
-    let (code, out, err) = output(args);
-    assert_eq!(code, 0, "{err}");
-    report(&out)
-}
-
-/// The one report of a JSON text.
-fn report(text: &str) -> Value {
-    let mut document: Value = serde_json::from_str(text).expect("JSON");
-    assert_eq!(document["schema_version"], 2);
-    assert_eq!(document["reports"].as_array().map(Vec::len), Some(1));
-    document["reports"][0].take()
-}
-
-/// The exit code beside what stands on stdout.
-fn json_of(args: &[&str]) -> (i32, Value) {
-    let (code, out, err) = output(args);
-    assert!(!out.is_empty(), "{err}");
-    (code, report(&out))
-}
-
-fn keys(value: &Value) -> BTreeSet<&str> {
-    let object = value.as_object().expect("an object");
-    object.keys().map(String::as_str).collect()
-}
-
-fn set<'a>(keys: &[&'a str]) -> BTreeSet<&'a str> {
-    keys.iter().copied().collect()
-}
-
-fn files(folder: &Path) -> BTreeSet<String> {
-    let entries = std::fs::read_dir(folder).expect("a folder");
-    entries
-        .map(|entry| {
-            entry
-                .expect("an entry")
-                .file_name()
-                .to_string_lossy()
-                .into_owned()
-        })
-        .collect()
-}
 
 #[test]
 fn a_run_prints_a_table_and_writes_a_report() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().to_str().expect("UTF-8");
+    let out = word(folder.path());
     // Quiet: on a loaded machine an announcement of the expected time is in order.
     let (code, table, err) = output(&["run", SCENE, "--output", out, "--quiet"]);
     assert_eq!((code, err.as_str()), (0, ""));
-    for line in table.lines() {
-        assert!(line.chars().count() <= 100, "{line}");
-    }
+    tidy(&table);
     for id in [
         "symplectic_euler",
         "explicit_euler",
@@ -94,7 +31,6 @@ fn a_run_prints_a_table_and_writes_a_report() {
     ] {
         assert!(table.contains(id), "{id} in\n{table}");
     }
-    assert!(!table.contains('\u{1b}'), "colour in a pipe");
     let tail: Vec<&str> = table.lines().rev().take(3).collect();
     assert!(tail[0].starts_with("next: springcheck run "));
     assert!(tail[1].starts_with("report: ") && tail[1].ends_with("report.md"));
@@ -109,48 +45,20 @@ fn a_run_prints_a_table_and_writes_a_report() {
         "trajectories.svg",
     ];
     assert_eq!(files(&place), expected.map(String::from).into());
-    for name in files(&place)
-        .iter()
-        .filter(|name| !name.ends_with(".series"))
-    {
-        let text = std::fs::read_to_string(place.join(name)).expect("text");
-        assert!(!text.contains("NaN") && !text.contains("inf "), "{name}");
-    }
-}
-
-/// The report without what may vary.
-fn without_times(mut report: Value) -> Value {
-    for outcome in report["outcomes"].as_array_mut().expect("outcomes") {
-        outcome["work"]["wall_s"] = Value::Null;
-    }
-    for effect in report["scene"]["effects"].as_array_mut().expect("effects") {
-        effect["wall_ns"] = Value::Null;
-    }
-    report
+    well_formed(&place);
 }
 
 #[test]
 fn two_runs_and_any_number_of_threads_give_the_same_bits() {
     let run = |threads: &str| {
-        let output = springcheck()
-            .args([
-                "run",
-                "scenes/pa1/scene03.yml",
-                "--integrators",
-                "all",
-                "--duration",
-                "0.5",
-            ])
-            .args([
-                "--engines",
-                "rapier,rapier-forces,rapier-converged",
-                "--format",
-                "json",
-            ])
-            .env("RAYON_NUM_THREADS", threads)
-            .output()
-            .expect("it runs");
-        without_times(report(&String::from_utf8_lossy(&output.stdout)))
+        let (_, report, _) = answer(
+            springcheck()
+                .args(["run", "scenes/pa1/scene03.yml", "--integrators", "all"])
+                .args(["--duration", "0.5", "--format", "json"])
+                .args(["--engines", "rapier,rapier-forces,rapier-converged"])
+                .env("RAYON_NUM_THREADS", threads),
+        );
+        program::without_times(program::report(&report))
     };
     let serial = run("1");
     assert_eq!(serial, run("4"));
@@ -168,12 +76,10 @@ fn every_pa1_scene_runs_with_every_integrator_and_engine() {
             "all",
             "--duration",
             "0.1",
-            "--format",
-            "json",
             "--engines",
             "rapier,rapier-forces,rapier-converged",
         ]);
-        let outcomes = report["outcomes"].as_array().expect("outcomes");
+        let outcomes = outcomes(&report);
         assert_eq!(outcomes.len(), springcheck::integrators::REGISTRY.len() + 3);
         for outcome in outcomes {
             assert_eq!(
@@ -201,10 +107,8 @@ fn several_timesteps_and_several_scenes() {
         "--integrators",
         "rk4,midpoint",
     ];
-    let report = json(&[&args[..], &["--format", "json", "--engines", "none"]].concat());
-    let found: Vec<(String, f64)> = report["outcomes"]
-        .as_array()
-        .expect("outcomes")
+    let report = json(&[&args[..], &["--engines", "none"]].concat());
+    let found: Vec<(String, f64)> = outcomes(&report)
         .iter()
         .map(|o| {
             (
@@ -233,8 +137,6 @@ fn a_custom_rapier_row_converges_to_implicit_euler() {
     let report = json(&[
         "run",
         "scenes/oscillator/oscillator.yml",
-        "--format",
-        "json",
         "--integrators",
         "implicit_euler",
         "--engines",
@@ -244,7 +146,7 @@ fn a_custom_rapier_row_converges_to_implicit_euler() {
         "--rapier",
         "dt=0.005,iterations=2",
     ]);
-    let outcomes = report["outcomes"].as_array().expect("outcomes");
+    let outcomes = outcomes(&report);
     let energy = |at: usize| outcomes[at]["energy"]["final_j"].as_f64().expect("J");
     // One substep of rapier is one step of implicit Euler, to 13 digits over 500 steps.
     let own = outcomes
@@ -268,28 +170,14 @@ fn a_custom_rapier_row_converges_to_implicit_euler() {
         "--rapier",
         "pgs=4",
     ];
-    let report = json(&[&twice[..], &["--rapier", "pgs=4", "--format", "json"]].concat());
-    let rows = report["outcomes"].as_array().expect("outcomes").iter();
+    let report = json(&[&twice[..], &["--rapier", "pgs=4"]].concat());
+    let rows = array(&report["outcomes"]).iter();
     assert_eq!(rows.filter(|o| o["engine"] == "rapier(pgs=4)").count(), 1);
 }
 
 #[test]
 fn a_reader_that_leaves_is_no_error() {
-    use std::process::{Command, Stdio};
-    let mut child = Command::new(assert_cmd::cargo::cargo_bin("springcheck"))
-        .args(["list", "integrators"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("it starts");
-    drop(child.stdout.take());
-    let output = child.wait_with_output().expect("it ends");
-    assert!(
-        output.stderr.is_empty(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    assert_eq!(output.status.code(), Some(0));
+    leave(&["list", "integrators"]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Trajectories written with `--save`.
 
-use super::{SCENE, output};
+use super::SCENE;
+use crate::testkit::program::{output, word};
 use std::path::{Path, PathBuf};
 
 /// One array of an NPZ: its shape and values.
@@ -14,7 +15,7 @@ fn array(path: &Path, name: &str) -> (Vec<u64>, Vec<f64>) {
 #[test]
 fn saved_trajectories_hold_every_step_and_agree_to_the_last_bit() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().to_str().expect("UTF-8");
+    let out = word(folder.path());
     for format in ["csv", "npz"] {
         let args = [
             "run",
@@ -62,7 +63,7 @@ fn saved_trajectories_hold_every_step_and_agree_to_the_last_bit() {
 #[test]
 fn a_saved_run_can_be_thinned_and_keeps_its_end() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().to_str().expect("UTF-8");
+    let out = word(folder.path());
     let (code, ..) = output(&[
         "run",
         SCENE,

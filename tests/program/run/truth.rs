@@ -1,6 +1,6 @@
 //! The truth in reports, and the cache behind it.
 
-use super::{json, json_of, report, springcheck, without_times};
+use crate::testkit::program::{self, answer, json, json_of, springcheck, word};
 use serde_json::Value;
 use std::path::Path;
 
@@ -27,13 +27,11 @@ fn content_decides_which_truth_a_scene_has() {
         std::fs::write(&renamed, unnamed.collect::<Vec<_>>().join("\n")).expect("written");
         let report = json(&[
             "run",
-            renamed.to_str().expect("UTF-8"),
+            word(&renamed),
             "--integrators",
             "rk4",
             "--engines",
             "none",
-            "--format",
-            "json",
         ]);
         let truth = &report["truth"];
         assert_eq!(truth["kind"], kind, "{scene}: {truth:#}");
@@ -52,7 +50,7 @@ fn content_decides_which_truth_a_scene_has() {
 fn truths_that_are_not_asked_for_are_not_computed() {
     let with = |kind| {
         let args = ["run", CHAOTIC, "--integrators", "rk4", "--engines", "none"];
-        json(&[&args[..], &["--truth", kind, "--format", "json"]].concat())
+        json(&[&args[..], &["--truth", kind]].concat())
     };
     for (kind, reason) in [("none", "not asked for"), ("closed", "no closed form")] {
         let report = with(kind);
@@ -71,22 +69,12 @@ fn truths_that_are_not_asked_for_are_not_computed() {
 
 /// The report of a run with this cache, without its times.
 fn cached(cache: &Path) -> Value {
-    let args = [
-        "run",
-        CHAOTIC,
-        "--integrators",
-        "rk4",
-        "--engines",
-        "none",
-        "--format",
-        "json",
-    ];
-    let output = springcheck()
-        .env("SPRINGCHECK_CACHE", cache)
-        .args(args)
-        .output()
-        .expect("it runs");
-    without_times(report(&String::from_utf8_lossy(&output.stdout)))
+    let args = ["run", CHAOTIC, "--integrators", "rk4", "--engines", "none"];
+    let mut command = springcheck();
+    command.env("SPRINGCHECK_CACHE", cache);
+    command.args(args).args(["--format", "json"]);
+    let (_, report, _) = answer(&mut command);
+    program::without_times(program::report(&report))
 }
 
 /// The only file in the cache.
@@ -150,17 +138,8 @@ fn errors_stop_at_the_horizon() {
         - {pos: [0, 0, 0], fixed: true}\n- {pos: [1, 0, 0], mass: 1}\n- {pos: [2, 0, 0.1], mass: 1}\n\
         springs:\n- {particle_ids: [0, 1], stiffness: 300}\n- {particle_ids: [1, 2], stiffness: 300}\n";
     std::fs::write(&scene, text).expect("written");
-    let scene = scene.to_str().expect("UTF-8");
-    let args = [
-        "run",
-        scene,
-        "--integrators",
-        "rk4",
-        "--engines",
-        "none",
-        "--format",
-        "json",
-    ];
+    let scene = word(&scene);
+    let args = ["run", scene, "--integrators", "rk4", "--engines", "none"];
     let (code, report) = json_of(&args);
     assert_eq!(code, 0);
     let truth = &report["truth"];

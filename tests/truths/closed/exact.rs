@@ -77,7 +77,7 @@ impl Mul for Dd {
 
 /// A square matrix, row by row.
 #[derive(Clone)]
-struct Matrix {
+pub struct Matrix {
     n: usize,
     entries: Vec<Dd>,
 }
@@ -141,17 +141,71 @@ impl Matrix {
 /// Positions and velocities of all coordinates at `t`, where the forces are linear in each axis: rest
 /// length 0 and isotropic dampers, or one line. All free particles at once, groups or not.
 pub fn states(scene: &Scene, t: f64) -> (Vec<Dd>, Vec<Dd>) {
-    let place: Vec<Option<usize>> = {
-        let mut free = 0;
-        let count = |p: &springcheck::scene::Particle| {
-            free += usize::from(!p.fixed);
-            (!p.fixed).then(|| free - 1)
-        };
-        scene.particles.iter().map(count).collect()
+    let mut motion = Motion::new(scene);
+    motion.advance(&flow(scene, t));
+    motion.states()
+}
+
+/// The numbers of the free particles among themselves.
+fn places(scene: &Scene) -> Vec<Option<usize>> {
+    let mut free = 0;
+    let count = |p: &springcheck::scene::Particle| {
+        free += usize::from(!p.fixed);
+        (!p.fixed).then(|| free - 1)
     };
+    scene.particles.iter().map(count).collect()
+}
+
+/// A motion as the flow of some time carries it on: for each axis the displacements and velocities of
+/// the free particles, and which axis it is.
+pub struct Motion<'a> {
+    scene: &'a Scene,
+    axes: [Vec<Dd>; 3],
+}
+
+impl<'a> Motion<'a> {
+    pub fn new(scene: &'a Scene) -> Self {
+        let free = scene.particles.iter().filter(|p| !p.fixed);
+        let axes = [0, 1, 2].map(|axis| {
+            let rest = free.clone().map(|_| Dd::default());
+            let moving = free.clone().map(|p| Dd::of(p.velocity[axis]));
+            let marks = (0..3).map(|other| Dd::of(f64::from(u8::from(other == axis))));
+            rest.chain(moving).chain(marks).collect()
+        });
+        Self { scene, axes }
+    }
+
+    pub fn advance(&mut self, flow: &Matrix) {
+        for axis in &mut self.axes {
+            let product = flow.entries.chunks_exact(flow.n).map(|row| {
+                let terms = row.iter().zip(&*axis).map(|(a, b)| *a * *b);
+                terms.fold(Dd::default(), Add::add)
+            });
+            *axis = product.collect();
+        }
+    }
+
+    /// Positions and velocities of all coordinates.
+    pub fn states(&self) -> (Vec<Dd>, Vec<Dd>) {
+        let n = (self.axes[0].len() - 3) / 2;
+        let (mut x, mut v) = (Vec::new(), Vec::new());
+        for (p, at) in self.scene.particles.iter().zip(places(self.scene)) {
+            for axis in 0..3 {
+                let of = |first: usize| at.map_or(Dd::default(), |at| self.axes[axis][first + at]);
+                x.push(of(0) + Dd::of(p.position[axis]));
+                v.push(of(n));
+            }
+        }
+        (x, v)
+    }
+}
+
+/// What `t` does to a [`Motion`]: the exponential of the first-order matrix, whose last three columns
+/// are the constant accelerations along each axis.
+pub fn flow(scene: &Scene, t: f64) -> Matrix {
+    let place = places(scene);
     let n = place.iter().flatten().count();
-    // Displacement, velocity, 1.
-    let size = 2 * n + 1;
+    let size = 2 * n + 3;
     let mut a = Matrix::zero(size);
     let mut pull = vec![[Dd::default(); 3]; n];
     let free = |i: &usize| place[*i].is_some();
@@ -193,34 +247,10 @@ pub fn states(scene: &Scene, t: f64) -> (Vec<Dd>, Vec<Dd>) {
             }
         }
     }
-    let flow = |axis: usize| {
-        let mut a = a.clone();
-        for at in 0..n {
-            a.entries[(n + at) * size + 2 * n] = pull[at][axis];
-        }
-        a.exp(t)
-    };
-    let flows = [0, 1, 2].map(flow);
-    let (mut x, mut v) = (Vec::new(), Vec::new());
-    for (i, p) in scene.particles.iter().enumerate() {
-        for axis in 0..3 {
-            let row = |row: usize| {
-                let row = &flows[axis].entries[row * size..(row + 1) * size];
-                let mut sum = row[2 * n];
-                for (j, at) in place
-                    .iter()
-                    .enumerate()
-                    .filter_map(|(j, at)| Some((j, (*at)?)))
-                {
-                    sum = sum + row[n + at] * Dd::of(scene.particles[j].velocity[axis]);
-                }
-                sum
-            };
-            x.push(place[i].map_or(Dd::default(), row) + Dd::of(p.position[axis]));
-            v.push(place[i].map_or(Dd::default(), |at| row(n + at)));
-        }
+    for at in 0..n {
+        a.entries[(n + at) * size + 2 * n..][..3].copy_from_slice(&pull[at]);
     }
-    (x, v)
+    a.exp(t)
 }
 
 /// The arithmetic and the exponential against 32 digits from elsewhere:

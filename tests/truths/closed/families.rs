@@ -1,68 +1,20 @@
 //! Scenes with a closed form, by family, from random numbers.
 
-use crate::testkit::Random;
-use springcheck::crosscheck;
-use springcheck::scene::{self, Axis, DampingModel, Particle, Scene, Solver, Spring, Wind};
-use std::path::Path;
-
-/// Nothing in it, and no gravity.
-pub fn empty() -> Scene {
-    Scene {
-        name: "closed form".into(),
-        description: None,
-        file: String::new(),
-        solver: Solver {
-            method: "rk4".into(),
-            timestep: 1e-3,
-            gravity: 0.0,
-            tolerance: None,
-        },
-        duration: 5.0,
-        up: Axis::Z,
-        damping_model: DampingModel::Axial,
-        plot: None,
-        particles: Vec::new(),
-        springs: Vec::new(),
-        gravitational: Vec::new(),
-        wind: None,
-        expect: Vec::new(),
-    }
-}
-
-pub fn shipped(path: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("scenes")
-        .join(path);
-    scene::read(&path, crosscheck::names()).expect("a valid scene")
-}
-
-pub fn fixed(position: [f64; 3]) -> Particle {
-    Particle {
-        position,
-        velocity: [0.0; 3],
-        fixed: true,
-        mass: 1.0,
-        radius: 0.1,
-        drag: 0.0,
-    }
-}
+pub use crate::testkit::scenes::{empty, fixed};
+use crate::testkit::{Random, scenes};
+use springcheck::scene::{DampingModel, Particle, Scene, Spring, Wind};
 
 pub fn free(position: [f64; 3], velocity: [f64; 3], mass: f64) -> Particle {
     Particle {
         velocity,
-        fixed: false,
-        mass,
-        ..fixed(position)
+        ..scenes::free(position, mass)
     }
 }
 
 pub fn spring(a: usize, b: usize, stiffness: f64, damping: f64, rest_length: f64) -> Spring {
     Spring {
-        ends: [a, b],
-        stiffness,
-        cubic: 0.0,
         damping,
-        rest_length,
+        ..scenes::spring([a, b], stiffness, rest_length)
     }
 }
 

@@ -207,7 +207,7 @@ fn a_wrong_clock_or_velocity_fails() {
 /// Hanging by a spring from its rest length, a particle swings by m g / k about m g / k below.
 #[test]
 fn hanging_swings_by_m_g_over_k() {
-    let scene = families::shipped("pa1/scene01.yml");
+    let scene = crate::testkit::scenes::shipped("pa1/scene01.yml");
     let found = form(&scene, 5.0).expect("a form");
     assert_eq!(found.method, "oscillator in line, undamped");
     let amplitude = 0.2 * 9.81 / 20.0;

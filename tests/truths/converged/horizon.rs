@@ -2,6 +2,7 @@
 
 use super::honesty::times;
 use super::problems::{self, Rough, bodies, closure, shot};
+use crate::testkit::scenes::{shipped, spring};
 use crate::testkit::swinging_triangle;
 use springcheck::scene::{DampingModel, Scene};
 use springcheck::system::{ParticleSystem, State, System};
@@ -9,8 +10,6 @@ use springcheck::truth::converged::{
     BUDGET, Converged, HORIZON, NotConverged, SharedSystem, converge, find,
 };
 use springcheck::truth::{Motion, NoStore};
-use springcheck::{crosscheck, scene};
-use std::path::Path;
 use std::sync::Arc;
 
 fn of(scene: &Scene, until: f64) -> Result<Converged, NotConverged> {
@@ -55,14 +54,7 @@ fn chaos_ends_the_horizon_and_its_rate_says_when() {
     scene.particles[0].fixed = true;
     scene.solver.gravity = -9.81;
     for ends in [[0, 1], [1, 2]] {
-        let spring = shot(0.0).springs.remove(0);
-        scene.springs.push(scene::Spring {
-            ends,
-            stiffness: 500.0,
-            cubic: 0.0,
-            rest_length: 1.02,
-            ..spring
-        });
+        scene.springs.push(spring(ends, 500.0, 1.02));
     }
     let until = 40.0;
     let converged = of(&scene, until).expect("it converges for a while");
@@ -87,8 +79,7 @@ fn chaos_ends_the_horizon_and_its_rate_says_when() {
 #[test]
 fn the_shipped_scenes_lie_within_their_horizons() {
     for name in ["00", "01", "02", "03", "04", "05", "06"] {
-        let path = format!("{}/scenes/pa1/scene{name}.yml", env!("CARGO_MANIFEST_DIR"));
-        let scene = scene::read(Path::new(&path), crosscheck::names()).expect("a shipped scene");
+        let scene = shipped(&format!("pa1/scene{name}.yml"));
         let until = scene.steps(scene.solver.timestep) as f64 * scene.solver.timestep;
         let converged = of(&scene, until).expect("it converges");
         println!(

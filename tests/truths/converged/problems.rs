@@ -1,7 +1,8 @@
 //! Systems whose motion is known, and scenes with none of that.
 
+use crate::testkit::scenes::{empty, free, spring};
 use crate::testkit::{Conservative, Oscillator};
-use springcheck::scene::{Axis, DampingModel, GravitationalPair, Particle, Scene, Solver, Spring};
+use springcheck::scene::{GravitationalPair, Particle, Scene};
 use springcheck::system::{ParticleSystem, Power, State, System};
 use springcheck::truth::converged::SharedSystem;
 use std::sync::Arc;
@@ -138,35 +139,18 @@ pub fn bodies(of: &[(f64, [f64; 3], [f64; 3])]) -> Scene {
     let pairs = (0..of.len()).flat_map(|i| (i + 1..of.len()).map(move |j| [i, j]));
     Scene {
         name: "bodies".into(),
-        description: None,
-        file: String::new(),
-        solver: Solver {
-            method: "rk4".into(),
-            timestep: 0.01,
-            gravity: 0.0,
-            tolerance: None,
-        },
         duration: 3.0,
-        up: Axis::Z,
-        damping_model: DampingModel::Axial,
-        plot: None,
         particles: of
             .iter()
             .map(|&(mass, position, velocity)| Particle {
-                position,
                 velocity,
-                fixed: false,
-                mass,
-                radius: 0.1,
-                drag: 0.0,
+                ..free(position, mass)
             })
             .collect(),
-        springs: Vec::new(),
         gravitational: pairs
             .map(|ends| GravitationalPair { ends, g: 1.0 })
             .collect(),
-        wind: None,
-        expect: Vec::new(),
+        ..empty()
     }
 }
 
@@ -191,13 +175,7 @@ pub fn shot(miss: f64) -> Scene {
     ]);
     scene.particles[0].fixed = true;
     scene.gravitational.clear();
-    scene.springs.push(Spring {
-        ends: [0, 1],
-        stiffness: 50.0,
-        cubic: 0.0,
-        damping: 0.0,
-        rest_length: 1.0,
-    });
+    scene.springs.push(spring([0, 1], 50.0, 1.0));
     scene
 }
 

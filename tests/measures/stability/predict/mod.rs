@@ -1,12 +1,13 @@
 //! Predicted limits against formulas, against the integrators themselves, and against each other.
 
 use crate::testkit::mutants::mutant;
+use crate::testkit::scenes as kit;
 use crate::testkit::{Build, Oscillator, Random, built, method, own};
 use springcheck::conformance::measured_limit;
 use springcheck::conformance::systems::Across;
 use springcheck::integrators::{Amplification, Method, REGISTRY, Stable};
 use springcheck::measure::stability::{Effort, Limit, Linearised, along, is_linear};
-use springcheck::scene::{Axis, DampingModel, Particle, Scene, Solver, Spring};
+use springcheck::scene::{DampingModel, Particle, Scene, Spring};
 use springcheck::system::{Jacobian, Linearization, Power, State, System};
 
 mod large;
@@ -31,44 +32,25 @@ fn start(scene: &Scene) -> Linearised {
 
 fn particle(position: [f64; 3], mass: f64, fixed: bool) -> Particle {
     Particle {
-        position,
-        velocity: [0.0; 3],
         fixed,
-        mass,
-        radius: 0.1,
-        drag: 0.0,
+        ..kit::free(position, mass)
     }
 }
 
 fn spring(a: usize, b: usize, stiffness: f64, damping: f64, rest_length: f64) -> Spring {
     Spring {
-        ends: [a, b],
-        stiffness,
-        cubic: 0.0,
         damping,
-        rest_length,
+        ..kit::spring([a, b], stiffness, rest_length)
     }
 }
 
 fn scene(particles: Vec<Particle>, springs: Vec<Spring>, model: DampingModel) -> Scene {
-    Scene {
-        name: "a network".into(),
-        description: None,
-        file: String::new(),
-        solver: Solver {
-            method: "rk4".into(),
-            timestep: 0.01,
-            gravity: 0.0,
-            tolerance: None,
-        },
-        duration: 1.0,
-        up: Axis::Z,
+    let mut scene = Scene {
         damping_model: model,
-        plot: None,
         particles,
         springs,
-        gravitational: Vec::new(),
-        wind: None,
-        expect: Vec::new(),
-    }
+        ..kit::empty()
+    };
+    scene.solver.timestep = 0.01;
+    scene
 }
