@@ -51,7 +51,7 @@ fn a_step(c: &mut Criterion) {
     let system = ParticleSystem::new(&scene);
     let mut group = c.benchmark_group("one spring, two effects, a step");
     for method in integrators::REGISTRY {
-        let mut integrator = (method.build)(&Settings::default());
+        let mut integrator = method.build(&Settings::default());
         let mut state = ParticleSystem::initial_state(&scene);
         group.bench_function(method.id, |b| {
             b.iter(|| integrator.step(black_box(&system), 0.0005, &mut state));
@@ -80,7 +80,7 @@ fn recording(c: &mut Criterion) {
         let run = || solver.start(&scene, &system, &setting).expect("a run");
         group.bench_function(format!("{id}, stepping"), |b| {
             b.iter(|| {
-                let mut integrator = (method.build)(&Settings::default());
+                let mut integrator = method.build(&Settings::default());
                 let mut state = ParticleSystem::initial_state(&scene);
                 for _ in 0..steps {
                     let _ = integrator.step(black_box(&system), 0.0005, &mut state);

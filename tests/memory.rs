@@ -18,7 +18,7 @@ fn bytes_per_spring(method: &str, scene: Scene, keep_scene: bool) -> [f64; 2] {
     let system = ParticleSystem::new(&scene);
     let mut state = ParticleSystem::initial_state(&scene);
     let kept = keep_scene.then_some(scene);
-    let mut integrator = (method.build)(&Settings::default());
+    let mut integrator = method.build(&Settings::default());
     let mut worst = 0;
     for _ in 0..2 {
         let done = integrator.step(&system, 1e-4, &mut state);

@@ -33,7 +33,12 @@ pub(super) fn effects(
     rows.map(|(row, effect)| EffectUse {
         id: row.id.to_owned(),
         members: effect.members(),
-        evaluations: forces + if effect.is_damped() { damping } else { 0 },
+        evaluations: forces
+            + if effect.kinds().depends_on_velocity() {
+                damping
+            } else {
+                0
+            },
         wall_ns: Some(cost(effect.as_ref(), &start.x, &start.v)),
     })
     .collect()

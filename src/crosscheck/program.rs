@@ -203,7 +203,7 @@ impl Replay<'_> {
     }
 
     fn power(&self, state: &State) -> Power {
-        if self.system.is_damped() || self.system.is_driven() {
+        if self.system.kinds().does_work() {
             let mut forces = vec![0.0; state.x.len()];
             self.system.forces(state.t, &state.x, &state.v, &mut forces)
         } else {

@@ -22,7 +22,7 @@ pub(super) fn remarks(
         Status::Diverged => {
             let cause = outcome.reason.as_deref().unwrap_or_default();
             let time = outcome.stopped_at_s.unwrap_or(0.0);
-            let damped = plan.system.is_damped();
+            let damped = plan.system.kinds().depends_on_velocity();
             // The limit of this very scene says it better than a method's facts.
             let why = match (&warning, case.solver.as_method()) {
                 (None, Some(method)) => why_unstable(method, damped),
@@ -90,7 +90,7 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<S
             under_constant_force(method, class)
         }
         Some(method) => {
-            let damped = plan.system.is_damped();
+            let damped = plan.system.kinds().depends_on_velocity();
             let law = by_law(method, class, damped).filter(|_| has_springs);
             law.or_else(|| damped.then(|| by_balance(method, class, lost)))
         }

@@ -3,7 +3,7 @@
 use super::springs::{SHORTEST, difference, dot};
 use super::{Effect, EffectRow, boxed};
 use crate::scene::Scene;
-use crate::system::{Jacobian, Linearization, Power};
+use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 use nalgebra::{Matrix3, Vector3};
 
 pub(super) const ROW: EffectRow = EffectRow {
@@ -53,6 +53,10 @@ impl CubicSprings {
 impl Effect for CubicSprings {
     fn members(&self) -> usize {
         self.springs.len()
+    }
+
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NONE
     }
 
     fn add_force(&self, _t: f64, x: &[f64], _v: &[f64], f: &mut [f64]) -> Power {

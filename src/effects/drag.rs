@@ -2,7 +2,7 @@
 
 use super::{Effect, EffectRow, boxed};
 use crate::scene::Scene;
-use crate::system::{Jacobian, Linearization, Power};
+use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 
 pub(super) const ROW: EffectRow = EffectRow {
     id: "drag",
@@ -41,6 +41,14 @@ impl Effect for Drag {
         self.coefficients.len()
     }
 
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::union(
+            self.coefficients
+                .iter()
+                .map(|&(_, b)| ForceKinds::of_damper(b)),
+        )
+    }
+
     fn add_force(&self, _t: f64, _x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
         let mut dissipated = 0.0;
         for &(i, b) in &self.coefficients {
@@ -53,10 +61,6 @@ impl Effect for Drag {
             dissipated,
             injected: 0.0,
         }
-    }
-
-    fn is_damped(&self) -> bool {
-        true
     }
 
     fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
@@ -76,13 +80,5 @@ impl Effect for Drag {
                 out.velocity.push((at, at, -b));
             }
         }
-    }
-
-    fn keeps_momentum(&self) -> bool {
-        false
-    }
-
-    fn keeps_angular_momentum(&self) -> bool {
-        false
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Effect, EffectRow, boxed};
 use crate::scene::Scene;
-use crate::system::{Jacobian, Linearization, Power};
+use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 use nalgebra::{Matrix3, Vector3};
 
 pub(super) const ROW: EffectRow = EffectRow {
@@ -61,6 +61,10 @@ impl Gravitational {
 impl Effect for Gravitational {
     fn members(&self) -> usize {
         self.pairs.len()
+    }
+
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NONE
     }
 
     fn add_force(&self, _t: f64, x: &[f64], _v: &[f64], f: &mut [f64]) -> Power {

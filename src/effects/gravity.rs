@@ -2,7 +2,7 @@
 
 use super::{Effect, EffectRow, boxed};
 use crate::scene::Scene;
-use crate::system::Power;
+use crate::system::{ForceKinds, Power};
 
 pub(super) const ROW: EffectRow = EffectRow {
     id: "gravity",
@@ -42,6 +42,10 @@ impl Effect for Gravity {
         self.weights.len()
     }
 
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NONE
+    }
+
     fn add_force(&self, _t: f64, _x: &[f64], _v: &[f64], f: &mut [f64]) -> Power {
         for &(at, weight) in &self.weights {
             f[at] += weight;
@@ -51,13 +55,5 @@ impl Effect for Gravity {
 
     fn potential(&self, _t: f64, x: &[f64]) -> f64 {
         -self.weights.iter().map(|&(at, w)| w * x[at]).sum::<f64>()
-    }
-
-    fn keeps_momentum(&self) -> bool {
-        false
-    }
-
-    fn keeps_angular_momentum(&self) -> bool {
-        false
     }
 }

@@ -23,18 +23,20 @@ pub use springs::Springs;
 pub use wind::Wind;
 
 use crate::scene::Scene;
-use crate::system::{Jacobian, Linearization, Power};
+use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 
 /// A force on particles: a batch over all its members, in flat vectors of length 3n.
 ///
-/// `potential`, `add_damping` and `add_jacobian` must agree with `add_force`; one test checks them
-/// by finite differences over the whole registry.
+/// `kinds`, `potential`, `add_damping` and `add_jacobian` must agree with `add_force`; one test checks
+/// them by finite differences over the whole registry.
 pub trait Effect: Send + Sync {
     /// Springs, particles or pairs it acts on.
     fn members(&self) -> usize;
 
+    /// How its force depends on velocity, and whether it does work that no potential accounts for.
+    fn kinds(&self) -> ForceKinds;
+
     /// *Adds* its force, N, to `f`; returns its powers at this point, W.
-    /// The force must be linear in `v`.
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power;
 
     /// Potential energy, J; 0 for what has none.
@@ -42,20 +44,10 @@ pub trait Effect: Send + Sync {
         0.0
     }
 
-    /// Whether its force depends on velocity.
-    fn is_damped(&self) -> bool {
-        false
-    }
-
     /// *Adds* the velocity-dependent part of its force at velocity `w`, N, to `f`.
     fn add_damping(&self, _x: &[f64], _w: &[f64], _f: &mut [f64]) {}
 
-    /// Whether it does work that no potential accounts for, other than damping.
-    fn is_driven(&self) -> bool {
-        false
-    }
-
-    /// That work per second at velocity `v`, W.
+    /// What a [driven](ForceKinds::DRIVEN) force does per second at velocity `v`, W.
     fn injected_power(&self, _t: f64, _v: &[f64]) -> f64 {
         0.0
     }
@@ -72,10 +64,14 @@ pub trait Effect: Send + Sync {
     }
 
     /// Total momentum stays as it is under this effect (nothing fixed).
-    fn keeps_momentum(&self) -> bool;
+    fn keeps_momentum(&self) -> bool {
+        false
+    }
 
     /// Total angular momentum stays as it is under this effect (nothing fixed).
-    fn keeps_angular_momentum(&self) -> bool;
+    fn keeps_angular_momentum(&self) -> bool {
+        false
+    }
 }
 
 /// One effect's facts.

@@ -1,7 +1,7 @@
 //! An effect with all its forces multiplied: physics that is wrong on purpose.
 
 use super::Effect;
-use crate::system::{Jacobian, Linearization, Power};
+use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 
 /// `factor` times another effect: -1 turns its sign, 2 applies it twice.
 ///
@@ -32,6 +32,15 @@ impl Effect for Scaled {
         self.effect.members()
     }
 
+    fn kinds(&self) -> ForceKinds {
+        let kinds = self.effect.kinds();
+        if self.factor < 0.0 {
+            kinds.turned()
+        } else {
+            kinds
+        }
+    }
+
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
         let power = self.scaled(f, |own| self.effect.add_force(t, x, v, own));
         Power {
@@ -44,16 +53,8 @@ impl Effect for Scaled {
         self.factor * self.effect.potential(t, x)
     }
 
-    fn is_damped(&self) -> bool {
-        self.effect.is_damped()
-    }
-
     fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
         self.scaled(f, |own| self.effect.add_damping(x, w, own));
-    }
-
-    fn is_driven(&self) -> bool {
-        self.effect.is_driven()
     }
 
     fn injected_power(&self, t: f64, v: &[f64]) -> f64 {

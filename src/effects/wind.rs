@@ -2,7 +2,7 @@
 
 use super::{Effect, EffectRow, boxed};
 use crate::scene::Scene;
-use crate::system::Power;
+use crate::system::{ForceKinds, Power};
 
 pub(super) const ROW: EffectRow = EffectRow {
     id: "wind",
@@ -39,6 +39,10 @@ impl Effect for Wind {
         self.free.len()
     }
 
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::DRIVEN
+    }
+
     fn add_force(&self, t: f64, _x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
         for &i in &self.free {
             for axis in 0..3 {
@@ -51,20 +55,8 @@ impl Effect for Wind {
         }
     }
 
-    fn is_driven(&self) -> bool {
-        true
-    }
-
     fn injected_power(&self, _t: f64, v: &[f64]) -> f64 {
         let along = |i: &usize| (0..3).map(|a| self.force[a] * v[3 * i + a]).sum::<f64>();
         self.free.iter().map(along).sum()
-    }
-
-    fn keeps_momentum(&self) -> bool {
-        false
-    }
-
-    fn keeps_angular_momentum(&self) -> bool {
-        false
     }
 }

@@ -41,7 +41,7 @@ impl IntegratorEngine {
         settings: &Settings,
         timestep: f64,
     ) -> Self {
-        Self::with(scene, system, (method.build)(settings), timestep)
+        Self::with(scene, system, method.build(settings), timestep)
     }
 
     /// With an integrator of the caller's own.

@@ -11,7 +11,7 @@ pub use run::{Ended, Limits, Observer, Run, Tally, Unwatched};
 pub use solver::{BuildIntegrator, Setting, Solver, catalogue, find};
 
 use crate::integrators::StepError;
-use crate::system::State;
+use crate::system::{Refused, State};
 
 /// A scene that advances step by step. Only a [`Run`] takes its steps.
 ///
@@ -67,4 +67,11 @@ impl Counts {
 pub struct Unsupported {
     /// What the scene has that the engine cannot mirror.
     pub reason: String,
+}
+
+impl From<Refused> for Unsupported {
+    fn from(refused: Refused) -> Self {
+        let reason = refused.to_string();
+        Self { reason }
+    }
 }

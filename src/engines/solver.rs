@@ -232,12 +232,15 @@ impl Solver {
         let (system, timestep) = (system.clone(), setting.timestep());
         let engine: Box<dyn Engine> = match &self.source {
             Source::Method(method) => {
+                system.admits(&self.id, method.takes())?;
                 let settings = Settings::stated(scene.solver.tolerance);
                 let engine = IntegratorEngine::new(scene, system, method, &settings, timestep);
                 Box::new(engine)
             }
             Source::Own(build) => {
-                Box::new(IntegratorEngine::with(scene, system, build(), timestep))
+                let integrator = build();
+                system.admits(&self.id, integrator.takes())?;
+                Box::new(IntegratorEngine::with(scene, system, integrator, timestep))
             }
             Source::Pair(pair) => {
                 let tolerance = setting.tolerance().unwrap_or(f64::EPSILON);

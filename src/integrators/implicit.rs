@@ -1,14 +1,13 @@
-//! Implicit methods: one stage equation, solved by one Newton iteration.
-//!
-//! Every method here finds u with M (u - b) = γ f(t + τ, y + γ u, u); they differ in b, y, γ and
-//! in what they make of u.
+//! Implicit methods: stage equations M (u - b) = γ f(t + τ, y + γ u, u), solved by one Newton
+//! iteration. The methods differ in b, y, γ and in what they make of the stage velocity u.
 
 use super::newton::Newton;
 use super::{
-    Amplification, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable,
-    StepError, axpy, fit,
+    Amplification, Coefficients, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep,
+    Settings, Stable, StepError, axpy, fit, refuse,
 };
-use crate::system::{Linearization, State, System};
+use crate::system::{ForceKinds, Linearization, Power, State, System};
+use std::f64::consts::SQRT_2;
 
 /// Which member of the family a stepper is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,26 +18,83 @@ pub enum Scheme {
     LinearizedEuler(Linearization),
     Midpoint,
     Trapezoidal,
+    /// Over [t, t + g h] the trapezoidal rule, then the second-order backward difference through start
+    /// and stage to t + h. L-stable: what is fast against h dies out, what is slow keeps its energy to
+    /// z⁴ a step. g = 2 - √2 gives both stages the same γ = g h/2.
+    TrBdf2,
 }
 
-const fn implicit(id: &'static str, name: &'static str, order: u32, energy: EnergyLaw) -> Method {
+impl Scheme {
+    /// One Newton step is of first order whatever the force. The line search of Newton's iteration takes
+    /// D to be symmetric.
+    pub(super) const fn takes(self) -> ForceKinds {
+        match self {
+            Self::LinearizedEuler(_) => ForceKinds::ANY,
+            _ => ForceKinds::SYMMETRIC,
+        }
+    }
+
+    const fn evaluations(self) -> PerStep {
+        match self {
+            Self::LinearizedEuler(_) => PerStep::Exactly(1),
+            Self::Euler | Self::Midpoint => PerStep::PerIteration { plus: 1 },
+            // The start, and for each stage one to see that it has converged.
+            Self::Trapezoidal => PerStep::PerIteration { plus: 2 },
+            Self::TrBdf2 => PerStep::PerIteration { plus: 3 },
+        }
+    }
+
+    const fn amplification(self) -> Amplification {
+        match self {
+            Self::LinearizedEuler(Linearization::Material) => Amplification::MaterialImplicit,
+            Self::Euler | Self::LinearizedEuler(_) => Amplification::BACKWARD_EULER,
+            Self::Midpoint | Self::Trapezoidal => Amplification::CAYLEY,
+            // (1 + (√2 - 1) z) / (1 - g z/2)².
+            Self::TrBdf2 => Amplification::Rational {
+                numerator: &[1.0, SQRT_2 - 1.0],
+                denominator: &[1.0, SQRT_2 - 2.0, 1.5 - SQRT_2],
+            },
+        }
+    }
+}
+
+// TR-BDF2, in steps.
+
+/// Where the trapezoidal stage ends: g = 2 - √2.
+const STAGE: f64 = 2.0 - SQRT_2;
+/// The implicit coefficient of both stages, g/2.
+const IMPLICIT: f64 = 0.5 * STAGE;
+/// How far the difference formula goes beyond the stage: 1/(g (2 - g)) = (1 + √2)/2.
+const BEYOND: f64 = 0.5 * (1.0 + SQRT_2);
+/// What start and stage weigh in the step as a whole: √2/4.
+const WEIGHT: f64 = 0.25 * SQRT_2;
+/// z² at which a step takes a quarter of the energy: 4/g² = (2 + √2)².
+const CORNER: f64 = 6.0 + 4.0 * SQRT_2;
+
+const fn implicit(
+    id: &'static str,
+    name: &'static str,
+    order: u32,
+    scheme: Scheme,
+    energy: EnergyLaw,
+) -> Method {
     Method {
         id,
         name,
         order,
         order_damped: order,
         symplectic: false,
-        reversible: order > 1,
-        evaluations: PerStep::PerIteration { plus: 1 },
+        reversible: false,
+        evaluations: scheme.evaluations(),
         oscillator: Oscillator {
             stable: Stable::Always,
             energy,
         },
-        amplification: Amplification::BACKWARD_EULER,
+        coefficients: Coefficients::Implicit(scheme),
+        amplification: scheme.amplification(),
         exact: Exact::of_order(order),
         source: "",
         not: "",
-        build: |settings: &Settings| Box::new(Implicit::new(Scheme::Euler, settings)),
     }
 }
 
@@ -54,23 +110,23 @@ const KEEPS: EnergyLaw = EnergyLaw::Factor {
 pub(super) const IMPLICIT_EULER: Method = Method {
     source: "Hairer, Wanner, Solving ODEs II, IV.3",
     not: "linearized_implicit, which stops after one Newton step",
-    ..implicit("implicit_euler", "implicit Euler", 1, DISSIPATES)
+    ..implicit(
+        "implicit_euler",
+        "implicit Euler",
+        1,
+        Scheme::Euler,
+        DISSIPATES,
+    )
 };
 
 pub(super) const LINEARIZED_IMPLICIT: Method = Method {
     source: "Baraff & Witkin 1998, Large Steps in Cloth Simulation, with the exact Jacobian",
     not: "implicit_euler: non-linear forces are met only to first order",
-    evaluations: PerStep::Exactly(1),
-    build: |settings| {
-        Box::new(Implicit::new(
-            Scheme::LinearizedEuler(Linearization::Exact),
-            settings,
-        ))
-    },
     ..implicit(
         "linearized_implicit",
         "linearly implicit Euler",
         1,
+        Scheme::LinearizedEuler(Linearization::Exact),
         DISSIPATES,
     )
 };
@@ -79,42 +135,60 @@ pub(super) const LINEARIZED_IMPLICIT_MATERIAL: Method = Method {
     source: "Baraff & Witkin 1998 with K = k n nᵀ; what rapier's spring joint converges to",
     not: "linearized_implicit: the stiffness of a spring's turning is left out, so transverse \
           motion is only as stable as symplectic Euler's",
-    evaluations: PerStep::Exactly(1),
     oscillator: Oscillator {
         stable: Stable::AlwaysAlong { across: 2.0 },
         energy: DISSIPATES,
-    },
-    amplification: Amplification::MaterialImplicit,
-    build: |settings| {
-        Box::new(Implicit::new(
-            Scheme::LinearizedEuler(Linearization::Material),
-            settings,
-        ))
     },
     ..implicit(
         "linearized_implicit_material",
         "linearly implicit Euler, K = k n nᵀ",
         1,
+        Scheme::LinearizedEuler(Linearization::Material),
         DISSIPATES,
     )
 };
 
 pub(super) const IMPLICIT_MIDPOINT: Method = Method {
     symplectic: true,
+    reversible: true,
     source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1 (Gauss, s = 1)",
     not: "midpoint, its explicit namesake, or trapezoidal, its conjugate",
-    amplification: Amplification::CAYLEY,
-    build: |settings| Box::new(Implicit::new(Scheme::Midpoint, settings)),
-    ..implicit("implicit_midpoint", "implicit midpoint", 2, KEEPS)
+    ..implicit(
+        "implicit_midpoint",
+        "implicit midpoint",
+        2,
+        Scheme::Midpoint,
+        KEEPS,
+    )
 };
 
 pub(super) const TRAPEZOIDAL: Method = Method {
-    evaluations: PerStep::PerIteration { plus: 2 },
+    reversible: true,
     source: "Crank & Nicolson 1947; Newmark 1959 with β = 1/4, γ = 1/2",
     not: "heun, its explicit namesake; conjugate to a symplectic method, not one itself",
-    amplification: Amplification::CAYLEY,
-    build: |settings| Box::new(Implicit::new(Scheme::Trapezoidal, settings)),
-    ..implicit("trapezoidal", "trapezoidal rule", 2, KEEPS)
+    ..implicit(
+        "trapezoidal",
+        "trapezoidal rule",
+        2,
+        Scheme::Trapezoidal,
+        KEEPS,
+    )
+};
+
+pub(super) const TR_BDF2: Method = Method {
+    source: "Bank et al. 1985, IEEE Trans. CAD 4; Hosea & Shampine 1996, Appl. Numer. Math. 20",
+    not: "trapezoidal, which lets stiff modes ring; BDF2, which needs two steps of the past",
+    ..implicit(
+        "tr_bdf2",
+        "TR-BDF2",
+        2,
+        Scheme::TrBdf2,
+        // |R(iz)|², which vanishes at infinity.
+        EnergyLaw::Factor {
+            factor: |z| 1.0 - (z * z / (z * z + CORNER)).powi(2),
+            formula: "1 - (z²/(z² + (2 + √2)²))²",
+        },
+    )
 };
 
 /// The stepper all implicit methods share.
@@ -125,10 +199,9 @@ pub struct Implicit {
     u: Vec<f64>,
     /// The velocity u departs from.
     b: Vec<f64>,
-    /// The position γ u is added to.
+    /// The position γ u is added to; the stage's position once it is solved.
     y: Vec<f64>,
     a: Vec<f64>,
-    x: Vec<f64>,
 }
 
 impl Implicit {
@@ -140,76 +213,93 @@ impl Implicit {
             b: Vec::new(),
             y: Vec::new(),
             a: Vec::new(),
-            x: Vec::new(),
         }
     }
 
-    /// Solves for `u` and leaves the stage's position in `self.x`.
-    fn solve(&mut self, system: &dyn System, t: f64, gamma: f64) -> Result<(), StepError> {
-        self.newton
+    /// Solves for `u` and moves `y` to the stage's position; returns the powers there.
+    fn solve(&mut self, system: &dyn System, t: f64, gamma: f64) -> Result<Power, StepError> {
+        let power = self
+            .newton
             .solve(system, t, gamma, &self.b, &self.y, &mut self.u)?;
-        self.x.copy_from_slice(&self.y);
-        axpy(&mut self.x, gamma, &self.u);
-        Ok(())
+        axpy(&mut self.y, gamma, &self.u);
+        Ok(power)
+    }
+
+    /// The trapezoidal rule over 2 γ from the state on; returns the powers at its start and its end.
+    fn trapezoid(
+        &mut self,
+        system: &dyn System,
+        gamma: f64,
+        end: f64,
+        state: &State,
+    ) -> Result<[Power; 2], StepError> {
+        let start = system.acceleration(state.t, &state.x, &state.v, &mut self.a);
+        axpy(&mut self.b, gamma, &self.a);
+        axpy(&mut self.y, gamma, &state.v);
+        Ok([start, self.solve(system, end, gamma)?])
     }
 }
 
 impl Integrator for Implicit {
     fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
+        refuse(self, system)?;
         let n = state.x.len();
-        for buffer in [
-            &mut self.u,
-            &mut self.b,
-            &mut self.y,
-            &mut self.a,
-            &mut self.x,
-        ] {
+        for buffer in [&mut self.u, &mut self.b, &mut self.y, &mut self.a] {
             fit(buffer, n);
         }
         self.u.copy_from_slice(&state.v);
         self.b.copy_from_slice(&state.v);
         self.y.copy_from_slice(&state.x);
-        let t = state.t;
+        let (t, end) = (state.t, state.t + h);
         let mut work = state.work;
         match self.scheme {
-            Scheme::Euler => {
-                self.solve(system, t + h, h)?;
-                state.x.copy_from_slice(&self.x);
-                state.v.copy_from_slice(&self.u);
-                let end = self.newton.last_power();
-                work.advance(end, h);
-            }
+            Scheme::Euler => work.advance(self.solve(system, end, h)?, h),
             Scheme::LinearizedEuler(linearization) => {
                 let power = self
                     .newton
                     .single(system, t, h, linearization, state, &mut self.u)?;
-                state.v.copy_from_slice(&self.u);
-                axpy(&mut state.x, h, &self.u);
+                axpy(&mut self.y, h, &self.u);
                 work.advance(power, h);
             }
             Scheme::Midpoint => {
-                self.solve(system, t + 0.5 * h, 0.5 * h)?;
-                work.advance(self.newton.last_power(), h);
-                axpy(&mut state.x, h, &self.u);
+                let power = self.solve(system, t + 0.5 * h, 0.5 * h)?;
+                work.advance(power, h);
+                self.y.copy_from_slice(&state.x);
+                axpy(&mut self.y, h, &self.u);
                 // v1 = v0 + 2 (u - v0), so that what does not accelerate keeps its bits.
-                for (v, u) in state.v.iter_mut().zip(&self.u) {
-                    *v += 2.0 * (u - *v);
+                for (u, v) in self.u.iter_mut().zip(&state.v) {
+                    *u = v + 2.0 * (*u - v);
                 }
             }
             Scheme::Trapezoidal => {
-                let start = system.acceleration(t, &state.x, &state.v, &mut self.a);
-                axpy(&mut self.b, 0.5 * h, &self.a);
-                axpy(&mut self.y, 0.5 * h, &state.v);
-                self.solve(system, t + h, 0.5 * h)?;
-                work.advance(start, 0.5 * h);
-                work.advance(self.newton.last_power(), 0.5 * h);
-                state.x.copy_from_slice(&self.x);
-                state.v.copy_from_slice(&self.u);
+                for power in self.trapezoid(system, 0.5 * h, end, state)? {
+                    work.advance(power, 0.5 * h);
+                }
+            }
+            Scheme::TrBdf2 => {
+                let gamma = IMPLICIT * h;
+                for power in self.trapezoid(system, gamma, t + STAGE * h, state)? {
+                    work.advance(power, WEIGHT * h);
+                }
+                // Differences from the start, so that what does not accelerate keeps its bits.
+                for (y, x) in self.y.iter_mut().zip(&state.x) {
+                    *y = x + BEYOND * (*y - x);
+                }
+                for ((b, u), v) in self.b.iter_mut().zip(&self.u).zip(&state.v) {
+                    *b = v + BEYOND * (u - v);
+                }
+                work.advance(self.solve(system, end, gamma)?, gamma);
             }
         }
+        state.x.copy_from_slice(&self.y);
+        state.v.copy_from_slice(&self.u);
         state.work = work;
-        state.t = t + h;
+        state.t = end;
         Ok(())
+    }
+
+    fn takes(&self) -> ForceKinds {
+        self.scheme.takes()
     }
 
     fn linear_solves(&self) -> u64 {

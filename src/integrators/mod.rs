@@ -7,16 +7,14 @@ mod newton;
 pub(crate) mod nystrom;
 mod runge_kutta;
 mod splitting;
-mod tr_bdf2;
 mod velocity_flow;
 
 pub use amplification::Amplification;
 pub use implicit::{Implicit, Scheme};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
-pub use tr_bdf2::TrBdf2;
 
-use crate::system::{State, System};
+use crate::system::{ForceKinds, Refused, State, System};
 use crate::vector::axpy;
 
 /// Advances a state by one step.
@@ -28,8 +26,15 @@ pub trait Integrator: Send {
     /// left as it was.
     ///
     /// # Errors
-    /// [`StepError`] when an implicit step cannot be solved.
+    /// [`StepError`] when an implicit step cannot be solved, or when the integrator does not
+    /// [take](Self::takes) the system's forces.
     fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError>;
+
+    /// The kinds of forces it is right for, to its order. What it does not take is refused before a
+    /// run starts ([`ParticleSystem::admits`](crate::system::ParticleSystem::admits)).
+    fn takes(&self) -> ForceKinds {
+        ForceKinds::ANY
+    }
 
     /// Linear systems solved so far; 0 for explicit methods.
     fn linear_solves(&self) -> u64 {
@@ -46,6 +51,8 @@ pub trait Integrator: Send {
 /// Why a step could not be taken.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StepError {
+    #[error(transparent)]
+    Refused(#[from] Refused),
     #[error(
         "Newton's iteration stopped at a relative residual of {residual:.1e} after {iterations} \
          iterations (wanted {tolerance:.0e}), largest at particle {particle}: a smaller timestep \
@@ -109,6 +116,8 @@ pub struct Method {
     pub evaluations: PerStep,
     /// On x'' = -w² x, with z = h w.
     pub oscillator: Oscillator,
+    /// What it computes with.
+    pub coefficients: Coefficients,
     /// On any linear system; `oscillator` is its summary.
     pub amplification: Amplification,
     pub exact: Exact,
@@ -116,8 +125,37 @@ pub struct Method {
     pub source: &'static str,
     /// What it must not be confused with.
     pub not: &'static str,
+}
+
+/// What a method computes with, and by that which stepper runs it.
+#[derive(Debug, Clone, Copy)]
+pub enum Coefficients {
+    /// An explicit Runge-Kutta method.
+    Tableau(Tableau),
+    /// A product of kicks and drifts, the first one first.
+    Composition(&'static [Stage], DampingTreatment),
+    /// A scheme of implicit stage equations.
+    Implicit(Scheme),
+}
+
+impl Method {
+    /// The kinds of forces it takes: as [`Integrator::takes`].
+    pub const fn takes(&self) -> ForceKinds {
+        match self.coefficients {
+            Coefficients::Tableau(_) => ForceKinds::ANY,
+            Coefficients::Composition(_, damping) => damping.takes(),
+            Coefficients::Implicit(scheme) => scheme.takes(),
+        }
+    }
+
     /// A fresh integrator.
-    pub build: fn(&Settings) -> Box<dyn Integrator>,
+    pub fn build(&self, settings: &Settings) -> Box<dyn Integrator> {
+        match self.coefficients {
+            Coefficients::Tableau(tableau) => Box::new(RungeKutta::new(tableau)),
+            Coefficients::Composition(stages, damping) => Box::new(Splitting::new(stages, damping)),
+            Coefficients::Implicit(scheme) => Box::new(Implicit::new(scheme, settings)),
+        }
+    }
 }
 
 impl std::fmt::Debug for Method {
@@ -233,7 +271,7 @@ pub static REGISTRY: &[Method] = &[
     implicit::LINEARIZED_IMPLICIT_MATERIAL,
     implicit::IMPLICIT_MIDPOINT,
     implicit::TRAPEZOIDAL,
-    tr_bdf2::TR_BDF2,
+    implicit::TR_BDF2,
 ];
 
 /// The method of this id.
@@ -244,6 +282,19 @@ pub fn find(id: &str) -> Option<&'static Method> {
 /// All ids, in registry order.
 pub fn ids() -> Vec<&'static str> {
     REGISTRY.iter().map(|method| method.id).collect()
+}
+
+/// Refuses forces that an integrator would silently get wrong.
+fn refuse(integrator: &dyn Integrator, system: &dyn System) -> Result<(), Refused> {
+    let kinds = system.kinds().without(integrator.takes());
+    if kinds == ForceKinds::NONE {
+        return Ok(());
+    }
+    Err(Refused {
+        who: "this integrator".to_owned(),
+        kinds,
+        effects: Vec::new(),
+    })
 }
 
 /// Resizes scratch memory on first use or when the system's size changed.

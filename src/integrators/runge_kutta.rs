@@ -1,7 +1,7 @@
 //! Explicit Runge-Kutta methods: one stepper, a tableau a method.
 
 use super::{
-    Amplification, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable,
+    Amplification, Coefficients, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Stable,
     StepError, axpy, fit,
 };
 use crate::system::{Power, State, System};
@@ -18,37 +18,11 @@ pub struct Tableau {
     pub c: &'static [f64],
 }
 
-const EULER: Tableau = Tableau {
-    a: &[&[]],
-    b: &[1.0],
-    c: &[0.0],
-};
-const MIDPOINT_TABLEAU: Tableau = Tableau {
-    a: &[&[], &[0.5]],
-    b: &[0.0, 1.0],
-    c: &[0.0, 0.5],
-};
-const HEUN_TABLEAU: Tableau = Tableau {
-    a: &[&[], &[1.0]],
-    b: &[0.5, 0.5],
-    c: &[0.0, 1.0],
-};
-const RALSTON_TABLEAU: Tableau = Tableau {
-    a: &[&[], &[2.0 / 3.0]],
-    b: &[0.25, 0.75],
-    c: &[0.0, 2.0 / 3.0],
-};
-const RK4_TABLEAU: Tableau = Tableau {
-    a: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
-    b: &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
-    c: &[0.0, 0.5, 0.5, 1.0],
-};
-
 const fn explicit(
     id: &'static str,
     name: &'static str,
     order: u32,
-    stages: u32,
+    tableau: Tableau,
     oscillator: Oscillator,
     amplification: Amplification,
 ) -> Method {
@@ -59,13 +33,13 @@ const fn explicit(
         order_damped: order,
         symplectic: false,
         reversible: false,
-        evaluations: PerStep::Exactly(stages),
+        evaluations: PerStep::Exactly(tableau.b.len() as u32),
         oscillator,
+        coefficients: Coefficients::Tableau(tableau),
         amplification,
         exact: Exact::of_order(order),
         source: "",
         not: "",
-        build: |_: &Settings| Box::new(RungeKutta::new(EULER)),
     }
 }
 
@@ -85,7 +59,11 @@ pub(super) const EXPLICIT_EULER: Method = Method {
         "explicit_euler",
         "explicit Euler",
         1,
-        1,
+        Tableau {
+            a: &[&[]],
+            b: &[1.0],
+            c: &[0.0],
+        },
         Oscillator {
             stable: Stable::Never,
             energy: EnergyLaw::Factor {
@@ -100,12 +78,15 @@ pub(super) const EXPLICIT_EULER: Method = Method {
 pub(super) const MIDPOINT: Method = Method {
     source: "Runge 1895; Hairer, Nørsett, Wanner, Solving ODEs I, II.1",
     not: "implicit_midpoint; nor the common mistake that drifts with the end velocity",
-    build: |_| Box::new(RungeKutta::new(MIDPOINT_TABLEAU)),
     ..explicit(
         "midpoint",
         "explicit midpoint",
         2,
-        2,
+        Tableau {
+            a: &[&[], &[0.5]],
+            b: &[0.0, 1.0],
+            c: &[0.0, 0.5],
+        },
         SECOND_ORDER,
         Amplification::EXPLICIT_2,
     )
@@ -114,12 +95,15 @@ pub(super) const MIDPOINT: Method = Method {
 pub(super) const HEUN: Method = Method {
     source: "Heun 1900; the explicit trapezoidal rule",
     not: "trapezoidal, its implicit namesake",
-    build: |_| Box::new(RungeKutta::new(HEUN_TABLEAU)),
     ..explicit(
         "heun",
         "Heun (explicit trapezoid)",
         2,
-        2,
+        Tableau {
+            a: &[&[], &[1.0]],
+            b: &[0.5, 0.5],
+            c: &[0.0, 1.0],
+        },
         SECOND_ORDER,
         Amplification::EXPLICIT_2,
     )
@@ -128,12 +112,15 @@ pub(super) const HEUN: Method = Method {
 pub(super) const RALSTON: Method = Method {
     source: "Ralston 1962, Math. Comp. 16: the two-stage method of least error bound",
     not: "Ralston's third-order method",
-    build: |_| Box::new(RungeKutta::new(RALSTON_TABLEAU)),
     ..explicit(
         "ralston",
         "Ralston",
         2,
-        2,
+        Tableau {
+            a: &[&[], &[2.0 / 3.0]],
+            b: &[0.25, 0.75],
+            c: &[0.0, 2.0 / 3.0],
+        },
         SECOND_ORDER,
         Amplification::EXPLICIT_2,
     )
@@ -142,12 +129,15 @@ pub(super) const RALSTON: Method = Method {
 pub(super) const RK4: Method = Method {
     source: "Kutta 1901; Hairer, Nørsett, Wanner, Solving ODEs I, II.1",
     not: "the 3/8 rule",
-    build: |_| Box::new(RungeKutta::new(RK4_TABLEAU)),
     ..explicit(
         "rk4",
         "classical Runge-Kutta",
         4,
-        4,
+        Tableau {
+            a: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
+            b: &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
+            c: &[0.0, 0.5, 0.5, 1.0],
+        },
         Oscillator {
             // 2 sqrt(2).
             stable: Stable::Below(2.0 * std::f64::consts::SQRT_2),

@@ -2,10 +2,10 @@
 
 use super::velocity_flow::VelocityFlow;
 use super::{
-    Amplification, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable,
-    StepError, axpy, fit,
+    Amplification, Coefficients, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Stable,
+    StepError, axpy, fit, refuse,
 };
-use crate::system::{State, System};
+use crate::system::{ForceKinds, State, System};
 use crate::vector;
 
 /// One factor of the composition; its coefficient multiplies the step.
@@ -75,12 +75,36 @@ pub enum DampingTreatment {
     ExactFlow,
 }
 
-/// A symplectic method, undamped evaluations and all: what the rows below share.
+impl DampingTreatment {
+    /// An explicit kick is of first order whatever the force. The exact flow takes the force at rest and
+    /// D apart, and D to be symmetric.
+    pub(super) const fn takes(self) -> ForceKinds {
+        match self {
+            Self::Explicit => ForceKinds::ANY,
+            Self::ExactFlow => ForceKinds::SYMMETRIC,
+        }
+    }
+}
+
+/// Forces at rest that a step evaluates: one a kick, but for a first kick that takes the force of the
+/// last one of the step before. An explicit kick depends on the velocity and takes none.
+const fn forces(stages: &[Stage], damping: DampingTreatment) -> u32 {
+    let (mut kicks, mut at) = (0, 0);
+    while at < stages.len() {
+        kicks += matches!(stages[at], Kick(_)) as u32;
+        at += 1;
+    }
+    let same = matches!(stages, [Kick(_), .., Kick(_)]);
+    kicks - (same && matches!(damping, DampingTreatment::ExactFlow)) as u32
+}
+
+/// A composition of kicks and drifts keeps the symplectic form.
 const fn symplectic(
     id: &'static str,
     name: &'static str,
     order: u32,
-    evaluations: u32,
+    stages: &'static [Stage],
+    damping: DampingTreatment,
     limit: f64,
     energy: EnergyLaw,
 ) -> Method {
@@ -91,16 +115,16 @@ const fn symplectic(
         order_damped: order,
         symplectic: true,
         reversible: order > 1,
-        evaluations: PerStep::Exactly(evaluations),
+        evaluations: PerStep::Exactly(forces(stages, damping)),
         oscillator: Oscillator {
             stable: Stable::Below(limit),
             energy,
         },
-        amplification: Amplification::Composition(&[], DampingTreatment::Explicit),
+        coefficients: Coefficients::Composition(stages, damping),
+        amplification: Amplification::Composition(stages, damping),
         exact: Exact::of_order(order),
         source: "",
         not: "",
-        build: |_: &Settings| Box::new(Splitting::new(&[], DampingTreatment::Explicit)),
     }
 }
 
@@ -114,18 +138,12 @@ pub(super) const SYMPLECTIC_EULER: Method = Method {
     source: "de Vogelaere 1956; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
     not: "explicit_euler, which drifts with the old velocity; leapfrog without its first half kick \
           is this method",
-    amplification: Amplification::Composition(Stage::SYMPLECTIC_EULER, DampingTreatment::Explicit),
-    build: |_| {
-        Box::new(Splitting::new(
-            Stage::SYMPLECTIC_EULER,
-            DampingTreatment::Explicit,
-        ))
-    },
     ..symplectic(
         "symplectic_euler",
         "symplectic Euler (kick, drift)",
         1,
-        1,
+        Stage::SYMPLECTIC_EULER,
+        DampingTreatment::Explicit,
         2.0,
         EULER_BAND,
     )
@@ -134,21 +152,12 @@ pub(super) const SYMPLECTIC_EULER: Method = Method {
 pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Method = Method {
     source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
     not: "explicit_euler, for which it is often taken: it kicks at the position already moved",
-    amplification: Amplification::Composition(
-        Stage::SYMPLECTIC_EULER_DRIFT_FIRST,
-        DampingTreatment::Explicit,
-    ),
-    build: |_| {
-        Box::new(Splitting::new(
-            Stage::SYMPLECTIC_EULER_DRIFT_FIRST,
-            DampingTreatment::Explicit,
-        ))
-    },
     ..symplectic(
         "symplectic_euler_drift_first",
         "symplectic Euler (drift, kick)",
         1,
-        1,
+        Stage::SYMPLECTIC_EULER_DRIFT_FIRST,
+        DampingTreatment::Explicit,
         2.0,
         EULER_BAND,
     )
@@ -157,13 +166,12 @@ pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Method = Method {
 pub(super) const VELOCITY_VERLET: Method = Method {
     source: "Swope et al. 1982; Hairer, Lubich, Wanner, Acta Numerica 2003 (Störmer-Verlet)",
     not: "position_verlet (drift, kick, drift), or Verlet with a predicted velocity in the damper",
-    amplification: Amplification::Composition(Stage::VERLET, DampingTreatment::ExactFlow),
-    build: |_| Box::new(Splitting::new(Stage::VERLET, DampingTreatment::ExactFlow)),
     ..symplectic(
         "velocity_verlet",
         "velocity Verlet",
         2,
-        1,
+        Stage::VERLET,
+        DampingTreatment::ExactFlow,
         2.0,
         EnergyLaw::Band {
             band: |z| (1.0 - z * z / 4.0, 1.0),
@@ -175,18 +183,12 @@ pub(super) const VELOCITY_VERLET: Method = Method {
 pub(super) const POSITION_VERLET: Method = Method {
     source: "Verlet 1967; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4",
     not: "velocity_verlet, which kicks first and last",
-    amplification: Amplification::Composition(Stage::POSITION_VERLET, DampingTreatment::ExactFlow),
-    build: |_| {
-        Box::new(Splitting::new(
-            Stage::POSITION_VERLET,
-            DampingTreatment::ExactFlow,
-        ))
-    },
     ..symplectic(
         "position_verlet",
         "position Verlet",
         2,
-        1,
+        Stage::POSITION_VERLET,
+        DampingTreatment::ExactFlow,
         2.0,
         EnergyLaw::Band {
             band: |z| (1.0, 1.0 / (1.0 - z * z / 4.0)),
@@ -198,13 +200,12 @@ pub(super) const POSITION_VERLET: Method = Method {
 pub(super) const YOSHIDA4: Method = Method {
     source: "Forest & Ruth 1990, Physica D 43; Yoshida 1990, Phys. Lett. A 150",
     not: "Yoshida's sixth- and eighth-order methods",
-    amplification: Amplification::Composition(Stage::YOSHIDA4, DampingTreatment::ExactFlow),
-    build: |_| Box::new(Splitting::new(Stage::YOSHIDA4, DampingTreatment::ExactFlow)),
     ..symplectic(
         "yoshida4",
         "Yoshida / Forest-Ruth",
         4,
-        3,
+        Stage::YOSHIDA4,
+        DampingTreatment::ExactFlow,
         1.573_402,
         EnergyLaw::Bounded,
     )
@@ -213,9 +214,15 @@ pub(super) const YOSHIDA4: Method = Method {
 pub(super) const PEFRL: Method = Method {
     source: "Omelyan, Mryglod, Folk 2002, Comput. Phys. Commun. 146, 188",
     not: "Forest-Ruth (yoshida4): one evaluation more, an error constant far smaller",
-    amplification: Amplification::Composition(Stage::PEFRL, DampingTreatment::ExactFlow),
-    build: |_| Box::new(Splitting::new(Stage::PEFRL, DampingTreatment::ExactFlow)),
-    ..symplectic("pefrl", "PEFRL", 4, 4, 2.989_450, EnergyLaw::Bounded)
+    ..symplectic(
+        "pefrl",
+        "PEFRL",
+        4,
+        Stage::PEFRL,
+        DampingTreatment::ExactFlow,
+        2.989_450,
+        EnergyLaw::Bounded,
+    )
 };
 
 /// The stepper all compositions of kicks and drifts share.
@@ -294,9 +301,9 @@ impl Splitting {
             self.kept.t = t;
             self.kept.valid = true;
         }
-        if system.is_damped() {
+        if system.kinds().depends_on_velocity() {
             self.flow.advance(system, t, h, &self.kept.a, state)?;
-        } else if system.is_driven() {
+        } else if system.kinds().has(ForceKinds::DRIVEN) {
             // The power is linear in v, and v is linear in time: the trapezoid is exact.
             let before = system.injected_power(t, &state.x, &state.v);
             axpy(&mut state.v, h, &self.kept.a);
@@ -311,7 +318,8 @@ impl Splitting {
 
 impl Integrator for Splitting {
     fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
-        if self.damping == DampingTreatment::Explicit || !system.is_damped() {
+        refuse(self, system)?;
+        if self.damping == DampingTreatment::Explicit || !system.kinds().depends_on_velocity() {
             return self.compose(system, h, state);
         }
         // Only a damping flow can fail, half way through.
@@ -323,6 +331,10 @@ impl Integrator for Splitting {
         }
         self.saved = Some(saved);
         done
+    }
+
+    fn takes(&self) -> ForceKinds {
+        self.damping.takes()
     }
 }
 

@@ -10,7 +10,7 @@
 //! sum v + h φ1 r knows it to the last bit of v only, which a substep backward would blow up again.
 
 use super::{StepError, axpy, fit, largest, worst_particle};
-use crate::system::{State, System};
+use crate::system::{ForceKinds, State, System};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Taylor terms before Lanczos takes over.
@@ -112,7 +112,7 @@ impl VelocityFlow {
             }
         }
         state.work.dissipated += dissipated;
-        if system.is_driven() {
+        if system.kinds().has(ForceKinds::DRIVEN) {
             state.work.injected += system.injected_power(t, &state.x, displacement);
         }
         Ok(())

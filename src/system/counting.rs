@@ -1,6 +1,6 @@
 //! Counts what an integrator asks of a system, from outside both.
 
-use super::{Jacobian, Linearization, Power, System};
+use super::{ForceKinds, Jacobian, Linearization, Power, System};
 use std::cell::Cell;
 
 /// Passes over the forces so far.
@@ -57,15 +57,12 @@ impl<S: System> System for Counting<S> {
         bump(&self.forces);
         self.inner.acceleration(t, x, v, a)
     }
-    fn is_damped(&self) -> bool {
-        self.inner.is_damped()
+    fn kinds(&self) -> ForceKinds {
+        self.inner.kinds()
     }
     fn damping(&self, t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
         bump(&self.damping);
         self.inner.damping(t, x, w, a);
-    }
-    fn is_driven(&self) -> bool {
-        self.inner.is_driven()
     }
     fn injected_power(&self, t: f64, x: &[f64], v: &[f64]) -> f64 {
         self.inner.injected_power(t, x, v)

@@ -187,7 +187,7 @@ pub(super) fn central_differences<S: System + ?Sized>(
         }
     };
     columns(x, true, &mut out.position);
-    if system.is_damped() {
+    if system.kinds().depends_on_velocity() {
         columns(v, false, &mut out.velocity);
     }
 }

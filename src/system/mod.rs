@@ -4,12 +4,14 @@
 
 mod counting;
 mod jacobian;
+mod kinds;
 mod particles;
 mod state;
 
 pub use counting::{Counting, Evaluations};
 pub use jacobian::{Jacobian, Linearization, Triplets};
 pub(crate) use jacobian::{PairBlock, Slope};
+pub use kinds::{ForceKinds, Refused};
 pub use particles::{Effects, ParticleSystem};
 pub use state::{Power, State, Work};
 
@@ -19,8 +21,8 @@ pub use state::{Power, State, Work};
 /// particle 1, ...). Fixed coordinates are part of the vectors; their inverse mass is 0, their
 /// acceleration 0.
 ///
-/// The velocity-dependent part of the force must be *linear in v*:
-/// f(t, x, v) = f(t, x, 0) + D(x) v. Dampers and linear drag are; quadratic drag is not.
+/// How the force depends on v is for the system to say ([`kinds`](System::kinds)): some methods treat
+/// it as linear, f(t, x, v) = f(t, x, 0) + D(x) v with D symmetric, and refuse any other.
 pub trait System {
     /// Number of coordinates.
     fn dim(&self) -> usize;
@@ -33,24 +35,22 @@ pub trait System {
     /// Not to be confused with a force: `a` is already divided by the mass.
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power;
 
-    /// Whether the force depends on velocity, that is, whether D(x) can be non-zero.
-    fn is_damped(&self) -> bool {
-        false
+    /// Which kinds of forces act, all together.
+    ///
+    /// A system that does not say is taken for one that depends on velocity in any way, and is refused
+    /// by the methods for which that would be wrong. One without velocity is [`ForceKinds::NONE`].
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NON_LINEAR
     }
 
-    /// Overwrites `a` with M⁻¹ D(x) w, the acceleration due to velocity `w` alone, 1/s · m/s.
-    /// Only called where [`is_damped`](System::is_damped).
+    /// Overwrites `a` with M⁻¹ D(x) w, the acceleration due to velocity `w` alone, m/s². Only called
+    /// where the force [depends on velocity](ForceKinds::depends_on_velocity), linearly.
     fn damping(&self, _t: f64, _x: &[f64], _w: &[f64], a: &mut [f64]) {
         a.fill(0.0);
     }
 
-    /// Whether forces that belong to no potential, other than damping, do work (wind).
-    fn is_driven(&self) -> bool {
-        false
-    }
-
-    /// Power of those external forces at velocity `v`, W; linear in `v`, so handing in a
-    /// displacement gives joules. Only called where [`is_driven`](System::is_driven).
+    /// Power at velocity `v`, W, of forces that belong to no potential, other than damping; linear in
+    /// `v`, so handing in a displacement gives joules. Only called for [`ForceKinds::DRIVEN`].
     fn injected_power(&self, _t: f64, _x: &[f64], _v: &[f64]) -> f64 {
         0.0
     }

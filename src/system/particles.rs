@@ -1,6 +1,6 @@
 //! The system a scene describes: particles and the effects that act on them.
 
-use super::{Jacobian, Linearization, Power, State, System};
+use super::{ForceKinds, Jacobian, Linearization, Power, Refused, State, System};
 use crate::effects::{self, Effect, EffectRow, Scaled};
 use crate::scene::Scene;
 use crate::vector;
@@ -14,8 +14,7 @@ pub type Effects = Vec<(&'static EffectRow, Box<dyn Effect>)>;
 pub struct ParticleSystem {
     inverse_mass: Arc<[f64]>,
     effects: Arc<Effects>,
-    damped: bool,
-    driven: bool,
+    kinds: ForceKinds,
 }
 
 impl ParticleSystem {
@@ -32,7 +31,7 @@ impl ParticleSystem {
             .iter()
             .flat_map(|p| [if p.fixed { 0.0 } else { 1.0 / p.mass }; 3])
             .collect();
-        let effects: Effects = effects::REGISTRY
+        let effects = effects::REGISTRY
             .iter()
             .filter_map(|row| {
                 let effect = (row.build)(scene)?;
@@ -43,12 +42,33 @@ impl ParticleSystem {
                 }
             })
             .collect();
+        Self::of(inverse_mass, effects)
+    }
+
+    /// Of any effects, with 1/m of each coordinate, 1/kg, 0 for a fixed one.
+    pub fn of(inverse_mass: Vec<f64>, effects: Effects) -> Self {
         Self {
-            damped: effects.iter().any(|(_, e)| e.is_damped()),
-            driven: effects.iter().any(|(_, e)| e.is_driven()),
-            inverse_mass,
+            kinds: ForceKinds::union(effects.iter().map(|(_, effect)| effect.kinds())),
+            inverse_mass: inverse_mass.into(),
             effects: Arc::new(effects),
         }
+    }
+
+    /// Whether a method of that name which takes these kinds takes all forces.
+    ///
+    /// # Errors
+    /// [`Refused`], naming the effects it does not take.
+    pub fn admits(&self, who: &str, taken: ForceKinds) -> Result<(), Refused> {
+        let kinds = self.kinds.without(taken);
+        if kinds == ForceKinds::NONE {
+            return Ok(());
+        }
+        let refused = self.effects.iter().filter(|(_, e)| e.kinds().has(kinds));
+        Err(Refused {
+            who: who.to_owned(),
+            kinds,
+            effects: refused.map(|(row, _)| row.id).collect(),
+        })
     }
 
     /// The same forces taken for accelerations: what a program computes that never divides by the
@@ -113,20 +133,18 @@ impl System for ParticleSystem {
         power
     }
 
-    fn is_damped(&self) -> bool {
-        self.damped
+    fn kinds(&self) -> ForceKinds {
+        self.kinds
     }
 
     fn damping(&self, _t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
         vector::clear(a);
-        for (_, effect) in self.effects.iter().filter(|(_, e)| e.is_damped()) {
-            effect.add_damping(x, w, a);
+        for (_, effect) in self.effects.iter() {
+            if effect.kinds().depends_on_velocity() {
+                effect.add_damping(x, w, a);
+            }
         }
         vector::multiply(a, &self.inverse_mass);
-    }
-
-    fn is_driven(&self) -> bool {
-        self.driven
     }
 
     fn injected_power(&self, t: f64, _x: &[f64], v: &[f64]) -> f64 {

@@ -3,7 +3,7 @@
 use crate::testkit::swinging_triangle;
 use springcheck::effects::{self, Effect};
 use springcheck::scene::{DampingModel, GravitationalPair, Scene};
-use springcheck::system::{Jacobian, Linearization, ParticleSystem, Power};
+use springcheck::system::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power};
 
 /// One spring and one attraction between two particles at the same place.
 fn coincident(model: DampingModel, rest_length: f64) -> Scene {
@@ -83,6 +83,9 @@ struct Unguarded {
 impl Effect for Unguarded {
     fn members(&self) -> usize {
         1
+    }
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NONE
     }
     fn add_force(&self, _: f64, x: &[f64], _: &[f64], f: &mut [f64]) -> Power {
         let d = [x[6] - x[3], x[7] - x[4], x[8] - x[5]];

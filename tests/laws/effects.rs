@@ -4,7 +4,7 @@
 use crate::testkit::{Random, everything, force, sample};
 use springcheck::effects::{self, Effect, EffectRow};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{Jacobian, Linearization, ParticleSystem, Power};
+use springcheck::system::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power};
 
 fn close(what: &str, found: f64, wanted: f64, scale: f64, tolerance: f64) -> Result<(), String> {
     if (found - wanted).abs() <= tolerance * scale {
@@ -40,7 +40,7 @@ fn effect_law(effect: &dyn Effect, x: &[f64], v: &[f64]) -> Result<(), String> {
     for at in 0..n {
         let [low, high] = [-STEP, STEP].map(|by| effect.potential(0.0, &bumped(x, at, by)));
         let slope = (high - low) / (2.0 * STEP);
-        if effect.is_driven() {
+        if effect.kinds().has(ForceKinds::DRIVEN) {
             close(
                 "a driven effect has no potential",
                 slope,
@@ -80,7 +80,7 @@ fn effect_law(effect: &dyn Effect, x: &[f64], v: &[f64]) -> Result<(), String> {
         dissipated -= damping[at] * v[at];
         injected += at_rest[at] * v[at];
     }
-    if damping.iter().any(|f| *f != 0.0) && !effect.is_damped() {
+    if damping.iter().any(|f| *f != 0.0) && !effect.kinds().depends_on_velocity() {
         return Err("depends on velocity but says it does not".into());
     }
     close(
@@ -93,7 +93,11 @@ fn effect_law(effect: &dyn Effect, x: &[f64], v: &[f64]) -> Result<(), String> {
     if dissipated < 0.0 {
         return Err(format!("damping feeds {dissipated} W"));
     }
-    let injected = if effect.is_driven() { injected } else { 0.0 };
+    let injected = if effect.kinds().has(ForceKinds::DRIVEN) {
+        injected
+    } else {
+        0.0
+    };
     close("injected power", power.injected, injected, scale, rounding)?;
     close(
         "injected_power",
@@ -204,11 +208,12 @@ impl Effect for Faulty {
         };
         scale * self.0.potential(t, x)
     }
-    fn is_damped(&self) -> bool {
-        self.1 != Fault::ForgetsItIsDamped && self.0.is_damped()
-    }
-    fn is_driven(&self) -> bool {
-        self.0.is_driven()
+    fn kinds(&self) -> ForceKinds {
+        if self.1 == Fault::ForgetsItIsDamped {
+            ForceKinds::NONE
+        } else {
+            self.0.kinds()
+        }
     }
     fn injected_power(&self, t: f64, v: &[f64]) -> f64 {
         let faulty = self.1 == Fault::WindAlongDisplacement;
@@ -375,8 +380,8 @@ impl Effect for QuadraticDrag {
             injected: 0.0,
         }
     }
-    fn is_damped(&self) -> bool {
-        true
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::DISSIPATIVE
     }
     fn add_damping(&self, _: &[f64], w: &[f64], f: &mut [f64]) {
         for (f, w) in f.iter_mut().zip(w) {

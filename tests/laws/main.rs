@@ -8,6 +8,7 @@ mod coincidence;
 mod conformance;
 mod damping_flow;
 mod effects;
+mod force_kinds;
 mod hard;
 mod kernel;
 mod momentum;

@@ -4,7 +4,7 @@
 use crate::testkit::{Random, everything, force, sample};
 use springcheck::effects::{self, Effect};
 use springcheck::scene::DampingModel;
-use springcheck::system::Power;
+use springcheck::system::{ForceKinds, Power};
 
 /// Total force and torque vanish exactly where the effect says that momentum is kept.
 fn effect_law(effect: &dyn Effect, x: &[f64], v: &[f64]) -> Result<(), String> {
@@ -34,6 +34,9 @@ struct Claims(Box<dyn Effect>, [bool; 2]);
 impl Effect for Claims {
     fn members(&self) -> usize {
         self.0.members()
+    }
+    fn kinds(&self) -> ForceKinds {
+        self.0.kinds()
     }
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
         self.0.add_force(t, x, v, f)

@@ -9,7 +9,7 @@ use springcheck::conformance::{self, Claims};
 use springcheck::integrators::{Integrator, Method, REGISTRY, StepError};
 use springcheck::outcome::CheckStatus;
 use springcheck::scene::DampingModel;
-use springcheck::system::{Counting, Jacobian, Linearization, Power, State, System};
+use springcheck::system::{Counting, ForceKinds, Jacobian, Linearization, Power, State, System};
 
 const W: f64 = Driven::W;
 
@@ -77,6 +77,9 @@ impl System for Shifted<'_> {
     }
     fn inverse_mass(&self) -> &[f64] {
         self.0.inverse_mass()
+    }
+    fn kinds(&self) -> ForceKinds {
+        self.0.kinds()
     }
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
         self.0.acceleration(self.time(t), x, v, a)

@@ -14,7 +14,7 @@ fn circle() -> Scene {
 /// The default rows and `mine`, which is this method.
 fn with(scene: &Scene, id: &str) -> Report {
     let method = integrators::find(id).expect(id);
-    let mine = Solver::own("mine", move || (method.build)(&Settings::default()));
+    let mine = Solver::own("mine", move || method.build(&Settings::default()));
     Plan::new(scene, &Choice::default_for(scene).with(mine))
         .execute(&Quiet)
         .expect("nothing is saved")

@@ -13,7 +13,7 @@ pub use springcheck::conformance::systems::{Oscillator, free_triangle, swinging_
 use springcheck::effects::Effect;
 use springcheck::integrators::{Integrator, Method, REGISTRY, Settings};
 use springcheck::scene::{DampingModel, GravitationalPair, Scene, Wind};
-use springcheck::system::{ParticleSystem, Power, State, System};
+use springcheck::system::{ForceKinds, ParticleSystem, Power, State, System};
 
 /// All of these in a whole run, which `SPRINGCHECK_WHOLE=1` asks for as CI does; else one in `of`,
 /// beginning with number `at`: what lies in a loop over at least `of` cases that hands in its own number
@@ -36,7 +36,7 @@ pub fn crossed<'a, A, B>(rows: &'a [A], others: &'a [B]) -> Vec<(&'a A, &'a B)> 
 
 /// The row's own integrator.
 pub fn own(method: &'static Method) -> impl Fn() -> Box<dyn Integrator> {
-    move || (method.build)(&Settings::default())
+    move || method.build(&Settings::default())
 }
 
 pub fn method(id: &str) -> &'static Method {
@@ -76,6 +76,9 @@ where
     }
     fn inverse_mass(&self) -> &[f64] {
         &self.inverse_mass
+    }
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NONE
     }
     fn acceleration(&self, _t: f64, x: &[f64], _v: &[f64], a: &mut [f64]) -> Power {
         (self.acceleration)(x, a);

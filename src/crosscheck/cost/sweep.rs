@@ -67,7 +67,7 @@ pub(super) fn plan(scene: &Scene, system: &ParticleSystem, choice: &CostChoice) 
             (None, None) => settings::spaced(scene, &coarsest, each, count, share),
         };
         Sweep {
-            order: solver.order(system.is_damped()),
+            order: solver.order(system.kinds().depends_on_velocity()),
             solver: solver.clone(),
             settings,
             each,

@@ -58,7 +58,7 @@ pub(super) fn draw(
         let system = ParticleSystem::new(&scene);
         let settings = Settings::stated(scene.solver.tolerance);
         let line = |x2: &f64| {
-            let mut integrator = (method.build)(&settings);
+            let mut integrator = method.build(&settings);
             let mut admits = |x1: &f64| {
                 let admitted = admits(&system, integrator.as_mut(), timestep, [*x1, *x2], rest);
                 if admitted { '1' } else { '0' }

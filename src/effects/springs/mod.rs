@@ -8,7 +8,7 @@ mod share;
 
 use super::{Effect, EffectRow, boxed};
 use crate::scene::{DampingModel, Scene};
-use crate::system::{Jacobian, Linearization, Power};
+use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 use kernel::Motion;
 use network::Network;
 use pulp::Arch;
@@ -37,6 +37,7 @@ pub(super) const SHORTEST: f64 = 1e-150;
 pub struct Springs {
     network: Network,
     damping: Damping,
+    kinds: ForceKinds,
     /// The machine's vector instructions, asked for once.
     arch: Arch,
 }
@@ -72,6 +73,7 @@ impl Springs {
         (!springs.is_empty()).then(|| Self {
             network: Network::new(&springs, scene.particles.len(), damping != Damping::None),
             damping,
+            kinds: ForceKinds::union(springs.iter().map(|s| ForceKinds::of_damper(s.damping))),
             arch: Arch::new(),
         })
     }
@@ -86,6 +88,10 @@ impl Springs {
 impl Effect for Springs {
     fn members(&self) -> usize {
         self.network.members
+    }
+
+    fn kinds(&self) -> ForceKinds {
+        self.kinds
     }
 
     fn add_force(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
@@ -113,10 +119,6 @@ impl Effect for Springs {
         energy
     }
 
-    fn is_damped(&self) -> bool {
-        self.damping != Damping::None
-    }
-
     fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
         let (arch, parts, at) = (self.arch, &self.network.parts, Motion::new(x, w));
         match self.damping {
@@ -137,7 +139,7 @@ impl Effect for Springs {
         self.network.springs().for_each(|spring| {
             let (position, velocity) = jacobian::blocks(&spring, self.damping, x, v, linearization);
             let [i, j] = spring.ends;
-            let velocity = self.is_damped().then_some(&velocity);
+            let velocity = (self.damping != Damping::None).then_some(&velocity);
             out.add_pair(i, j, Some(&position), velocity);
         });
     }

@@ -57,7 +57,7 @@ impl RapierEngine {
 
     /// Zero, and free of cost, where nothing dissipates or drives.
     fn power_now(&mut self) -> Power {
-        if self.system.is_damped() || self.system.is_driven() {
+        if self.system.kinds().does_work() {
             let State { t, x, v, .. } = &self.state;
             self.system.forces(*t, x, v, &mut self.scratch)
         } else {

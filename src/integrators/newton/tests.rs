@@ -344,7 +344,7 @@ fn a_flat_ridge_is_left_in_few_iterations() {
     let system = ParticleSystem::new(&scene);
     let mut state = ParticleSystem::initial_state(&scene);
     let method = super::super::find("trapezoidal").expect("a method");
-    let mut integrator = (method.build)(&Default::default());
+    let mut integrator = method.build(&Default::default());
     integrator
         .step(&system, 0.4953, &mut state)
         .expect("a solution");

@@ -154,7 +154,7 @@ impl Candidate {
         Replayer {
             candidate: self,
             integrator: match self.scheme {
-                Scheme::Method(method) => Some((method.build)(settings)),
+                Scheme::Method(method) => Some(method.build(settings)),
                 Scheme::Map(_) => None,
             },
         }

@@ -77,7 +77,7 @@ impl Mistake {
                 map,
                 remembers,
                 only_damped,
-            } if system.is_damped() || !only_damped => {
+            } if system.kinds().depends_on_velocity() || !only_damped => {
                 let candidate = Candidate::map(system, self.id, meant, self.says, map);
                 Some(candidate.remembering(remembers))
             }

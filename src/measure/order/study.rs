@@ -119,13 +119,13 @@ impl<'a> Study<'a> {
 
     /// Measures a method of the registry against its row: `order_damped` where there is damping.
     pub fn method(&self, method: &Method) -> Measured {
-        let damped = self.problem.system.is_damped();
+        let damped = self.problem.system.kinds().depends_on_velocity();
         let stated = if damped {
             method.order_damped
         } else {
             method.order
         };
-        self.measure(stated, &|| (method.build)(&self.settings))
+        self.measure(stated, &|| method.build(&self.settings))
     }
 
     /// Measures any integrator against the order it states.
@@ -277,7 +277,7 @@ impl Runs<'_> {
             return *error;
         }
         let control = integrators::find(CONTROL.0).filter(|_| self.spend(m))?;
-        let build = || (control.build)(settings);
+        let build = || control.build(settings);
         let run = self.problem.run(self.grid, m, &build, None);
         let error = run.ok().map(|run| run.error);
         self.controls.push((m, error));

@@ -35,7 +35,7 @@ pub(super) fn fastest_rate(system: &dyn System, start: &State, size: f64) -> Opt
             image[at] = (a[at] - at_start[at]) / step;
         }
     });
-    let by_velocity = if system.is_damped() {
+    let by_velocity = if system.kinds().depends_on_velocity() {
         power_iteration(dim, free, |direction, image| {
             system.damping(start.t, &start.x, direction, image);
         })

@@ -16,7 +16,7 @@ fn run(scene: &Scene, method: &str, threads: usize) -> State {
     let method = integrators::find(method).expect("a method");
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(|| {
-        let mut integrator = (method.build)(&Settings::default());
+        let mut integrator = method.build(&Settings::default());
         let mut state = ParticleSystem::initial_state(scene);
         for _ in 0..4 {
             let done = integrator.step(&system, STEP, &mut state);

@@ -7,7 +7,9 @@ use crate::testkit::scenes::{free, spring};
 use crate::testkit::{Build, Random, built, method, own, swinging_triangle};
 use springcheck::integrators::{Integrator, Settings, StepError};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
-use springcheck::system::{Jacobian, Linearization, ParticleSystem, Power, State, System};
+use springcheck::system::{
+    ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, System,
+};
 
 /// A strip of `rows` times two particles, crossed by springs with dampers, hung by its corners and
 /// shaken: as non-linear as a cloth is.
@@ -128,7 +130,7 @@ fn implicit_steps_solve_their_stage_equation() {
 fn the_stage_law_kills_mutants() {
     for scene in networks() {
         for id in SOLVED {
-            let loose = || (method(id).build)(&Settings { tolerance: 1e-3 });
+            let loose = || method(id).build(&Settings { tolerance: 1e-3 });
             assert!(stage_law(id, &scene, &loose).is_err(), "{id}");
             // Another method solves another equation.
             for other in SOLVED.into_iter().chain(["linearized_implicit"]) {
@@ -151,13 +153,13 @@ impl<S: System> System for Differenced<S> {
     fn inverse_mass(&self) -> &[f64] {
         self.0.inverse_mass()
     }
+    fn kinds(&self) -> ForceKinds {
+        self.0.kinds()
+    }
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
         let power = self.0.acceleration(t, x, v, a);
         a.iter_mut().for_each(|a| *a *= self.1);
         power
-    }
-    fn is_damped(&self) -> bool {
-        self.0.is_damped()
     }
     fn potential(&self, t: f64, x: &[f64]) -> f64 {
         self.0.potential(t, x)

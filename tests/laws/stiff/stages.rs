@@ -56,7 +56,7 @@ fn a_trapezoidal_stage_and_a_backward_difference() {
         // Loosely solved, and other methods of the second order.
         let loose = Settings { tolerance: 1e-3 };
         let mutants = [
-            (method("tr_bdf2").build)(&loose),
+            method("tr_bdf2").build(&loose),
             own(method("trapezoidal"))(),
             own(method("implicit_midpoint"))(),
         ];

@@ -72,7 +72,7 @@ fn an_integrator_of_ones_own_gets_a_curve_like_any_other() {
     let mut choice = choice(vec![method]);
     choice.budget_s = 0.5;
     choice.targets = vec![1e-3];
-    let same = move || (method.build)(&Settings::default());
+    let same = move || method.build(&Settings::default());
     let stale = || mutants::mutant(mutants::verlet_with_a_stale_force)();
     choice.solvers.push(Solver::own("mine", same));
     choice.solvers.push(Solver::own("stale", stale));

@@ -2,10 +2,9 @@
 //! target follows from each method's leading error term.
 
 use super::{all, choice, cost, of};
-use crate::testkit::mutants;
 use crate::testkit::scenes::shipped;
 use springcheck::crosscheck::cost::CostChoice;
-use springcheck::integrators::{self, Method, PerStep};
+use springcheck::integrators::{self, Coefficients, Method, PerStep, Tableau};
 use springcheck::outcome::{Cost, CostCurve, CostPoint};
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -76,7 +75,11 @@ fn slopes_are_orders() {
 
 /// rk4 with two of its weights exchanged, under its own name and with its claim of order 4.
 static SWAPPED: Method = Method {
-    build: |_| mutants::mutant(mutants::rk4_with_swapped_weights)(),
+    coefficients: Coefficients::Tableau(Tableau {
+        a: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
+        b: &[1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0, 1.0 / 3.0],
+        c: &[0.0, 0.5, 0.5, 1.0],
+    }),
     ..integrators::REGISTRY[8]
 };
 

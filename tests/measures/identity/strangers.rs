@@ -51,7 +51,7 @@ fn unknown_schemes_are_not_named() {
         }
         // What is in the list is.
         for method in REGISTRY {
-            let known = of(&scene, (method.build)(&Settings::default()));
+            let known = of(&scene, method.build(&Settings::default()));
             assert!(unnamed(&known).is_err(), "{}", method.id);
         }
     }

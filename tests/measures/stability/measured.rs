@@ -100,7 +100,7 @@ fn limit_law(found: &Limit, w: f64, theory: Option<f64>) -> Result<(), String> {
 }
 
 fn theory(method: &'static Method, zeta: f64) -> Option<f64> {
-    let build = || (method.build)(&Settings::default());
+    let build = || method.build(&Settings::default());
     measured_limit(&build, zeta, UPTO).unwrap()
 }
 
@@ -244,7 +244,7 @@ fn smooth_in_theory(method: &Method, zeta: f64) -> Option<f64> {
     let system = Oscillator { w: 1.0, zeta };
     let column = |h: f64, x: f64, v: f64| {
         let mut state = State::new(vec![x], vec![v]);
-        let mut integrator = (method.build)(&Settings::default());
+        let mut integrator = method.build(&Settings::default());
         integrator.step(&system, h, &mut state).unwrap();
         [state.x[0], state.v[0]]
     };

@@ -37,7 +37,7 @@ fn outcome(scene: &Scene, solver: impl Fn(&Task) -> Rows + Send + Sync + 'static
 /// Every `every`-th step of one of our methods, and the last.
 fn rows(task: &Task, method: &str, every: u64) -> Rows {
     let row = integrators::find(method).expect("a row");
-    let mut integrator = (row.build)(&Settings::default());
+    let mut integrator = row.build(&Settings::default());
     let mut state = ParticleSystem::initial_state(task.scene);
     let mut rows = Rows {
         timestep: task.timestep,

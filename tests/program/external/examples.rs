@@ -18,7 +18,7 @@ fn numpy() -> bool {
 fn states(scene: &Scene, start: &State) -> Vec<State> {
     let system = ParticleSystem::new(scene);
     let row = integrators::find("symplectic_euler").expect("a row");
-    let mut integrator = (row.build)(&Settings::default());
+    let mut integrator = row.build(&Settings::default());
     let mut state = start.clone();
     let h = scene.solver.timestep;
     let step = |_| {

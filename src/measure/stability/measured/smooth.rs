@@ -5,7 +5,7 @@ use super::limit::Make;
 use super::probe::Budget;
 use super::shake::Shake;
 use crate::scene::Scene;
-use crate::system::{Jacobian, Linearization, ParticleSystem, System};
+use crate::system::{ForceKinds, Jacobian, Linearization, ParticleSystem, System};
 use nalgebra::{DMatrix, Schur};
 
 /// Differences taken of the run: the k-th multiplies each mode by (R - 1)^k, which leaves the mode
@@ -41,7 +41,7 @@ pub(super) fn below(
     upto: Option<f64>,
     budget: &mut Budget,
 ) -> Option<f64> {
-    if !system.is_damped() || oscillates(scene, system)? {
+    if !system.kinds().has(ForceKinds::DISSIPATIVE) || oscillates(scene, system)? {
         return None;
     }
     let mut quadratic = Quadratic::new(system);

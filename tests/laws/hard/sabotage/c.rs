@@ -4,7 +4,7 @@
 use super::{Row, mutants};
 use crate::testkit::method;
 use springcheck::integrators::Settings;
-use springcheck::system::{Jacobian, Linearization, Power, State, System};
+use springcheck::system::{ForceKinds, Jacobian, Linearization, Power, State, System};
 
 pub const SABOTAGES: &[Row] = &[
     ("chain_20", "implicit_euler", euler_with_one_iteration),
@@ -72,7 +72,7 @@ pub const SABOTAGES: &[Row] = &[
 /// One step of this row; where it cannot take it, nothing moves.
 fn implicit(id: &str, tolerance: f64, system: &dyn System, h: f64, state: &mut State) {
     let t = state.t;
-    let mut own = (method(id).build)(&Settings { tolerance });
+    let mut own = method(id).build(&Settings { tolerance });
     let _ = own.step(system, h, state);
     // The caller counts time.
     state.t = t;
@@ -114,6 +114,9 @@ impl System for NegativeTension<'_> {
     }
     fn inverse_mass(&self) -> &[f64] {
         self.0.inverse_mass()
+    }
+    fn kinds(&self) -> ForceKinds {
+        self.0.kinds()
     }
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
         self.0.acceleration(t, x, v, a)

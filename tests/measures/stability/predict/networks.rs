@@ -1,6 +1,7 @@
 //! Several modes: a chain's frequencies, and dampers that couple modes, against one-step matrices.
 
 use super::*;
+use springcheck::system::ForceKinds;
 
 /// N masses of 0.3 kg between fixed ends, springs of k = 40 and rest length 0.
 fn chain(n: usize) -> Scene {
@@ -59,6 +60,9 @@ impl<F: Fn(&mut Jacobian)> System for Seen<'_, F> {
     }
     fn inverse_mass(&self) -> &[f64] {
         self.0.inverse_mass()
+    }
+    fn kinds(&self) -> ForceKinds {
+        self.0.kinds()
     }
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
         self.0.acceleration(t, x, v, a)
