@@ -149,7 +149,6 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
         budget_s: args.budget.0.as_secs_f64(),
         timesteps: (!args.timestep.is_empty()).then(|| args.timestep.clone()),
         truth: args.truth.demand(),
-        ..usual
     };
     if choice.solvers.is_empty() {
         bail!("nothing to sweep: no integrators and no engines");

@@ -2,7 +2,7 @@
 //! but the report decides what is shown.
 //!
 //! A format is a row of [`FORMATS`]; the figures beside a report are [`svg::figures`]. What is particular
-//! to one verb's reports is its [`View`].
+//! to one verb's reports is its `View`.
 
 mod cost;
 pub mod json;
