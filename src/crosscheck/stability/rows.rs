@@ -3,7 +3,7 @@
 use super::path::Path;
 use super::{StabilityPlan, explain};
 use crate::crosscheck::Host;
-use crate::engines::{Engine, Setting, Solver, Tally, Unsupported};
+use crate::engines::{Engine, Run, Setting, Solver, Tally, Unsupported};
 use crate::integrators::Method;
 use crate::measure::stability::{Limit, Linearised, Measured, Prediction, Tightest, measure};
 use crate::outcome::{Kind, StabilityRow, TightestLimit};
@@ -31,9 +31,8 @@ const UNCOUNTED: u64 = 150;
 
 /// Passes over all particles a step takes, from a few steps of the scene: counted, not timed, so that
 /// every machine searches alike.
-fn price(scene: &Scene, solver: &Solver, timestep: f64) -> u64 {
-    let system = ParticleSystem::new(scene);
-    let Ok(mut run) = solver.start(scene, &system, &Setting::step(timestep)) else {
+fn price(scene: &Scene, solver: &Solver, timestep: f64, tally: &Arc<Tally>) -> u64 {
+    let Ok(mut run) = run(solver, scene, timestep, tally) else {
         return BESIDE;
     };
     // A step that fails ends the sample.
@@ -50,14 +49,14 @@ fn price(scene: &Scene, solver: &Solver, timestep: f64) -> u64 {
 }
 
 /// Steps the search for one limit may take.
-fn patience(scene: &Scene, solver: &Solver, timestep: f64) -> u64 {
-    let each = scene.particles.len().max(1) as u64 * price(scene, solver, timestep);
+fn patience(scene: &Scene, solver: &Solver, timestep: f64, tally: &Arc<Tally>) -> u64 {
+    let each = scene.particles.len().max(1) as u64 * price(scene, solver, timestep, tally);
     (PATIENCE / each).max(LEAST)
 }
 
 /// Steps it mostly takes.
 pub(super) fn usual(scene: &Scene, solver: &Solver, timestep: f64) -> u64 {
-    patience(scene, solver, timestep).min(USUAL)
+    patience(scene, solver, timestep, &Arc::default()).min(USUAL)
 }
 
 /// What all rows share.
@@ -72,18 +71,28 @@ pub(super) struct Asked<'a> {
 }
 
 /// A fresh run of a scene at a step, s, counted with the others where it is an integrator's.
+fn run(
+    solver: &Solver,
+    scene: &Scene,
+    timestep: f64,
+    tally: &Arc<Tally>,
+) -> Result<Run, Unsupported> {
+    let system = ParticleSystem::new(scene);
+    let run = solver.start(scene, &system, &Setting::step(timestep))?;
+    Ok(match solver.kind {
+        Kind::Integrator => run.tallied(tally),
+        Kind::Rapier | Kind::External => run,
+    })
+}
+
+/// The same for what measures limits.
 pub(super) fn start(
     solver: &Solver,
     scene: &Scene,
     timestep: f64,
     tally: &Arc<Tally>,
 ) -> Result<Box<dyn Engine>, Unsupported> {
-    let system = ParticleSystem::new(scene);
-    let run = solver.start(scene, &system, &Setting::step(timestep))?;
-    Ok(Box::new(match solver.kind {
-        Kind::Integrator => run.tallied(tally),
-        Kind::Rapier | Kind::External => run,
-    }))
+    Ok(Box::new(run(solver, scene, timestep, tally)?))
 }
 
 /// The method whose step a solver takes, as often as this in one timestep.
@@ -179,7 +188,7 @@ fn measured(asked: &Asked, solver: &Solver, row: &StabilityRow, host: &dyn Host)
         &|scene, h| start(solver, scene, h, asked.tally),
         asked.plan.timestep,
         near,
-        patience(scene, solver, asked.plan.timestep),
+        patience(scene, solver, asked.plan.timestep, asked.tally),
         &|steps| host.progress(steps),
     )
 }
