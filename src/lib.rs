@@ -44,6 +44,7 @@ pub mod crosscheck;
 pub mod effects;
 pub mod engines;
 pub mod integrators;
+mod krylov;
 pub mod measure;
 pub mod outcome;
 pub mod report;

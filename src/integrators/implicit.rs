@@ -2,10 +2,7 @@
 //! iteration. The methods differ in b, y, γ and in what they make of the stage velocity u.
 
 use super::newton::Newton;
-use super::{
-    Amplification, Coefficients, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep,
-    Settings, Stable, StepError, axpy, fit, refuse,
-};
+use super::{Coefficients, Integrator, Row, Settings, StepError, Tableau, axpy, fit, refuse};
 use crate::system::{ForceKinds, Linearization, Power, State, System};
 use std::f64::consts::SQRT_2;
 
@@ -34,25 +31,28 @@ impl Scheme {
         }
     }
 
-    const fn evaluations(self) -> PerStep {
+    /// The Runge-Kutta method it is, the linearised ones on linear forces.
+    pub(super) fn tableau(self) -> Tableau {
         match self {
-            Self::LinearizedEuler(_) => PerStep::Exactly(1),
-            Self::Euler | Self::Midpoint => PerStep::PerIteration { plus: 1 },
-            // The start, and for each stage one to see that it has converged.
-            Self::Trapezoidal => PerStep::PerIteration { plus: 2 },
-            Self::TrBdf2 => PerStep::PerIteration { plus: 3 },
-        }
-    }
-
-    const fn amplification(self) -> Amplification {
-        match self {
-            Self::LinearizedEuler(Linearization::Material) => Amplification::MaterialImplicit,
-            Self::Euler | Self::LinearizedEuler(_) => Amplification::BACKWARD_EULER,
-            Self::Midpoint | Self::Trapezoidal => Amplification::CAYLEY,
-            // (1 + (√2 - 1) z) / (1 - g z/2)².
-            Self::TrBdf2 => Amplification::Rational {
-                numerator: &[1.0, SQRT_2 - 1.0],
-                denominator: &[1.0, SQRT_2 - 2.0, 1.5 - SQRT_2],
+            Self::Euler | Self::LinearizedEuler(_) => Tableau {
+                a: &[&[1.0]],
+                b: &[1.0],
+                c: &[1.0],
+            },
+            Self::Midpoint => Tableau {
+                a: &[&[0.5]],
+                b: &[1.0],
+                c: &[0.5],
+            },
+            Self::Trapezoidal => Tableau {
+                a: &[&[], &[0.5, 0.5]],
+                b: &[0.5, 0.5],
+                c: &[0.0, 1.0],
+            },
+            Self::TrBdf2 => Tableau {
+                a: &[&[], &[IMPLICIT, IMPLICIT], &[WEIGHT, WEIGHT, IMPLICIT]],
+                b: &[WEIGHT, WEIGHT, IMPLICIT],
+                c: &[0.0, STAGE, 1.0],
             },
         }
     }
@@ -68,127 +68,59 @@ const IMPLICIT: f64 = 0.5 * STAGE;
 const BEYOND: f64 = 0.5 * (1.0 + SQRT_2);
 /// What start and stage weigh in the step as a whole: √2/4.
 const WEIGHT: f64 = 0.25 * SQRT_2;
-/// z² at which a step takes a quarter of the energy: 4/g² = (2 + √2)².
-const CORNER: f64 = 6.0 + 4.0 * SQRT_2;
-
-const fn implicit(
-    id: &'static str,
-    name: &'static str,
-    order: u32,
-    scheme: Scheme,
-    energy: EnergyLaw,
-) -> Method {
-    Method {
-        id,
-        name,
-        order,
-        order_damped: order,
-        symplectic: false,
-        reversible: false,
-        evaluations: scheme.evaluations(),
-        oscillator: Oscillator {
-            stable: Stable::Always,
-            energy,
-        },
-        coefficients: Coefficients::Implicit(scheme),
-        amplification: scheme.amplification(),
-        exact: Exact::of_order(order),
-        source: "",
-        not: "",
-    }
-}
-
-const DISSIPATES: EnergyLaw = EnergyLaw::Factor {
-    factor: |z| 1.0 / (1.0 + z * z),
-    formula: "1/(1 + z²)",
-};
-const KEEPS: EnergyLaw = EnergyLaw::Factor {
-    factor: |_| 1.0,
-    formula: "1",
-};
-
-pub(super) const IMPLICIT_EULER: Method = Method {
+pub(super) const IMPLICIT_EULER: Row = Row {
+    id: "implicit_euler",
+    name: "implicit Euler",
+    coefficients: Coefficients::Implicit(Scheme::Euler),
+    energy: Some("1/(1 + z²)"),
     source: "Hairer, Wanner, Solving ODEs II, IV.3",
     not: "linearized_implicit, which stops after one Newton step",
-    ..implicit(
-        "implicit_euler",
-        "implicit Euler",
-        1,
-        Scheme::Euler,
-        DISSIPATES,
-    )
 };
 
-pub(super) const LINEARIZED_IMPLICIT: Method = Method {
+pub(super) const LINEARIZED_IMPLICIT: Row = Row {
+    id: "linearized_implicit",
+    name: "linearly implicit Euler",
+    coefficients: Coefficients::Implicit(Scheme::LinearizedEuler(Linearization::Exact)),
+    energy: Some("1/(1 + z²)"),
     source: "Baraff & Witkin 1998, Large Steps in Cloth Simulation, with the exact Jacobian",
     not: "implicit_euler: non-linear forces are met only to first order",
-    ..implicit(
-        "linearized_implicit",
-        "linearly implicit Euler",
-        1,
-        Scheme::LinearizedEuler(Linearization::Exact),
-        DISSIPATES,
-    )
 };
 
-pub(super) const LINEARIZED_IMPLICIT_MATERIAL: Method = Method {
+pub(super) const LINEARIZED_IMPLICIT_MATERIAL: Row = Row {
+    id: "linearized_implicit_material",
+    name: "linearly implicit Euler, K = k n nᵀ",
+    coefficients: Coefficients::Implicit(Scheme::LinearizedEuler(Linearization::Material)),
+    energy: Some("1/(1 + z²)"),
     source: "Baraff & Witkin 1998 with K = k n nᵀ; what rapier's spring joint converges to",
     not: "linearized_implicit: the stiffness of a spring's turning is left out, so transverse \
           motion is only as stable as symplectic Euler's",
-    oscillator: Oscillator {
-        stable: Stable::AlwaysAlong { across: 2.0 },
-        energy: DISSIPATES,
-    },
-    ..implicit(
-        "linearized_implicit_material",
-        "linearly implicit Euler, K = k n nᵀ",
-        1,
-        Scheme::LinearizedEuler(Linearization::Material),
-        DISSIPATES,
-    )
 };
 
-pub(super) const IMPLICIT_MIDPOINT: Method = Method {
-    symplectic: true,
-    reversible: true,
+pub(super) const IMPLICIT_MIDPOINT: Row = Row {
+    id: "implicit_midpoint",
+    name: "implicit midpoint",
+    coefficients: Coefficients::Implicit(Scheme::Midpoint),
+    energy: Some("1"),
     source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1 (Gauss, s = 1)",
     not: "midpoint, its explicit namesake, or trapezoidal, its conjugate",
-    ..implicit(
-        "implicit_midpoint",
-        "implicit midpoint",
-        2,
-        Scheme::Midpoint,
-        KEEPS,
-    )
 };
 
-pub(super) const TRAPEZOIDAL: Method = Method {
-    reversible: true,
+pub(super) const TRAPEZOIDAL: Row = Row {
+    id: "trapezoidal",
+    name: "trapezoidal rule",
+    coefficients: Coefficients::Implicit(Scheme::Trapezoidal),
+    energy: Some("1"),
     source: "Crank & Nicolson 1947; Newmark 1959 with β = 1/4, γ = 1/2",
     not: "heun, its explicit namesake; conjugate to a symplectic method, not one itself",
-    ..implicit(
-        "trapezoidal",
-        "trapezoidal rule",
-        2,
-        Scheme::Trapezoidal,
-        KEEPS,
-    )
 };
 
-pub(super) const TR_BDF2: Method = Method {
+pub(super) const TR_BDF2: Row = Row {
+    id: "tr_bdf2",
+    name: "TR-BDF2",
+    coefficients: Coefficients::Implicit(Scheme::TrBdf2),
+    energy: Some("1 - (z²/(z² + (2 + √2)²))²"),
     source: "Bank et al. 1985, IEEE Trans. CAD 4; Hosea & Shampine 1996, Appl. Numer. Math. 20",
     not: "trapezoidal, which lets stiff modes ring; BDF2, which needs two steps of the past",
-    ..implicit(
-        "tr_bdf2",
-        "TR-BDF2",
-        2,
-        Scheme::TrBdf2,
-        // |R(iz)|², which vanishes at infinity.
-        EnergyLaw::Factor {
-            factor: |z| 1.0 - (z * z / (z * z + CORNER)).powi(2),
-            formula: "1 - (z²/(z² + (2 + √2)²))²",
-        },
-    )
 };
 
 /// The stepper all implicit methods share.

@@ -2,6 +2,7 @@
 
 pub mod adaptive;
 mod amplification;
+mod facts;
 mod implicit;
 mod newton;
 pub(crate) mod nystrom;
@@ -9,13 +10,16 @@ mod runge_kutta;
 mod splitting;
 mod velocity_flow;
 
-pub use amplification::Amplification;
+pub use amplification::{Amplification, Rational};
+pub(crate) use amplification::{bisect, map, phi1};
+pub use facts::Row;
 pub use implicit::{Implicit, Scheme};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
 
 use crate::system::{ForceKinds, Refused, State, System};
 use crate::vector::axpy;
+use std::sync::LazyLock;
 
 /// Advances a state by one step.
 ///
@@ -99,7 +103,7 @@ pub enum StepError {
 }
 
 /// One method's facts. Everything a report says of a method, and every law it is tested by,
-/// stands here.
+/// stands here. [`Method::new`] works them out from the coefficients.
 #[derive(Clone, Copy)]
 pub struct Method {
     /// The id scenes, reports and the command line use.
@@ -216,21 +220,33 @@ impl Exact {
     }
 }
 
-/// What happens to the oscillator's energy, as a function of z = h w.
-#[derive(Debug, Clone, Copy)]
+/// A function of z = h w.
+pub type OfZ<T> = &'static (dyn Fn(f64) -> T + Send + Sync);
+
+/// What happens to the oscillator's energy, as a function of z = h w. Formulas are for people.
+#[derive(Clone, Copy)]
 pub enum EnergyLaw {
     /// Multiplied by this factor every step.
     Factor {
-        factor: fn(f64) -> f64,
+        factor: OfZ<f64>,
         formula: &'static str,
     },
     /// From rest, stays within these multiples of its initial value for ever.
     Band {
-        band: fn(f64) -> (f64, f64),
+        band: OfZ<(f64, f64)>,
         formula: &'static str,
     },
     /// Bounded for ever; the band has no short formula.
     Bounded,
+}
+
+impl std::fmt::Debug for EnergyLaw {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Factor { formula, .. } | Self::Band { formula, .. } => formula,
+            Self::Bounded => "bounded",
+        })
+    }
 }
 
 /// What a build may be told.
@@ -254,25 +270,28 @@ impl Default for Settings {
 }
 
 /// Every method, in the order reports list them.
-pub static REGISTRY: &[Method] = &[
-    runge_kutta::EXPLICIT_EULER,
-    splitting::SYMPLECTIC_EULER,
-    splitting::SYMPLECTIC_EULER_DRIFT_FIRST,
-    runge_kutta::MIDPOINT,
-    runge_kutta::HEUN,
-    runge_kutta::RALSTON,
-    splitting::VELOCITY_VERLET,
-    splitting::POSITION_VERLET,
-    runge_kutta::RK4,
-    splitting::YOSHIDA4,
-    splitting::PEFRL,
-    implicit::IMPLICIT_EULER,
-    implicit::LINEARIZED_IMPLICIT,
-    implicit::LINEARIZED_IMPLICIT_MATERIAL,
-    implicit::IMPLICIT_MIDPOINT,
-    implicit::TRAPEZOIDAL,
-    implicit::TR_BDF2,
-];
+pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
+    let rows = [
+        runge_kutta::EXPLICIT_EULER,
+        splitting::SYMPLECTIC_EULER,
+        splitting::SYMPLECTIC_EULER_DRIFT_FIRST,
+        runge_kutta::MIDPOINT,
+        runge_kutta::HEUN,
+        runge_kutta::RALSTON,
+        splitting::VELOCITY_VERLET,
+        splitting::POSITION_VERLET,
+        runge_kutta::RK4,
+        splitting::YOSHIDA4,
+        splitting::PEFRL,
+        implicit::IMPLICIT_EULER,
+        implicit::LINEARIZED_IMPLICIT,
+        implicit::LINEARIZED_IMPLICIT_MATERIAL,
+        implicit::IMPLICIT_MIDPOINT,
+        implicit::TRAPEZOIDAL,
+        implicit::TR_BDF2,
+    ];
+    rows.map(Method::new).to_vec()
+});
 
 /// The method of this id.
 pub fn find(id: &str) -> Option<&'static Method> {

@@ -1,10 +1,7 @@
 //! Splitting methods: one stepper, a list of kicks and drifts a method.
 
 use super::velocity_flow::VelocityFlow;
-use super::{
-    Amplification, Coefficients, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Stable,
-    StepError, axpy, fit, refuse,
-};
+use super::{Coefficients, Integrator, Row, StepError, axpy, fit, refuse};
 use crate::system::{ForceKinds, State, System};
 use crate::vector;
 
@@ -86,143 +83,62 @@ impl DampingTreatment {
     }
 }
 
-/// Forces at rest that a step evaluates: one a kick, but for a first kick that takes the force of the
-/// last one of the step before. An explicit kick depends on the velocity and takes none.
-const fn forces(stages: &[Stage], damping: DampingTreatment) -> u32 {
-    let (mut kicks, mut at) = (0, 0);
-    while at < stages.len() {
-        kicks += matches!(stages[at], Kick(_)) as u32;
-        at += 1;
-    }
-    let same = matches!(stages, [Kick(_), .., Kick(_)]);
-    kicks - (same && matches!(damping, DampingTreatment::ExactFlow)) as u32
-}
-
-/// A composition of kicks and drifts keeps the symplectic form.
-const fn symplectic(
-    id: &'static str,
-    name: &'static str,
-    order: u32,
-    stages: &'static [Stage],
-    damping: DampingTreatment,
-    limit: f64,
-    energy: EnergyLaw,
-) -> Method {
-    Method {
-        id,
-        name,
-        order,
-        order_damped: order,
-        symplectic: true,
-        reversible: order > 1,
-        evaluations: PerStep::Exactly(forces(stages, damping)),
-        oscillator: Oscillator {
-            stable: Stable::Below(limit),
-            energy,
-        },
-        coefficients: Coefficients::Composition(stages, damping),
-        amplification: Amplification::Composition(stages, damping),
-        exact: Exact::of_order(order),
-        source: "",
-        not: "",
-    }
-}
-
-/// |w x v| <= E turns the invariant E ∓ (h/2) w² x v into a band around E0.
-const EULER_BAND: EnergyLaw = EnergyLaw::Band {
-    band: |z| (1.0 / (1.0 + z / 2.0), 1.0 / (1.0 - z / 2.0)),
-    formula: "[1/(1 + z/2), 1/(1 - z/2)]",
-};
-
-pub(super) const SYMPLECTIC_EULER: Method = Method {
+pub(super) const SYMPLECTIC_EULER: Row = Row {
+    id: "symplectic_euler",
+    name: "symplectic Euler (kick, drift)",
+    coefficients: Coefficients::Composition(Stage::SYMPLECTIC_EULER, DampingTreatment::Explicit),
+    energy: Some("[1/(1 + z/2), 1/(1 - z/2)]"),
     source: "de Vogelaere 1956; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
     not: "explicit_euler, which drifts with the old velocity; leapfrog without its first half kick \
           is this method",
-    ..symplectic(
-        "symplectic_euler",
-        "symplectic Euler (kick, drift)",
-        1,
-        Stage::SYMPLECTIC_EULER,
-        DampingTreatment::Explicit,
-        2.0,
-        EULER_BAND,
-    )
 };
 
-pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Method = Method {
-    source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
-    not: "explicit_euler, for which it is often taken: it kicks at the position already moved",
-    ..symplectic(
-        "symplectic_euler_drift_first",
-        "symplectic Euler (drift, kick)",
-        1,
+pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Row = Row {
+    id: "symplectic_euler_drift_first",
+    name: "symplectic Euler (drift, kick)",
+    coefficients: Coefficients::Composition(
         Stage::SYMPLECTIC_EULER_DRIFT_FIRST,
         DampingTreatment::Explicit,
-        2.0,
-        EULER_BAND,
-    )
+    ),
+    energy: Some("[1/(1 + z/2), 1/(1 - z/2)]"),
+    source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
+    not: "explicit_euler, for which it is often taken: it kicks at the position already moved",
 };
 
-pub(super) const VELOCITY_VERLET: Method = Method {
+pub(super) const VELOCITY_VERLET: Row = Row {
+    id: "velocity_verlet",
+    name: "velocity Verlet",
+    coefficients: Coefficients::Composition(Stage::VERLET, DampingTreatment::ExactFlow),
+    energy: Some("[1 - z²/4, 1]"),
     source: "Swope et al. 1982; Hairer, Lubich, Wanner, Acta Numerica 2003 (Störmer-Verlet)",
     not: "position_verlet (drift, kick, drift), or Verlet with a predicted velocity in the damper",
-    ..symplectic(
-        "velocity_verlet",
-        "velocity Verlet",
-        2,
-        Stage::VERLET,
-        DampingTreatment::ExactFlow,
-        2.0,
-        EnergyLaw::Band {
-            band: |z| (1.0 - z * z / 4.0, 1.0),
-            formula: "[1 - z²/4, 1]",
-        },
-    )
 };
 
-pub(super) const POSITION_VERLET: Method = Method {
+pub(super) const POSITION_VERLET: Row = Row {
+    id: "position_verlet",
+    name: "position Verlet",
+    coefficients: Coefficients::Composition(Stage::POSITION_VERLET, DampingTreatment::ExactFlow),
+    energy: Some("[1, 1/(1 - z²/4)]"),
     source: "Verlet 1967; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4",
     not: "velocity_verlet, which kicks first and last",
-    ..symplectic(
-        "position_verlet",
-        "position Verlet",
-        2,
-        Stage::POSITION_VERLET,
-        DampingTreatment::ExactFlow,
-        2.0,
-        EnergyLaw::Band {
-            band: |z| (1.0, 1.0 / (1.0 - z * z / 4.0)),
-            formula: "[1, 1/(1 - z²/4)]",
-        },
-    )
 };
 
-pub(super) const YOSHIDA4: Method = Method {
+pub(super) const YOSHIDA4: Row = Row {
+    id: "yoshida4",
+    name: "Yoshida / Forest-Ruth",
+    coefficients: Coefficients::Composition(Stage::YOSHIDA4, DampingTreatment::ExactFlow),
+    energy: None,
     source: "Forest & Ruth 1990, Physica D 43; Yoshida 1990, Phys. Lett. A 150",
     not: "Yoshida's sixth- and eighth-order methods",
-    ..symplectic(
-        "yoshida4",
-        "Yoshida / Forest-Ruth",
-        4,
-        Stage::YOSHIDA4,
-        DampingTreatment::ExactFlow,
-        1.573_402,
-        EnergyLaw::Bounded,
-    )
 };
 
-pub(super) const PEFRL: Method = Method {
+pub(super) const PEFRL: Row = Row {
+    id: "pefrl",
+    name: "PEFRL",
+    coefficients: Coefficients::Composition(Stage::PEFRL, DampingTreatment::ExactFlow),
+    energy: None,
     source: "Omelyan, Mryglod, Folk 2002, Comput. Phys. Commun. 146, 188",
     not: "Forest-Ruth (yoshida4): one evaluation more, an error constant far smaller",
-    ..symplectic(
-        "pefrl",
-        "PEFRL",
-        4,
-        Stage::PEFRL,
-        DampingTreatment::ExactFlow,
-        2.989_450,
-        EnergyLaw::Bounded,
-    )
 };
 
 /// The stepper all compositions of kicks and drifts share.

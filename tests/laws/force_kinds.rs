@@ -271,7 +271,7 @@ fn a_method_is_right_to_its_order_or_refuses() {
         (driven_on(), ForceKinds::NEGATIVE_DAMPING),
     ];
     for (problem, kind) in both {
-        for method in REGISTRY {
+        for method in REGISTRY.iter() {
             let taken = right_or_refused(&problem, method).unwrap();
             assert_eq!(taken, method.takes().has(kind), "{}: {kind}", method.id);
             // Whoever asks beforehand hears the same, with names.
@@ -349,7 +349,7 @@ impl System for Undeclared {
 #[test]
 fn who_says_nothing_is_taken_only_where_nothing_is_asked() {
     let system = Undeclared(charged(ForceKinds::GYROSCOPIC).system);
-    for method in REGISTRY {
+    for method in REGISTRY.iter() {
         let mut state = State::new(vec![0.0; 3], vec![1.0, 0.0, 0.0]);
         let before = state.clone();
         let stepped = method

@@ -126,7 +126,7 @@ fn every_method_of_first_order_meets_the_forces_of_its_own_time() {
 
 #[test]
 fn the_laws_of_time_kill_mutants() {
-    for row in REGISTRY {
+    for row in REGISTRY.iter() {
         if row.order > 1 {
             let stopped = law("order-driven", row, &untimely(row.id, true));
             assert_eq!(stopped, CheckStatus::Fail, "{}", row.id);

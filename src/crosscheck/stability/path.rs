@@ -4,7 +4,7 @@ use super::StabilityPlan;
 use crate::engines::{Limits, Observer, Setting, Solver};
 use crate::integrators::Method;
 use crate::measure;
-use crate::measure::stability::{Along, Limit, Linearised};
+use crate::measure::stability::{Along, Linearised};
 use crate::system::{ParticleSystem, State};
 
 /// States kept of a path.
@@ -33,11 +33,7 @@ pub(super) fn of(
 ) -> Path {
     let scene = plan.scene;
     let h = scene.solver.timestep;
-    let calm = |method: &&'static Method| match linearised.predict(method, h).limit {
-        Limit::At(limit) | Limit::Between(limit, _) => h <= limit,
-        Limit::Unconditional => true,
-        Limit::Never | Limit::Unknown(_) => false,
-    };
+    let calm = |method: &&'static Method| linearised.predict(method, h).limit.allows(h);
     let candidates = crate::crosscheck::Choice::all_methods(scene);
     let candidates: Vec<&Method> = candidates.iter().filter_map(Solver::as_method).collect();
     let chosen = candidates.iter().find(|m| calm(m)).or(candidates.first());

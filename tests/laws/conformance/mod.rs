@@ -2,6 +2,7 @@
 
 mod broken;
 mod claims;
+mod facts;
 mod high_order;
 mod mutants;
 

@@ -196,7 +196,7 @@ fn reversible_methods_come_back_and_others_do_not() {
     let h = scene.solver.timestep;
     // 800 steps that round coordinates of 1: a walk of 3e-15, grown tenfold. Measured up to 2.7e-14.
     let rounding = 8e-14;
-    for row in REGISTRY {
+    for row in REGISTRY.iter() {
         let off = returned(&own(row), &scene, h);
         if row.reversible {
             assert!(off < rounding, "{}: {off:e}", row.id);

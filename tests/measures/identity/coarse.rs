@@ -56,7 +56,7 @@ fn honest(identity: &Identity, method: &str, substeps: u32) -> Result<(), String
 fn what_is_said_of_rounded_data_holds() {
     let cases = [(0.7, 1), (0.0, 3)];
     let cases = cases.map(|case| ROUNDINGS.map(|precision| (case, precision)));
-    let tried = crossed(REGISTRY, cases.as_flattened());
+    let tried = crossed(&REGISTRY, cases.as_flattened());
     let mut decided = 0;
     for (method, ((damping, substeps), precision)) in &tried {
         let scene = swinging_triangle(*damping, DampingModel::Axial);

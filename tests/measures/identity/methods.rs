@@ -61,7 +61,7 @@ fn other_last_bits_are_the_same_method() {
     let mut worst = 0.0_f64;
     for damping in [0.0, 0.7] {
         let scene = swinging_triangle(damping, DampingModel::Isotropic);
-        for method in REGISTRY {
+        for method in REGISTRY.iter() {
             for substeps in [1, 2] {
                 let rows = other_bits(&run(&scene, method.id, substeps, 100));
                 let identity = names(&scene, &rows, method.id, substeps).unwrap();
@@ -78,7 +78,7 @@ fn other_last_bits_are_the_same_method() {
 fn rows_may_lie_unevenly_apart() {
     let mut scene = swinging_triangle(0.7, DampingModel::Axial);
     scene.solver.timestep = 5e-4;
-    for method in REGISTRY {
+    for method in REGISTRY.iter() {
         let all = run(&scene, method.id, 1, 400);
         // 60 rows a second.
         let steps: Vec<u64> = (0..12).map(|k| (k * 100_u64).div_ceil(3)).collect();

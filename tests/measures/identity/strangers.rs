@@ -50,7 +50,7 @@ fn unknown_schemes_are_not_named() {
             unnamed(&of(&scene, Box::new(RungeKutta::new(*tableau)))).unwrap();
         }
         // What is in the list is.
-        for method in REGISTRY {
+        for method in REGISTRY.iter() {
             let known = of(&scene, method.build(&Settings::default()));
             assert!(unnamed(&known).is_err(), "{}", method.id);
         }

@@ -131,7 +131,7 @@ fn limits_of_every_method_are_those_of_theory() {
 #[test]
 fn a_map_is_linear_unless_it_leaves_out_what_turns() {
     let linear = |method, scene: &Scene| found(&engine(method), scene, None).linear;
-    for method in REGISTRY {
+    for method in REGISTRY.iter() {
         let whole = linear_methods().iter().any(|m| m.id == method.id);
         assert_eq!(linear(method, &oscillator(0.1)), whole, "{}", method.id);
         assert!(linear(method, &drag()), "{}", method.id);

@@ -5,8 +5,8 @@ use crate::testkit::scenes as kit;
 use crate::testkit::{Build, Oscillator, Random, built, method, own};
 use springcheck::conformance::measured_limit;
 use springcheck::conformance::systems::Across;
-use springcheck::integrators::{Amplification, Method, REGISTRY, Stable};
-use springcheck::measure::stability::{Effort, Limit, Linearised, along, is_linear};
+use springcheck::integrators::{Amplification, Method, REGISTRY, Rational, Stable};
+use springcheck::measure::stability::{Along, Effort, Limit, Linearised, is_linear};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
 use springcheck::system::{Jacobian, Linearization, Power, State, System};
 

@@ -101,7 +101,7 @@ fn what_rests_or_grows_in_truth_is_left_out_and_counted() {
         DampingModel::Axial,
     );
     assert_eq!(counts(&lone), [3]);
-    for method in REGISTRY {
+    for method in REGISTRY.iter() {
         let prediction = start(&lone).predict(method, 0.01);
         assert_eq!(prediction.limit, Limit::Unconditional, "{}", method.id);
         assert_eq!(prediction.growth_per_s, Some(0.0), "{}", method.id);
@@ -186,7 +186,7 @@ fn a_spring_that_turns_is_tightest_where_it_is_stretched() {
             ..State::new(x.clone(), rest.clone())
         })
         .collect();
-    let found = along(&system, &given, verlet).unwrap();
+    let found = Along::new(&system, &given).tightest(verlet).unwrap();
     // At z = 0 both pull along x: ω² = 2 k, at t = 1.
     assert!(
         (found.limit_s / (2.0 / 10.0) - 1.0).abs() < 1e-13,
@@ -203,5 +203,8 @@ fn a_spring_that_turns_is_tightest_where_it_is_stretched() {
         };
         assert!(limit > found.limit_s);
     }
-    assert_eq!(along(&system, &given, method("implicit_euler")), None);
+    assert_eq!(
+        Along::new(&system, &given).tightest(method("implicit_euler")),
+        None
+    );
 }

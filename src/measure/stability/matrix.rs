@@ -1,6 +1,7 @@
 //! Square sparse matrices by rows.
 
 use faer::Mat;
+use std::cmp::Ordering;
 
 /// n by n, rows one after the other, columns ascending within a row.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,28 +15,20 @@ impl Matrix {
     /// Repeated places add up, in the order given.
     pub(super) fn new(n: usize, mut entries: Vec<(usize, usize, f64)>) -> Self {
         entries.sort_by_key(|&(row, column, _)| (row, column));
-        let mut matrix = Self {
-            starts: vec![0; n + 1],
-            columns: Vec::new(),
-            values: Vec::new(),
-        };
-        let mut last = None;
-        for (row, column, value) in entries {
-            if last == Some((row, column)) {
-                if let Some(sum) = matrix.values.last_mut() {
-                    *sum += value;
-                }
-            } else {
-                matrix.columns.push(column);
-                matrix.values.push(value);
-                matrix.starts[row + 1] = matrix.values.len();
-                last = Some((row, column));
+        entries.dedup_by(|next, kept| {
+            let same = (next.0, next.1) == (kept.0, kept.1);
+            if same {
+                kept.2 += next.2;
             }
+            same
+        });
+        Self {
+            starts: (0..=n)
+                .map(|row| entries.partition_point(|entry| entry.0 < row))
+                .collect(),
+            columns: entries.iter().map(|entry| entry.1).collect(),
+            values: entries.iter().map(|entry| entry.2).collect(),
         }
-        for row in 0..n {
-            matrix.starts[row + 1] = matrix.starts[row + 1].max(matrix.starts[row]);
-        }
-        matrix
     }
 
     pub(super) fn n(&self) -> usize {
@@ -49,8 +42,13 @@ impl Matrix {
         })
     }
 
-    pub(super) fn values(&self) -> &[f64] {
-        &self.values
+    /// By the number of their entries, then by these in turn.
+    pub(super) fn order(&self, other: &Self) -> Ordering {
+        let lengths = self.values.len().cmp(&other.values.len());
+        lengths.then_with(|| {
+            let values = self.values.partial_cmp(&other.values);
+            values.unwrap_or(Ordering::Equal)
+        })
     }
 
     /// The entry at this place, 0 where there is none.
@@ -78,22 +76,19 @@ impl Matrix {
         Self::new(self.n(), ours.chain(theirs).collect())
     }
 
+    fn transposed(&self) -> Self {
+        let turned = self.entries().map(|(row, column, v)| (column, row, v));
+        Self::new(self.n(), turned.collect())
+    }
+
     pub(super) fn symmetric_part(&self) -> Self {
-        let half = self
-            .entries()
-            .map(|(row, column, v)| (row, column, 0.5 * v));
-        let turned = self
-            .entries()
-            .map(|(row, column, v)| (column, row, 0.5 * v));
-        Self::new(self.n(), half.chain(turned).collect())
+        self.combined(0.5, &self.transposed(), 0.5)
     }
 
     /// Largest |A - Aᵀ|.
     pub(super) fn skewness(&self) -> f64 {
-        let off = self
-            .entries()
-            .map(|(row, column, v)| (v - self.at(column, row)).abs());
-        off.fold(0.0, f64::max)
+        let difference = self.combined(1.0, &self.transposed(), -1.0);
+        difference.values.iter().fold(0.0, |m, v| m.max(v.abs()))
     }
 
     /// Largest sum of magnitudes in a row: no eigenvalue is larger.
@@ -101,6 +96,12 @@ impl Matrix {
         let rows = self.starts.windows(2);
         let sums = rows.map(|row| self.values[row[0]..row[1]].iter().map(|v| v.abs()).sum());
         sums.fold(0.0, |largest: f64, sum: f64| largest.max(sum))
+    }
+
+    /// y = A x.
+    pub(super) fn product(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        self.add_product(1.0, x, y);
     }
 
     /// y += a A x.

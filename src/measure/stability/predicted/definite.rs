@@ -12,39 +12,43 @@
 //! Each is a decreasing function of h but for a positive factor. What is unstable in truth (K < 0)
 //! leaves through μ = 1 and does not matter here.
 
-use super::Effort;
-use super::assembly::Component;
 use super::krylov::{self, Nodes};
 use super::mode::Mode;
-use crate::integrators::{DampingTreatment, Stage};
+use super::parts::Part;
+use super::verdict::Verdict;
+use super::{Effort, Limit};
+use crate::integrators::{Amplification, DampingTreatment, Stage, bisect};
 
+/// Whose matrix it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum OneKick {
+pub(super) enum Definite {
     Explicit,
     ExactFlow,
     Material,
 }
 
-impl OneKick {
-    /// None where there is more than one kick, after merging neighbours, the step's last stage being
+impl Definite {
+    /// None of methods with more than one kick, after merging neighbours, the step's last stage being
     /// the next one's neighbour. Textbook kicks do not merge.
-    pub(super) fn of(stages: &[Stage], damping: DampingTreatment) -> Option<Self> {
+    pub(super) fn of(amplification: Amplification) -> Option<Self> {
+        let (stages, damping) = match amplification {
+            Amplification::Rational(_) => return None,
+            Amplification::MaterialImplicit => return Some(Self::Material),
+            Amplification::Composition(stages, damping) => (stages, damping),
+        };
         let is_kick = |stage: &Stage| matches!(stage, Stage::Kick(_));
         let kicks = stages.iter().filter(|stage| is_kick(stage)).count();
-        let changes = stages
-            .iter()
-            .zip(stages.iter().cycle().skip(1))
-            .filter(|(one, next)| is_kick(one) != is_kick(next))
-            .count();
+        let neighbours = stages.iter().zip(stages.iter().cycle().skip(1));
+        let changes = neighbours.filter(|(one, next)| is_kick(one) != is_kick(next));
         match damping {
             DampingTreatment::Explicit if kicks == 1 => Some(Self::Explicit),
-            DampingTreatment::ExactFlow if changes == 2 => Some(Self::ExactFlow),
+            DampingTreatment::ExactFlow if changes.count() == 2 => Some(Self::ExactFlow),
             _ => None,
         }
     }
 
     /// The limit of a mode damped by itself; None where there is none.
-    pub(super) fn limit(self, mode: Mode) -> Option<f64> {
+    pub(super) fn limit_of(self, mode: Mode) -> Option<f64> {
         self.root(mode.stiffness, 0.0, &[(mode.damping, 1.0)])
     }
 
@@ -70,19 +74,8 @@ impl OneKick {
                     flow - h * h * k
                 };
                 // 4 <= flow(u) <= 4 + 2 u.
-                let mut low = 2.0 / k.sqrt();
-                let mut high = (c + (c * c + 4.0 * k).sqrt()) / k;
-                loop {
-                    let middle = 0.5 * (low + high);
-                    if middle <= low || middle >= high {
-                        return Some(low);
-                    }
-                    if form(middle) >= 0.0 {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
+                let (low, high) = (2.0 / k.sqrt(), (c + (c * c + 4.0 * k).sqrt()) / k);
+                Some(bisect(low, high, 0.0, |h| form(h) >= 0.0))
             }
         }
     }
@@ -105,30 +98,19 @@ const ITERATIONS: usize = 40;
 /// Of a unit vector: its stiffness, its stiffness along springs, and nodes of its damping.
 type Forms = (f64, f64, Vec<(f64, f64)>);
 
-/// What a part allows.
-pub(super) struct Found {
-    /// Seconds; None where every step is stable.
-    pub limit: Option<f64>,
-    /// The mode that binds, by its forms.
-    pub binding: Option<Mode>,
-    /// The limit may be smaller.
-    pub at_most: bool,
-}
-
-/// None where Lanczos does not converge. K, C and K' are taken for symmetric.
-pub(super) fn limit(kind: OneKick, component: &Component, effort: &Effort) -> Option<Found> {
-    let n = component.n();
-    let Component {
+/// What a part allows, without growth. None where Lanczos does not converge. K, C and K' are taken for symmetric.
+pub(super) fn limit(kind: Definite, part: &Part, effort: &Effort) -> Option<Verdict> {
+    let n = part.n();
+    let Part {
         stiffness,
         damping,
         material,
-    } = component;
-    let damp = |x: &[f64], y: &mut [f64]| {
-        y.fill(0.0);
-        damping.add_product(1.0, x, y);
-    };
+        ..
+    } = part;
+    let flows = kind == Definite::ExactFlow && damping.norm() > 0.0;
+    let damp = |x: &[f64], y: &mut [f64]| damping.product(x, y);
     let forms = |q: &[f64]| -> Option<Forms> {
-        let nodes = if kind == OneKick::ExactFlow && damping.norm() > 0.0 {
+        let nodes = if flows {
             let Nodes { nodes, weights, .. } = krylov::nodes(&damp, q, INNER)?;
             nodes.into_iter().zip(weights).collect()
         } else {
@@ -137,31 +119,25 @@ pub(super) fn limit(kind: OneKick, component: &Component, effort: &Effort) -> Op
         Some((stiffness.form(q), material.form(q), nodes))
     };
     // A first vector: of the stiffness, or, where there is none, of the damping.
-    let (largest, mut q) = krylov::top(
-        n,
-        &|x, y| {
-            y.fill(0.0);
-            stiffness.add_product(1.0, x, y);
-            if kind == OneKick::Material {
-                material.add_product(-2.0, x, y);
-            }
-        },
-        effort,
-    )?;
+    let stiff = |x: &[f64], y: &mut [f64]| {
+        stiffness.product(x, y);
+        if kind == Definite::Material {
+            material.add_product(-2.0, x, y);
+        }
+    };
+    let (largest, mut q) = krylov::top(n, &stiff, effort)?;
     let rounding = 1e-13 * (stiffness.norm() + material.norm());
+    let mut found = Verdict::only(Limit::Unconditional);
     if largest <= rounding {
-        if kind != OneKick::Explicit || damping.norm() == 0.0 {
-            return Some(Found {
-                limit: None,
-                binding: None,
-                at_most: false,
-            });
+        if kind != Definite::Explicit || damping.norm() == 0.0 {
+            return Some(found);
         }
         q = krylov::top(n, &damp, effort)?.1;
     }
+    let at_most = flows && n > effort.flow;
+    found.note =
+        at_most.then(|| "at most: damping couples too many modes to look at all".to_owned());
     let mut h = f64::INFINITY;
-    let mut binding = None;
-    let at_most = kind == OneKick::ExactFlow && damping.norm() > 0.0 && n > effort.flow;
     for _ in 0..ITERATIONS {
         let (k, m, nodes) = forms(&q)?;
         let Some(next) = kind.root(k, m, &nodes) else {
@@ -170,7 +146,8 @@ pub(super) fn limit(kind: OneKick, component: &Component, effort: &Effort) -> Op
         let done = next >= h * (1.0 - 1e-13);
         if next < h {
             h = next;
-            binding = Some(Mode {
+            found.limit = Limit::At(h);
+            found.binding = Some(Mode {
                 stiffness: k,
                 damping: damping.form(&q),
             });
@@ -181,19 +158,19 @@ pub(super) fn limit(kind: OneKick, component: &Component, effort: &Effort) -> Op
         let product = |x: &[f64], y: &mut [f64]| {
             y.fill(0.0);
             stiffness.add_product(h * h, x, y);
+            if flows {
+                if let Some(nodes) = krylov::nodes(&damp, x, INNER) {
+                    nodes.action(-1.0, &|c| flow(h * c), y);
+                }
+                return;
+            }
             match kind {
-                OneKick::Explicit => damping.add_product(2.0 * h, x, y),
-                OneKick::Material => {
+                Definite::Explicit => damping.add_product(2.0 * h, x, y),
+                Definite::Material => {
                     material.add_product(-2.0 * h * h, x, y);
                     damping.add_product(-2.0 * h, x, y);
                 }
-                OneKick::ExactFlow if damping.norm() > 0.0 => {
-                    if let Some(nodes) = krylov::nodes(&damp, x, INNER) {
-                        nodes.action(-1.0, &|c| flow(h * c), y);
-                    }
-                    return;
-                }
-                OneKick::ExactFlow => {}
+                Definite::ExactFlow => {}
             }
             for (y, x) in y.iter_mut().zip(x) {
                 *y -= 4.0 * x;
@@ -201,9 +178,5 @@ pub(super) fn limit(kind: OneKick, component: &Component, effort: &Effort) -> Op
         };
         q = krylov::top(n, &product, effort)?.1;
     }
-    Some(Found {
-        limit: h.is_finite().then_some(h),
-        binding,
-        at_most,
-    })
+    Some(found)
 }

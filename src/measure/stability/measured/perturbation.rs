@@ -1,28 +1,28 @@
-//! Small deterministic disturbances of a scene's start.
+//! Small deterministic perturbations of a scene's start.
 
 use crate::measure::energy_scale;
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, System};
+use crate::system::{ParticleSystem, State, System};
 
-/// A displacement of every coordinate, zero on fixed ones.
-#[derive(Debug, Clone)]
-pub(super) struct Shake {
+/// A displacement and a change of velocity of every coordinate, zero on fixed ones.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Perturbation {
     /// m, length 3n.
     pub x: Vec<f64>,
     /// m/s, length 3n.
     pub v: Vec<f64>,
 }
 
-/// Share of the energy scale a non-linear scene is shaken with.
+/// Fraction of the energy scale a non-linear scene is perturbed with.
 const SLIGHT: f64 = 1e-2;
 
 /// Metres or joules where a scene has no size or energy of its own.
 const UNIT: f64 = 1.0;
 
-impl Shake {
-    /// For linear scenes, where the size of a disturbance changes nothing: as large as the scene, so
-    /// that rounding is far below it, with half of its energy in velocities, so that stiff modes do
-    /// not drown soft ones. `quadratic` is the potential energy of a displacement, J.
+impl Perturbation {
+    /// For linear scenes, where the size changes nothing: as large as the scene, so that rounding is far
+    /// below it, with half of its energy in velocities, so that stiff modes do not drown soft ones.
+    /// `quadratic` is the potential energy of a displacement, J.
     pub fn large(
         scene: &Scene,
         system: &ParticleSystem,
@@ -39,8 +39,8 @@ impl Shake {
         Self { x, v }
     }
 
-    /// For other scenes: a kick of a hundredth of `scale`, J, shared out to every free coordinate, so
-    /// that motions across springs, which the scene's symmetry may hide, are there to grow.
+    /// For other scenes: a kick of a hundredth of `scale`, J, shared by every free coordinate, so that
+    /// motions across springs, which the scene's symmetry may hide, are there to grow.
     pub fn slight(system: &ParticleSystem, scale: f64) -> Self {
         Self {
             x: vec![0.0; system.dim()],
@@ -48,45 +48,49 @@ impl Shake {
         }
     }
 
+    /// Sets this to `b` - `a`.
+    pub fn set_difference(&mut self, a: &State, b: &State) {
+        let subtract = |to: &mut Vec<f64>, a: &[f64], b: &[f64]| {
+            to.clear();
+            to.extend(b.iter().zip(a).map(|(b, a)| b - a));
+        };
+        subtract(&mut self.x, &a.x, &b.x);
+        subtract(&mut self.v, &a.v, &b.v);
+    }
+
     /// `factor` times as large.
     pub fn scaled(&self, factor: f64) -> Self {
-        let scale = |values: &[f64]| values.iter().map(|c| factor * c).collect();
-        Self {
-            x: scale(&self.x),
-            v: scale(&self.v),
-        }
+        self.zip(self, |own, _| factor * own)
     }
 
-    /// Both at once.
     pub fn plus(&self, other: &Self) -> Self {
-        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
-        Self {
-            x: sum(&self.x, &other.x),
-            v: sum(&self.v, &other.v),
-        }
+        self.zip(other, |own, other| own + other)
     }
 
-    /// What it has beyond another.
     pub fn minus(&self, other: &Self) -> Self {
-        self.plus(&other.scaled(-1.0))
+        self.zip(other, |own, other| own - other)
     }
 
-    /// The scene started from there. The scene, not a state, since rapier's worlds are made of it.
+    fn zip(&self, other: &Self, of: impl Fn(f64, f64) -> f64) -> Self {
+        let each = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| of(*a, *b)).collect();
+        Self {
+            x: each(&self.x, &other.x),
+            v: each(&self.v, &other.v),
+        }
+    }
+
+    /// The scene started from there: a scene, not a state, since rapier's worlds are made of it.
     pub fn apply(&self, scene: &Scene) -> Scene {
-        let mut shaken = scene.clone();
+        let mut perturbed = scene.clone();
         let moved = self.x.chunks_exact(3).zip(self.v.chunks_exact(3));
-        for (particle, (x, v)) in shaken.particles.iter_mut().zip(moved) {
-            if particle.fixed {
-                continue;
-            }
-            for (to, by) in particle.position.iter_mut().zip(x) {
-                *to += by;
-            }
-            for (to, by) in particle.velocity.iter_mut().zip(v) {
-                *to += by;
+        let particles = perturbed.particles.iter_mut().zip(moved);
+        for (particle, (x, v)) in particles.filter(|(particle, _)| !particle.fixed) {
+            for axis in 0..3 {
+                particle.position[axis] += x[axis];
+                particle.velocity[axis] += v[axis];
             }
         }
-        shaken
+        perturbed
     }
 }
 
@@ -108,20 +112,14 @@ fn kick(system: &ParticleSystem, energy: f64) -> Vec<f64> {
 /// Numbers of magnitude 0.5 to 1 of either sign, times `size` of the inverse mass; 0 where fixed.
 fn noise(inverse_mass: &[f64], stream: u64, size: impl Fn(f64) -> f64) -> Vec<f64> {
     let draw = |(i, w): (usize, &f64)| {
-        if *w > 0.0 {
-            size(*w) * signed(stream << 32 | i as u64)
-        } else {
-            0.0
+        if *w == 0.0 {
+            return 0.0;
         }
+        let bits = scramble(stream << 32 | i as u64);
+        let magnitude = 0.5 + 0.5 * (bits >> 11) as f64 / (1u64 << 53) as f64;
+        size(*w) * if bits & 1 == 0 { magnitude } else { -magnitude }
     };
     inverse_mass.iter().enumerate().map(draw).collect()
-}
-
-/// A number of magnitude 0.5 to 1, of either sign, from a key.
-fn signed(key: u64) -> f64 {
-    let bits = scramble(key);
-    let magnitude = 0.5 + 0.5 * (bits >> 11) as f64 / (1u64 << 53) as f64;
-    if bits & 1 == 0 { magnitude } else { -magnitude }
 }
 
 /// SplitMix64's finaliser (Steele, Lea & Flood 2014).

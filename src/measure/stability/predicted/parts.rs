@@ -1,65 +1,44 @@
 //! The mass-normalised matrices of x'' = -K x - C v, and the parts of them that do not couple.
 
-use super::matrix::Matrix;
+use crate::measure::stability::matrix::Matrix;
 use crate::system::{Jacobian, Linearization, System, Triplets};
 use std::cmp::Ordering;
 
 /// Coordinates that couple with each other and with no others, such as all x of a chain along x.
 /// Scaled by the roots of the masses: K and C are symmetric where forces derive from a potential.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Component {
-    /// -M^(-1/2) ∂f/∂x M^(-1/2), 1/s².
+pub(super) struct Part {
+    /// K = -M^(-1/2) ∂f/∂x M^(-1/2), 1/s².
     pub stiffness: Matrix,
-    /// -M^(-1/2) ∂f/∂v M^(-1/2), 1/s.
+    /// C = -M^(-1/2) ∂f/∂v M^(-1/2), 1/s.
     pub damping: Matrix,
-    /// As `stiffness`, of springs along themselves only, 1/s².
+    /// K', as K but of springs along themselves only, 1/s².
     pub material: Matrix,
+    /// Whether all three are symmetric.
+    pub symmetric: bool,
+    /// How often it occurs.
+    pub copies: usize,
 }
 
-impl Component {
-    pub(super) fn n(&self) -> usize {
+impl Part {
+    pub fn n(&self) -> usize {
         self.stiffness.n()
     }
 
-    /// Matrices that are symmetric but for rounding are made so; whether they all are.
-    fn symmetrise(&mut self) -> bool {
-        let mut symmetric = true;
-        for matrix in [&mut self.stiffness, &mut self.damping, &mut self.material] {
-            if matrix.skewness() <= SYMMETRIC * matrix.norm() {
-                *matrix = matrix.symmetric_part();
-            } else {
-                symmetric = false;
-            }
-        }
-        symmetric
+    fn matrices(&self) -> [&Matrix; 3] {
+        [&self.stiffness, &self.damping, &self.material]
     }
 
+    /// The largest first.
     fn order(&self, other: &Self) -> Ordering {
-        let matrices = |c: &Self| [c.stiffness.clone(), c.damping.clone(), c.material.clone()];
+        let matrices = self.matrices().into_iter().zip(other.matrices());
         let sizes = other.n().cmp(&self.n());
-        matrices(self)
-            .iter()
-            .zip(&matrices(other))
-            .fold(sizes, |order, (ours, theirs)| {
-                order.then_with(|| {
-                    let lengths = ours.values().len().cmp(&theirs.values().len());
-                    let values = ours.values().iter().zip(theirs.values());
-                    values.fold(lengths, |o, (a, b)| o.then_with(|| a.total_cmp(b)))
-                })
-            })
+        matrices.fold(sizes, |order, (a, b)| order.then_with(|| a.order(b)))
     }
 }
 
 /// Entries of sums of a few forces agree with their mirror images to a few roundings.
 const SYMMETRIC: f64 = 1e-13;
-
-/// A component, whether its matrices are symmetric, and how often it occurs.
-#[derive(Debug, Clone)]
-pub(super) struct Part {
-    pub component: Component,
-    pub symmetric: bool,
-    pub copies: usize,
-}
 
 /// The scene's parts at (t, x, v), largest first, equal ones together; None where a derivative is not
 /// finite.
@@ -76,22 +55,15 @@ pub(super) fn parts<S: System + ?Sized>(
     let mut material = Jacobian::default();
     system.jacobian(t, x, v, Linearization::Material, &mut material);
     let scaled = |triplets: &Triplets| scaled(n, inverse_mass, triplets);
-    let whole = Component {
-        stiffness: scaled(&exact.position)?,
-        damping: scaled(&exact.velocity)?,
-        material: scaled(&material.position)?,
-    };
-    let mut parts: Vec<Part> = coupled(&whole, inverse_mass)
-        .into_iter()
-        .map(|mut component| Part {
-            symmetric: component.symmetrise(),
-            component,
-            copies: 1,
-        })
-        .collect();
-    parts.sort_by(|a, b| a.component.order(&b.component));
+    let whole = [
+        scaled(&exact.position)?,
+        scaled(&exact.velocity)?,
+        scaled(&material.position)?,
+    ];
+    let mut parts = separate(&whole, inverse_mass);
+    parts.sort_by(Part::order);
     parts.dedup_by(|next, kept| {
-        let same = next.component == kept.component;
+        let same = next.matrices() == kept.matrices();
         kept.copies += usize::from(same);
         same
     });
@@ -126,9 +98,10 @@ fn scaled(n: usize, inverse_mass: &[f64], triplets: &Triplets) -> Option<Matrix>
     Some(Matrix::new(n, kept))
 }
 
-/// Splits by what is coupled; fixed coordinates are in no part.
-fn coupled(whole: &Component, inverse_mass: &[f64]) -> Vec<Component> {
-    let n = whole.n();
+/// Splits by what is coupled; fixed coordinates are in no part. Matrices that are symmetric but for
+/// rounding are made so.
+fn separate(whole: &[Matrix; 3], inverse_mass: &[f64]) -> Vec<Part> {
+    let n = inverse_mass.len();
     let mut parent: Vec<usize> = (0..n).collect();
     fn root(parent: &mut [usize], mut i: usize) -> usize {
         while parent[i] != i {
@@ -137,11 +110,9 @@ fn coupled(whole: &Component, inverse_mass: &[f64]) -> Vec<Component> {
         }
         i
     }
-    for matrix in [&whole.stiffness, &whole.damping, &whole.material] {
-        for (row, column, _) in matrix.entries() {
-            let (a, b) = (root(&mut parent, row), root(&mut parent, column));
-            parent[a.max(b)] = a.min(b);
-        }
+    for (row, column, _) in whole.iter().flat_map(Matrix::entries) {
+        let (a, b) = (root(&mut parent, row), root(&mut parent, column));
+        parent[a.max(b)] = a.min(b);
     }
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); n];
     let mut place = vec![0; n];
@@ -151,12 +122,24 @@ fn coupled(whole: &Component, inverse_mass: &[f64]) -> Vec<Component> {
         members[at].push(i);
     }
     members.retain(|coordinates| !coordinates.is_empty());
-    members
-        .iter()
-        .map(|coordinates| Component {
-            stiffness: whole.stiffness.part(coordinates, &place),
-            damping: whole.damping.part(coordinates, &place),
-            material: whole.material.part(coordinates, &place),
-        })
-        .collect()
+    let part = |coordinates: &Vec<usize>| {
+        let mut symmetric = true;
+        let [stiffness, damping, material] = whole.each_ref().map(|whole| {
+            let matrix = whole.part(coordinates, &place);
+            if matrix.skewness() <= SYMMETRIC * matrix.norm() {
+                matrix.symmetric_part()
+            } else {
+                symmetric = false;
+                matrix
+            }
+        });
+        Part {
+            stiffness,
+            damping,
+            material,
+            symmetric,
+            copies: 1,
+        }
+    };
+    members.iter().map(part).collect()
 }
