@@ -26,22 +26,17 @@ pub const HUGE: f64 = 1e300;
 impl Axis {
     /// `range` widened to something that can be divided by: a constant gets room around it.
     pub fn linear(range: [f64; 2]) -> Axis {
-        Axis {
-            scale: Scale::Linear,
-            range: opened(range),
-        }
+        let (scale, range) = (Scale::Linear, opened(range));
+        Axis { scale, range }
     }
 
     /// Logarithmic where both ends are positive and lie apart, else linear.
-    pub fn logarithmic([lo, hi]: [f64; 2]) -> Axis {
+    pub fn logarithmic(range: [f64; 2]) -> Axis {
+        let ([lo, hi], scale) = (range, Scale::Log);
         if lo > 1.0 / HUGE && hi < HUGE && hi > 1.001 * lo {
-            Axis {
-                scale: Scale::Log,
-                range: [lo, hi],
-            }
-        } else {
-            Axis::linear([lo, hi])
+            return Axis { scale, range };
         }
+        Axis::linear(range)
     }
 
     /// 0 at the lower end, 1 at the upper, beyond them outside.
@@ -197,10 +192,10 @@ fn log_ticks([lo, hi]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
 /// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
 fn step(least: f64) -> f64 {
     let power = 10_f64.powi(least.log10().floor() as i32);
-    let factor = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|f| f * power >= least * (1.0 - 1e-9));
-    factor.unwrap_or(10.0) * power
+    let mut steps = [1.0, 2.0, 5.0].into_iter().map(|factor| factor * power);
+    steps
+        .find(|step| *step >= least * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power)
 }
 
 /// As many digits as tell neighbouring ticks apart; scientific for very large or small axes.

@@ -1,8 +1,6 @@
 //! SVG text, written element by element. Every number has one fixed decimal, so equal input gives
 //! equal bytes; there are no ids, so several figures can stand inline on one page.
 
-use std::fmt::Write;
-
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
@@ -166,46 +164,26 @@ impl Canvas {
     /// The whole file: white behind everything, so that dark pages show it too.
     pub fn finish(self, width: f64, height: f64, title: &str) -> String {
         let (width, height) = (px(width.ceil()), px(height.ceil()));
-        let mut svg = String::with_capacity(self.body.len() + 512);
-        // Writing to a String cannot fail.
-        let _ = write!(
-            svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" role=\"img\" \
-             font-family=\"Helvetica, Arial, sans-serif\">\n<title>{}</title>\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"{WHITE}\"/>\n{}</svg>\n",
-            escape(title),
-            self.body
-        );
-        svg
+        let (title, body) = (escape(title), self.body);
+        format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" role="img" font-family="Helvetica, Arial, sans-serif">
+<title>{title}</title>
+<rect width="{width}" height="{height}" fill="{WHITE}"/>
+{body}</svg>
+"#
+        )
     }
 }
 
 /// A coordinate with at most one decimal, never `-0`.
 pub fn px(value: f64) -> String {
-    let text = format!("{value:.1}");
-    let text = text.strip_suffix(".0").unwrap_or(&text);
-    if text == "-0" {
-        "0".into()
-    } else {
-        text.into()
-    }
+    // Adding 0 takes the sign from -0.
+    ((10.0 * value).round() / 10.0 + 0.0).to_string()
 }
 
-/// Text as XML carries it; characters XML 1.0 forbids are left out.
-pub fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            '\'' => escaped += "&#39;",
-            '\u{fffe}' | '\u{ffff}' => {}
-            c if c.is_control() => {}
-            c => escaped.push(c),
-        }
-    }
-    escaped
+/// Text as XML carries it between tags; characters XML 1.0 forbids are left out.
+fn escape(text: &str) -> String {
+    let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    let text = text.replace(forbidden, "").replace('&', "&amp;");
+    text.replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -28,9 +28,8 @@ pub struct Chart {
     pub title: String,
     /// Below the title, in as many lines as it takes.
     pub legend: Vec<Key>,
-    /// Titles of the axes: beside each panel in a single column, else once for all.
-    pub x_title: String,
-    pub y_title: String,
+    /// Titles of x and y: beside each panel in a single column, else once for all.
+    pub titles: [String; 2],
     /// In rows of [`Chart::columns`]; with more than one, the panels of a column share their x axis.
     pub panels: Vec<Panel>,
     pub columns: usize,
@@ -48,8 +47,8 @@ pub struct Panel {
     pub width: f64,
     /// Pixels, at least; more where the labels need it.
     pub height: f64,
-    pub x: Axis,
-    pub y: Axis,
+    /// Along x and y.
+    pub axes: [Axis; 2],
     /// Whether a unit is as long along both axes; the axes then grow, or the panel is smaller.
     pub equal_scales: bool,
     /// Whether it stands close below the panel before and has the same x axis.
@@ -139,13 +138,7 @@ impl Chart {
             }
             let (mut left, mut end) = (LEFT, top);
             for (column, stack) in in_row.iter().enumerate() {
-                let (right, bottom) = (left, top);
-                let mut w = Window {
-                    left,
-                    top,
-                    right,
-                    bottom,
-                };
+                let mut w = Window::at([left, top]);
                 for (at, panel) in stack.iter().enumerate() {
                     let start = if at == 0 { top } else { w.bottom + 8.0 };
                     (w.right, w.bottom) = (left + panel.width, start + panel.height);
@@ -171,8 +164,8 @@ impl Chart {
         for w in titled {
             let [x, y] = [(w.left + w.right) / 2.0, (w.top + w.bottom) / 2.0];
             let (below, beside) = ([x, w.bottom + 34.0], [w.left - 66.0, y]);
-            canvas.text(below, Align::Middle, 12.0, FAINT, &self.x_title);
-            canvas.text(beside, Align::Upward, 12.0, FAINT, &self.y_title);
+            canvas.text(below, Align::Middle, 12.0, FAINT, &self.titles[0]);
+            canvas.text(beside, Align::Upward, 12.0, FAINT, &self.titles[1]);
         }
         if !self.note.is_empty() {
             canvas.text([LEFT, top + 8.0], Align::Start, 11.0, FAINT, &self.note);
@@ -209,13 +202,12 @@ struct Ticks {
 
 impl Panel {
     /// As wide as there is room, without keys.
-    pub fn new(title: String, height: f64, [x, y]: [Axis; 2], marks: Vec<Mark>) -> Panel {
+    pub fn new(title: String, height: f64, axes: [Axis; 2], marks: Vec<Mark>) -> Panel {
         Panel {
             title,
             width: f64::INFINITY,
             height,
-            x,
-            y,
+            axes,
             equal_scales: false,
             joined: false,
             marks,
@@ -237,18 +229,16 @@ impl Panel {
         if !self.equal_scales {
             return;
         }
-        let (space, ranges) = ([self.width, self.height], [self.x.range, self.y.range]);
+        let (space, ranges) = ([self.width, self.height], self.axes.map(|axis| axis.range));
         let spans = ranges.map(|[lo, hi]| hi - lo);
         let scale = f64::min(space[0] / spans[0], space[1] / spans[1]);
         let size = [0, 1].map(|a| (spans[a] * scale).max(SMALLEST[a]).min(space[a]));
         let grown = |a: usize| {
-            let (middle, half) = (
-                ranges[a][0] / 2.0 + ranges[a][1] / 2.0,
-                size[a] / scale / 2.0,
-            );
+            let ([lo, hi], half) = (ranges[a], size[a] / scale / 2.0);
+            let middle = lo / 2.0 + hi / 2.0;
             Axis::linear([middle - half, middle + half])
         };
-        ([self.width, self.height], self.x, self.y) = (size, grown(0), grown(1));
+        ([self.width, self.height], self.axes) = (size, [grown(0), grown(1)]);
     }
 
     /// Returns where its labels end, which is below the window where more stand than fit.
@@ -258,8 +248,8 @@ impl Panel {
             let at = [window.left, window.top - 7.0];
             canvas.text(at, Align::Start, size, INK, &self.title);
         }
-        let (x, y) = (self.x, self.y);
-        let frame = Frame { window, x, y };
+        let axes = self.axes;
+        let frame = Frame { window, axes };
         ground(canvas, &frame, ticks);
         let mut notes: Vec<(&Key, Option<Anchor>)> = Vec::new();
         for mark in &self.marks {
@@ -280,7 +270,7 @@ fn ground(canvas: &mut Canvas, frame: &Frame, ticks: Ticks) {
     let grid = |value| if value == 0.0 { "#b4b4b4" } else { "#e4e4e4" };
     // Small panels have their ticks closer together.
     let apart = (width / 8.0).clamp(42.0, 75.0);
-    for (value, label) in frame.x.ticks((width / apart) as usize) {
+    for (value, label) in frame.axes[0].ticks((width / apart) as usize) {
         let [x, _] = frame.place([value, 0.0]);
         canvas.line([x, w.top], [x, w.bottom], grid(value), 1.0);
         canvas.line([x, w.bottom], [x, w.bottom + 4.0], FAINT, 1.0);
@@ -292,7 +282,7 @@ fn ground(canvas: &mut Canvas, frame: &Frame, ticks: Ticks) {
         }
     }
     let apart = (height / 5.0).clamp(17.0, 32.0);
-    for (value, label) in frame.y.ticks((height / apart) as usize) {
+    for (value, label) in frame.axes[1].ticks((height / apart) as usize) {
         let [_, y] = frame.place([0.0, value]);
         canvas.line([w.left, y], [w.right, y], grid(value), 1.0);
         canvas.line([w.left - 4.0, y], [w.left, y], FAINT, 1.0);

@@ -33,7 +33,7 @@ pub fn chart(report: &Report) -> Option<Chart> {
     let [x, y] = ranges(shown);
     let panels = shown.panels.iter().flat_map(|panel| {
         let draw = |line: &CostLine, points: &[[f64; 2]]| draw(line, points, look(line.timestep));
-        let truth = Mark::Line(Line::new(shown.truth.clone(), palette::TRUTH_LINE));
+        let truth = Mark::line(shown.truth.clone(), palette::TRUTH_LINE);
         let curves = panel.lines.iter().map(|line| draw(line, &line.curve));
         let curves = [truth].into_iter().chain(curves).collect();
         let differences = panel.lines.iter().map(|line| draw(line, &line.difference));
@@ -53,8 +53,7 @@ pub fn chart(report: &Report) -> Option<Chart> {
     Some(Chart {
         title: heading(report, "each step beside the truth"),
         legend: legend.collect(),
-        x_title: "time (s)".into(),
-        y_title,
+        titles: ["time (s)".into(), y_title],
         panels: panels.collect(),
         columns: shown.panels.len().min(3),
         own_y: true,

@@ -16,6 +16,11 @@ pub enum Mark {
 }
 
 impl Mark {
+    /// A calm line without a label.
+    pub fn line(points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke) -> Mark {
+        Mark::Line(Line::new(points, stroke))
+    }
+
     pub fn label(&self) -> Option<&Key> {
         match self {
             Mark::Line(line) => line.label.as_ref(),
@@ -24,7 +29,7 @@ impl Mark {
     }
 }
 
-/// Points joined in their order; those with a number that is not finite are left out.
+/// Points joined in their order.
 pub struct Line {
     pub points: Vec<[f64; 2]>,
     pub stroke: Stroke,
@@ -38,9 +43,11 @@ pub struct Line {
 }
 
 impl Line {
+    /// Calm, without a label; points with a number that is not finite are left out.
     pub fn new(points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke) -> Line {
+        let points = points.into_iter();
         Line {
-            points: points.into_iter().collect(),
+            points: points.filter(|p| p.iter().all(|c| c.is_finite())).collect(),
             stroke,
             wild: false,
             end: None,
@@ -81,6 +88,16 @@ pub struct Window {
 }
 
 impl Window {
+    /// Of no size.
+    pub fn at([x, y]: [f64; 2]) -> Window {
+        Window {
+            left: x,
+            top: y,
+            right: x,
+            bottom: y,
+        }
+    }
+
     pub fn holds(&self, point: [f64; 2]) -> bool {
         self.clamped(point) == point
     }
@@ -133,18 +150,15 @@ pub struct Anchor {
 /// A window and the axes along it.
 pub struct Frame {
     pub window: Window,
-    pub x: Axis,
-    pub y: Axis,
+    pub axes: [Axis; 2],
 }
 
 impl Frame {
     /// Pixels of a pair of values; may lie outside the window.
-    pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub fn place(&self, values: [f64; 2]) -> [f64; 2] {
         let (w, [width, height]) = (self.window, self.window.size());
-        [
-            w.left + self.x.place(x) * width,
-            w.bottom - self.y.place(y) * height,
-        ]
+        let [x, y] = [0, 1].map(|a| self.axes[a].place(values[a]));
+        [w.left + x * width, w.bottom - y * height]
     }
 
     /// Draws what is inside; a line has at most about `budget` points. Returns where a line's label
@@ -179,11 +193,7 @@ impl Frame {
 
     fn line(&self, canvas: &mut Canvas, line: &Line, budget: usize) -> Option<Anchor> {
         let (w, [width, height]) = (self.window, self.window.size());
-        let finite = line
-            .points
-            .iter()
-            .filter(|p| p.iter().all(|c| c.is_finite()));
-        let mut pixels: Vec<[f64; 2]> = finite.map(|p| self.place(*p)).collect();
+        let mut pixels: Vec<[f64; 2]> = line.points.iter().map(|p| self.place(*p)).collect();
         let last = *pixels.last()?;
         if line.wild {
             let far = |p: &[f64; 2]| {
@@ -212,16 +222,12 @@ fn thinned(points: &[[f64; 2]], budget: usize) -> Vec<[f64; 2]> {
     if points.len() <= budget.max(2) {
         return points.to_vec();
     }
-    let axes = if points.is_sorted_by(|a, b| a[0] <= b[0]) {
-        1..2
-    } else {
-        0..2
-    };
-    let stretches = (budget / (2 * axes.len())).max(1);
+    let first = usize::from(points.is_sorted_by(|a, b| a[0] <= b[0]));
+    let stretches = (budget / (2 * (2 - first))).max(1);
     let mut kept = vec![0, points.len() - 1];
     for stretch in 0..stretches {
         let bounds = [stretch, stretch + 1].map(|s| s * points.len() / stretches);
-        for axis in axes.clone() {
+        for axis in first..2 {
             let by = |a: &usize, b: &usize| points[*a][axis].total_cmp(&points[*b][axis]);
             kept.extend((bounds[0]..bounds[1]).min_by(by));
             kept.extend((bounds[0]..bounds[1]).max_by(by));

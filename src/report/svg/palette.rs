@@ -20,14 +20,12 @@ const BLACK: &str = "#000000";
 pub const TRUTH: Stroke = Stroke::new("#c4c4c4", "", 6.0);
 
 /// What becomes of a run, from light to dark: told apart in grey and by colour-blind readers alike.
-pub fn cell(cell: Cell) -> &'static str {
-    match cell {
-        Cell::Stable => "#e3eef6",
-        Cell::Dissipating => "#8fbfe0",
-        Cell::Growing => "#d55e00",
-        Cell::Failed => "#3b1c32",
-    }
-}
+pub const CELLS: [(Cell, &str, &str); 4] = [
+    (Cell::Stable, "stable", "#e3eef6"),
+    (Cell::Dissipating, "dissipating", "#8fbfe0"),
+    (Cell::Growing, "growing", "#d55e00"),
+    (Cell::Failed, "failed", "#3b1c32"),
+];
 
 /// Where something holds, and where it does not.
 pub const HOLDS: [&str; 2] = ["#0072b2", "#f1ece4"];

@@ -7,21 +7,12 @@ use super::chart::{Chart, Key, Look, Panel};
 use super::marks::{self, Mark};
 use super::{NAME, heading, palette, shortened};
 use crate::outcome::{Cost, CostCurve, CostPoint, Report, Status};
-use crate::report::cost::{is_timed, metres};
+use crate::report::cost::{Diagram, is_timed, metres};
 use crate::report::words;
 
 /// What an axis may hold: nothing overflows within.
 const SMALLEST: f64 = 1e-250;
 const LARGEST: f64 = 1e250;
-
-/// What is drawn over what.
-#[derive(Clone, Copy)]
-pub struct Diagram {
-    /// Whether the error is the one targets, floor, front and slope are about; else that of the energy.
-    pub judged: bool,
-    /// Whether the cost is a time, which has a spread; else force evaluations.
-    pub timed: bool,
-}
 
 /// Error over wall time.
 pub const TIME: Diagram = Diagram {
@@ -34,24 +25,6 @@ pub const EVALUATIONS: Diagram = Diagram {
     judged: true,
     timed: false,
 };
-
-impl Diagram {
-    fn cost(self, point: &CostPoint) -> Option<f64> {
-        if self.timed {
-            point.wall_s.as_ref().map(|wall| wall.median)
-        } else {
-            point.force_evaluations.map(|count| count as f64)
-        }
-    }
-
-    fn error(self, point: &CostPoint) -> Option<f64> {
-        if self.judged {
-            point.error_m
-        } else {
-            point.energy_error
-        }
-    }
-}
 
 /// Energy error over time, or over evaluations where nothing was timed.
 pub fn energy(report: &Report) -> Option<Chart> {
@@ -102,21 +75,24 @@ pub fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
     let silent: Vec<String> = silent.iter().map(Line::name).collect();
     let note = format!("without numbers for this: {}", silent.join(", "));
     let note = (!silent.is_empty()).then(|| shortened(&note, 130));
-    let title = match (diagram.judged, diagram.timed) {
-        (false, _) => "what energy accuracy costs",
-        (true, true) => "what accuracy costs in time",
-        (true, false) => "what accuracy costs in force evaluations",
+    let paid = match diagram.timed {
+        true => ["time", "wall time of a run, median (s)"],
+        false => ["force evaluations", "force evaluations of a run"],
     };
-    let x_titles = [
-        "force evaluations of a run",
-        "wall time of a run, median (s)",
-    ];
-    let y_titles = ["largest |B − B(0)| / S", "largest error (m)"];
+    let (title, error) = match diagram.judged {
+        true => (
+            format!("what accuracy costs in {}", paid[0]),
+            "largest error (m)",
+        ),
+        false => (
+            "what energy accuracy costs".into(),
+            "largest |B − B(0)| / S",
+        ),
+    };
     Some(Chart {
-        title: heading(report, title),
+        title: heading(report, &title),
         legend,
-        x_title: x_titles[usize::from(diagram.timed)].into(),
-        y_title: y_titles[usize::from(diagram.judged)].into(),
+        titles: [paid[1], error].map(str::to_owned),
         panels: vec![Panel::new(String::new(), 430.0, axes, marks)],
         note: note.unwrap_or_default(),
         ..Chart::default()
@@ -187,8 +163,7 @@ impl Line<'_> {
                 // Within the symbol itself a whisker says nothing.
                 if x.place(ends[1]) - x.place(ends[0]) > 0.02 {
                     let thin = Stroke::new(stroke.colour, "", 1.0);
-                    let whisker = marks::Line::new(ends.map(|end| [end, point[1]]), thin);
-                    marks.push(Mark::Line(whisker));
+                    marks.push(Mark::line(ends.map(|end| [end, point[1]]), thin));
                 }
             }
             let filled = !diagram.judged || self.curve.pareto.contains(&at);
@@ -206,21 +181,20 @@ impl Line<'_> {
 /// Grey from the floor down, and a line for each target.
 fn levels(cost: &Cost, targets: &[f64], [x, y]: [Axis; 2], diagram: Diagram) -> Vec<Mark> {
     let [[left, right], [bottom, _]] = [x.range, y.range];
-    let floor = cost
+    let mut marks = Vec::new();
+    if let Some(floor) = cost
         .floor_m
-        .filter(|floor| diagram.judged && *floor > bottom);
-    let floor =
-        floor.map(|floor| Mark::Area(palette::BELOW_FLOOR, vec![[[left, bottom], [right, floor]]]));
-    let lines = targets.iter().flat_map(|&error| {
-        [
-            Mark::Line(marks::Line::new(
-                [[left, error], [right, error]],
-                palette::TARGET,
-            )),
-            Mark::Text([left, error], format!("{} m", metres(error))),
-        ]
-    });
-    floor.into_iter().chain(lines).collect()
+        .filter(|floor| diagram.judged && *floor > bottom)
+    {
+        let below = [[left, bottom], [right, floor]];
+        marks.push(Mark::Area(palette::BELOW_FLOOR, vec![below]));
+    }
+    for &error in targets {
+        let ends = [[left, error], [right, error]];
+        marks.push(Mark::line(ends, palette::TARGET));
+        marks.push(Mark::Text(ends[0], format!("{} m", metres(error))));
+    }
+    marks
 }
 
 /// What the symbols mean.

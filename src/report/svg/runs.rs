@@ -130,8 +130,7 @@ fn curves(
     });
     Chart {
         title: heading(report, title),
-        x_title: "time (s)".into(),
-        y_title: y_title.into(),
+        titles: ["time (s)", y_title].map(str::to_owned),
         panels: panels.collect(),
         ..Chart::default()
     }
@@ -259,8 +258,7 @@ pub fn trajectories(report: &Report) -> Option<Chart> {
     };
     Some(Chart {
         title: heading(report, "trajectories"),
-        x_title: titles[0].into(),
-        y_title: titles[1].into(),
+        titles: titles.map(str::to_owned),
         panels: panels.iter().map(panel).collect(),
         ..Chart::default()
     })

@@ -4,18 +4,10 @@
 use super::axis::Axis;
 use super::canvas::Stroke;
 use super::chart::{Chart, Key, Look, Panel};
-use super::marks::{Line, Mark, cells};
+use super::marks::{Mark, cells};
 use super::{heading, palette, panel_title, shortened};
-use crate::outcome::{Cell, MapPanel, Report, StabilityMap};
+use crate::outcome::{MapPanel, Report, StabilityMap};
 use crate::report::words;
-
-/// In the order of the legend.
-const CELLS: [(Cell, &str); 4] = [
-    (Cell::Stable, "stable"),
-    (Cell::Dissipating, "dissipating"),
-    (Cell::Growing, "growing"),
-    (Cell::Failed, "failed"),
-];
 
 /// The places where the spring is as long as it wants to be.
 const REST: Stroke = Stroke::new("#d55e00", "5 3", 1.4);
@@ -27,8 +19,8 @@ pub fn map(report: &Report) -> Option<Chart> {
     if map.engines.is_empty() || map.values.is_empty() || map.timesteps_s.is_empty() {
         return None;
     }
-    let cell = |(cell, name)| Key::new(name, Look::Fill(palette::cell(cell)));
-    let mut legend: Vec<Key> = CELLS.map(cell).into();
+    let cells = palette::CELLS.map(|(_, name, colour)| Key::new(name, Look::Fill(colour)));
+    let mut legend = Vec::from(cells);
     let predicts = |engine: &MapPanel| engine.predicted_limit_s.iter().flatten().any(|h| *h > 0.0);
     if map.engines.iter().any(predicts) {
         let line = Look::Line(palette::BOUNDARY[1]);
@@ -56,8 +48,7 @@ pub fn map(report: &Report) -> Option<Chart> {
     Some(Chart {
         title: heading(report, "stability map"),
         legend,
-        x_title,
-        y_title: "timestep h (s)".into(),
+        titles: [x_title, "timestep h (s)".into()],
         panels: panels.collect(),
         columns,
         ..Chart::default()
@@ -67,10 +58,9 @@ pub fn map(report: &Report) -> Option<Chart> {
 fn map_marks(map: &StabilityMap, engine: &MapPanel, axes: [Axis; 2]) -> Vec<Mark> {
     let counts = [map.values.len(), map.timesteps_s.len()];
     let at = |i: usize, j: usize| engine.cells.get(i)?.get(j).copied().flatten();
-    let areas = CELLS.map(|(cell, _)| {
-        cells(palette::cell(cell), axes, counts, |i, j| {
-            at(i, j) == Some(cell)
-        })
+    let areas = palette::CELLS.map(|(cell, _, colour)| {
+        let belongs = |i, j| at(i, j) == Some(cell);
+        cells(colour, axes, counts, belongs)
     });
     let limits = map.values.iter().zip(&engine.predicted_limit_s);
     let limits: Vec<Option<[f64; 2]>> = limits
@@ -80,8 +70,8 @@ fn map_marks(map: &StabilityMap, engine: &MapPanel, axes: [Axis; 2]) -> Vec<Mark
     for stroke in palette::BOUNDARY {
         // A stretch between two values without a limit is no line.
         let stretches = limits.split(Option::is_none);
-        let lines = stretches.map(|stretch| Line::new(stretch.iter().copied().flatten(), stroke));
-        marks.extend(lines.map(Mark::Line));
+        let lines = stretches.map(|points| Mark::line(points.iter().copied().flatten(), stroke));
+        marks.extend(lines);
     }
     marks
 }
@@ -110,7 +100,7 @@ pub fn admissible(report: &Report) -> Option<Chart> {
         };
         let rest = [length, -length].map(|apart| {
             let ends = axes[0].range.map(|x1| [x1, x1 + apart]);
-            Mark::Line(Line::new(ends, REST))
+            Mark::line(ends, REST)
         });
         let mut marks = vec![
             cells(fails, axes, [1, 1], |_, _| true),
@@ -133,8 +123,7 @@ pub fn admissible(report: &Report) -> Option<Chart> {
             Key::new("at rest: |x2 − x1| = L", Look::Line(REST)),
             Key::new(facts, Look::Remark),
         ],
-        x_title: "x1 (m)".into(),
-        y_title: "x2 (m)".into(),
+        titles: ["x1 (m)", "x2 (m)"].map(str::to_owned),
         panels: panels.collect(),
         columns: admissible.panels.len().min(3),
         ..Chart::default()
