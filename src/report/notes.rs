@@ -7,16 +7,28 @@ pub struct Note {
     pub sentence: String,
 }
 
-/// Sentences in the order they are first said, and who says them; equal ones once.
-pub fn said_once<W>(said: impl IntoIterator<Item = (W, String)>) -> Vec<(Vec<W>, String)> {
-    let mut once: Vec<(Vec<W>, String)> = Vec::new();
-    for (who, sentence) in said {
-        match once.iter_mut().find(|(_, known)| *known == sentence) {
-            Some((all, _)) => all.push(who),
-            None => once.push((vec![who], sentence)),
+/// Who says what, with equal sentences said once: by `subject` of all who say them.
+pub fn notes<W>(
+    said: impl Iterator<Item = (W, String)>,
+    subject: impl Fn(&[W]) -> String,
+) -> Vec<Note> {
+    let note = |(sentence, who): (String, Vec<W>)| Note {
+        subject: subject(&who),
+        sentence,
+    };
+    grouped(said).into_iter().map(note).collect()
+}
+
+/// Equal things once, in the order they first come, each with all that belong to it.
+pub fn grouped<W, T: PartialEq>(pairs: impl Iterator<Item = (W, T)>) -> Vec<(T, Vec<W>)> {
+    let mut groups: Vec<(T, Vec<W>)> = Vec::new();
+    for (member, of) in pairs {
+        match groups.iter_mut().find(|(known, _)| *known == of) {
+            Some((_, members)) => members.push(member),
+            None => groups.push((of, vec![member])),
         }
     }
-    once
+    groups
 }
 
 /// `a`, `a and b`, `a, b and c`.

@@ -1,8 +1,10 @@
 //! Tables: each column is declared once, with its headers in the terminal and in Markdown.
 
 use super::markdown::escape;
+use super::terminal::WIDTH;
 use super::terminal::columns::{Column, fitted, laid_out};
-use super::terminal::paint::Tone;
+use super::terminal::fit::wrap;
+use super::terminal::paint::{Tone, mark};
 use super::words;
 use comfy_table::CellAlignment;
 
@@ -120,12 +122,33 @@ impl<'a, R> Table<'a, R> {
         }
     }
 
-    /// The lines, and the headers of what does not fit. Columns that say nothing are not shown.
-    pub fn in_terminal(self) -> (Vec<String>, Vec<String>) {
-        let mut columns = self.terminal;
-        columns.retain(|column| !column.is_empty());
-        let (columns, left_out) = fitted(columns);
-        (laid_out(&columns), left_out)
+    /// Whether the terminal has room for all columns.
+    pub fn fits(&self) -> bool {
+        fitted(self.told()).1.is_empty()
+    }
+
+    /// The lines and their legend, which is told the headers of the columns left out for width and to
+    /// which these are added, separated by `between`.
+    pub fn in_terminal(
+        &self,
+        between: &str,
+        legend: impl FnOnce(&[String]) -> String,
+    ) -> Vec<String> {
+        let (columns, left_out) = fitted(self.told());
+        let mut legend = legend(&left_out);
+        if !left_out.is_empty() {
+            legend += &format!(" | left out for width: {}", left_out.join(between));
+        }
+        let mut lines = laid_out(&columns);
+        let legend = wrap(&legend, WIDTH, "");
+        lines.extend(legend.iter().map(|line| mark(Tone::Dim, line)));
+        lines
+    }
+
+    /// The terminal's columns without those that say nothing.
+    fn told(&self) -> Vec<Column> {
+        let told = self.terminal.iter().filter(|column| !column.is_empty());
+        told.cloned().collect()
     }
 
     pub fn in_markdown(&self) -> String {

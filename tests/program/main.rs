@@ -7,6 +7,7 @@ mod examples;
 #[cfg(unix)] // the programs it starts are POSIX's
 mod external;
 mod run;
+mod show;
 mod stability;
 #[path = "../testkit/mod.rs"]
 mod testkit;

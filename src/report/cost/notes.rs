@@ -2,7 +2,7 @@
 //! have no error.
 
 use crate::outcome::{Cost, CostCurve, CostPoint, Status};
-use crate::report::notes::{Note, listed, said_once};
+use crate::report::notes::{self, Note, listed};
 use crate::report::words;
 
 /// More settings than this are given by their first and last.
@@ -15,11 +15,7 @@ pub fn notes(cost: &Cost) -> Vec<Note> {
         let sentences = sentences(curve).into_iter();
         sentences.map(move |sentence| (name.clone(), sentence))
     });
-    let note = |(names, sentence): (Vec<String>, String)| Note {
-        subject: listed(&names),
-        sentence,
-    };
-    said_once(said).into_iter().map(note).collect()
+    notes::notes(said, listed)
 }
 
 fn sentences(curve: &CostCurve) -> Vec<String> {

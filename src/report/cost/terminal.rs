@@ -11,10 +11,7 @@ use crate::report::words::{self, NOTHING};
 pub fn lines(report: &Report, cost: &Cost) -> Vec<String> {
     let mut lines = answers(cost);
     lines.push(String::new());
-    let (engines, left_out) = table(report, cost).in_terminal();
-    lines.extend(engines);
-    let legend = wrap(&legend(cost, &left_out), WIDTH, "");
-    lines.extend(legend.iter().map(|line| mark(Tone::Dim, line)));
+    lines.extend(table(report, cost).in_terminal("; ", |left_out| legend(cost, left_out)));
     lines.extend(scatter::plot(report, cost));
     lines
 }
@@ -38,18 +35,13 @@ fn answers(cost: &Cost) -> Vec<String> {
 fn legend(cost: &Cost, left_out: &[String]) -> String {
     let mut legend = "▸ own integrator".to_owned();
     let shown = |header: &str| !left_out.iter().any(|out| out == header);
-    if shown("order") && cost.curves.iter().any(|curve| curve.order.is_some()) {
+    let any = |wanted: &dyn Fn(&CostCurve) -> bool| cost.curves.iter().any(wanted);
+    if shown("order") && any(&|curve| curve.order.is_some()) {
         legend += " | order: as stated";
     }
-    if shown("slope")
-        && cost
-            .curves
-            .iter()
-            .any(|curve| curve.observed_order.is_some())
-    {
+    if shown("slope") && any(&|curve| curve.observed_order.is_some()) {
         legend += " | slope: of error over step, as found";
     }
-    let any = |wanted: &dyn Fn(&CostCurve) -> bool| cost.curves.iter().any(wanted);
     if any(&|curve| curve.points.iter().any(|point| point.tolerance.is_some())) {
         legend += " | tol: tolerance of an adaptive pair";
     }
@@ -62,9 +54,6 @@ fn legend(cost: &Cost, left_out: &[String]) -> String {
     }
     if shown("settings") && any(&|curve| tried(curve).contains("of")) {
         legend += " | settings: completed of tried";
-    }
-    if !left_out.is_empty() {
-        legend += &format!(" | left out for width: {}", left_out.join("; "));
     }
     legend
 }

@@ -7,7 +7,7 @@ mod markdown;
 mod table;
 mod verdict;
 
-use super::notes::{Note, listed, said_once};
+use super::notes::{Note, grouped, listed, notes};
 use super::svg::{self, Figure};
 use super::verdict::Clause;
 use super::{View, words};
@@ -46,11 +46,7 @@ impl View for Vec<Outcome> {
             let sentences = sentences(outcome).into_iter();
             sentences.map(move |sentence| (outcome, sentence))
         });
-        let note = |(outcomes, sentence): (Vec<&Outcome>, String)| Note {
-            subject: subjects(report, &outcomes, usize::MAX),
-            sentence,
-        };
-        said_once(said).into_iter().map(note).collect()
+        notes(said, |outcomes| subjects(report, outcomes, usize::MAX))
     }
 
     fn last(&self, report: &Report) -> Vec<(&'static str, String)> {
@@ -97,43 +93,27 @@ fn ending(outcome: &Outcome, reason: Option<String>) -> String {
 /// The engines of `chosen`, at most `limit` by name, each with its timesteps unless they are all
 /// this report has of it: `midpoint, rk4 at h = 0.05 and 2 more`.
 pub fn subjects(report: &Report, chosen: &[&Outcome], limit: usize) -> String {
-    let mut names: Vec<&str> = Vec::new();
-    for outcome in chosen {
-        if !names.contains(&outcome.engine.as_str()) {
-            names.push(&outcome.engine);
-        }
-    }
-    let hidden = names.len().saturating_sub(limit);
+    let engines = grouped(chosen.iter().map(|o| (words::short(o.timestep), &o.engine)));
+    let hidden = engines.len().saturating_sub(limit);
     // "and 1 more" is no shorter than the name.
     let hidden = if hidden == 1 { 0 } else { hidden };
-    names.truncate(names.len() - hidden);
-    let mut texts: Vec<String> = names
-        .into_iter()
-        .map(|name| subject(report, chosen, name))
+    let named = engines.iter().take(engines.len() - hidden);
+    let mut texts: Vec<String> = named
+        .map(|(engine, timesteps)| {
+            let of_engine = |o: &&Outcome| o.engine == **engine;
+            let all = report.outcomes().iter().filter(of_engine).count();
+            let name = words::one_line(engine);
+            if timesteps.len() >= all {
+                name
+            } else {
+                format!("{name} at h = {}", timesteps.join(", "))
+            }
+        })
         .collect();
     if hidden > 0 {
         texts.push(format!("{hidden} more"));
     }
     listed(&texts)
-}
-
-fn subject(report: &Report, chosen: &[&Outcome], name: &str) -> String {
-    let timesteps: Vec<String> = chosen
-        .iter()
-        .filter(|o| o.engine == name)
-        .map(|o| words::short(o.timestep))
-        .collect();
-    let all = report
-        .outcomes()
-        .iter()
-        .filter(|o| o.engine == name)
-        .count();
-    let name = words::one_line(name);
-    if timesteps.len() >= all {
-        name
-    } else {
-        format!("{name} at h = {}", timesteps.join(", "))
-    }
 }
 
 /// Whether outcomes differ in their timestep, so that a table has to say it.

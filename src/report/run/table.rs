@@ -4,20 +4,19 @@ use super::{references, several_timesteps};
 use crate::outcome::{EnergyClass, Outcome, Report, Status};
 use crate::report::markdown::escape;
 use crate::report::table::{Mark, Table};
-use crate::report::terminal::WIDTH;
-use crate::report::terminal::fit::{clip, pad, wrap};
-use crate::report::terminal::paint::{Tone, mark};
+use crate::report::terminal::fit::{clip, pad};
+use crate::report::terminal::paint::Tone;
 use crate::report::words::{self, NOTHING};
 
 /// The terminal's lines and their legend.
 pub fn lines(report: &Report) -> Vec<String> {
-    let (mut lines, mut left_out) = table(report, ' ').in_terminal();
-    if !left_out.is_empty() {
-        (lines, left_out) = table(report, '\n').in_terminal();
-    }
-    let legend = wrap(&legend(report, &left_out), WIDTH, "");
-    lines.extend(legend.iter().map(|line| mark(Tone::Dim, line)));
-    lines
+    let wide = table(report, ' ');
+    let table = if wide.fits() {
+        wide
+    } else {
+        table(report, '\n')
+    };
+    table.in_terminal(", ", |_| legend(report))
 }
 
 pub fn markdown(report: &Report) -> String {
@@ -115,7 +114,7 @@ fn error(report: &Report, outcome: &Outcome) -> String {
     })
 }
 
-fn legend(report: &Report, left_out: &[String]) -> String {
+fn legend(report: &Report) -> String {
     let scale = match report.header.scene.energy_scale_j {
         Some(scale) => format!("over S = {} J", words::short(scale)),
         None => "(this scene has no scale)".into(),
@@ -127,9 +126,6 @@ fn legend(report: &Report, left_out: &[String]) -> String {
     let at_floor = |o: &Outcome| error(report, o) == "floor";
     if report.outcomes().iter().any(at_floor) {
         text += " | floor: below ten times the truth's own error";
-    }
-    if !left_out.is_empty() {
-        text += &format!(" | left out for width: {}", left_out.join(", "));
     }
     text
 }

@@ -5,7 +5,7 @@ mod terminal;
 mod verdict;
 
 use super::View;
-use super::notes::{Note, listed, said_once};
+use super::notes::{Note, listed, notes};
 use super::svg::{self, Figure};
 use super::table::{Mark, Table};
 use super::terminal::paint::Tone;
@@ -41,15 +41,13 @@ impl View for Stability {
             let remarks = row.remarks.iter();
             remarks.map(move |remark| (engine.clone(), words::one_line(remark)))
         });
-        let note = |(engines, sentence): (Vec<String>, String)| Note {
-            subject: if engines.len() == all && all > 2 {
+        notes(said, |engines| {
+            if engines.len() == all && all > 2 {
                 "all".to_owned()
             } else {
-                listed(&engines)
-            },
-            sentence,
-        };
-        said_once(said).into_iter().map(note).collect()
+                listed(engines)
+            }
+        })
     }
 
     fn markdown(&self, report: &Report) -> String {

@@ -14,24 +14,17 @@ const LINES: usize = 40;
 
 /// What stands below the facts.
 pub fn lines(report: &Report, stability: &Stability) -> Vec<String> {
-    let (limits, left_out) = table(report, stability).in_terminal();
     let mut lines = vec![String::new()];
-    lines.extend(limits);
-    let mut legend = "▸ own integrator | never, always: no step is stable, every step is | ratio: \
-                      measured over predicted"
-        .to_owned();
-    if stability
-        .rows
-        .iter()
-        .any(|row| row.smooth_below_s.is_some())
-    {
-        legend += " | smooth: decays without changing sign, predicted";
-    }
-    if !left_out.is_empty() {
-        legend += &format!(" | left out for width: {}", left_out.join(", "));
-    }
-    let legend = wrap(&legend, WIDTH, "");
-    lines.extend(legend.iter().map(|line| mark(Tone::Dim, line)));
+    lines.extend(table(report, stability).in_terminal(", ", |_| {
+        let mut legend = "▸ own integrator | never, always: no step is stable, every step is | \
+                          ratio: measured over predicted"
+            .to_owned();
+        let mut rows = stability.rows.iter();
+        if rows.any(|row| row.smooth_below_s.is_some()) {
+            legend += " | smooth: decays without changing sign, predicted";
+        }
+        legend
+    }));
     lines.extend(map(report, stability));
     lines.extend(admissible(stability));
     lines

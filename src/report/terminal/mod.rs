@@ -5,7 +5,7 @@ pub(in crate::report) mod columns;
 pub(in crate::report) mod fit;
 pub(in crate::report) mod paint;
 
-use super::notes::Note;
+use super::notes::{Note, grouped};
 use super::{verdict, view, words};
 use crate::outcome::{Check, CheckStatus, Report};
 use fit::{clip, pad, width, wrap};
@@ -83,52 +83,36 @@ fn notes(notes: &[Note]) -> Vec<String> {
 fn checks(checks: &[Check]) -> Vec<String> {
     let ids = checks.iter().map(|c| width(&words::one_line(&c.id))).max();
     let ids = ids.unwrap_or(0).min(24);
-    let mut groups: Vec<Vec<&Check>> = Vec::new();
-    for check in checks {
-        let alike = |group: &&mut Vec<&Check>| {
-            let first = group[0];
-            let pass = check.status == CheckStatus::Pass;
-            first.id == check.id
-                && first.status == check.status
-                && (pass || reason(first) == reason(check))
+    let groups = grouped(checks.iter().map(|check| {
+        let why = (check.status != CheckStatus::Pass).then(|| reason(check));
+        (check, (&check.id, check.status, why))
+    }));
+    let lines = groups.iter().flat_map(|((id, _, why), group)| {
+        let head = head(group[0], ids);
+        let mut lines = match group.as_slice() {
+            // An expectation that is met.
+            met if *id == "expect" && why.is_none() => together(&head, counted(met), ids),
+            [check] => alone(&head, check, ids),
+            several => together(&head, several.iter().map(measured), ids),
         };
-        match groups.iter_mut().find(alike) {
-            Some(group) => group.push(check),
-            None => groups.push(vec![check]),
+        let message = match group.as_slice() {
+            [check] => why.map(|_| check.message.as_str()),
+            _ => *why,
+        };
+        if let Some(message) = message.filter(|message| !message.is_empty()) {
+            let message = format!("      {}", words::one_line(message));
+            lines.extend(wrap(&message, WIDTH, "      "));
         }
-    }
-    let mut lines = Vec::new();
-    for group in &groups {
-        match group.as_slice() {
-            met if is_met(met[0]) => lines.extend(counted(met, ids)),
-            [check] => lines.extend(alone(check, ids)),
-            several => lines.extend(together(several, ids)),
-        }
-    }
-    lines
+        lines
+    });
+    lines.collect()
 }
 
-/// An expectation of the scene that is met.
-fn is_met(check: &Check) -> bool {
-    check.id == "expect" && check.status == CheckStatus::Pass
-}
-
-/// How many of each engine's keys are as expected: `symplectic_euler 3, explicit_euler 1`.
-fn counted(checks: &[&Check], ids: usize) -> Vec<String> {
-    let mut counts: Vec<(&str, usize)> = Vec::new();
-    for check in checks {
-        let engine = check.subject.split(' ').next().unwrap_or_default();
-        match counts.iter_mut().find(|(known, _)| *known == engine) {
-            Some((_, count)) => *count += 1,
-            None => counts.push((engine, 1)),
-        }
-    }
-    let texts: Vec<String> = counts
-        .iter()
-        .map(|(engine, count)| format!("{} {count}", words::one_line(engine)))
-        .collect();
-    let line = format!("{}  {}", head(checks[0], ids), texts.join(", "));
-    wrap(&line, WIDTH, &" ".repeat(8 + ids))
+/// How many of each engine's keys are as expected: `symplectic_euler 3`, `explicit_euler 1`.
+fn counted(checks: &[&Check]) -> impl Iterator<Item = String> {
+    let engine = |check: &&Check| check.subject.split(' ').next().map(words::one_line);
+    let counts = grouped(checks.iter().map(|check| ((), engine(check)))).into_iter();
+    counts.map(|(engine, keys)| format!("{} {}", engine.unwrap_or_default(), keys.len()))
 }
 
 /// What a check says, without whom it is about.
@@ -150,34 +134,24 @@ fn head(check: &Check, ids: usize) -> String {
     format!("{}  {id}", mark(tone, word))
 }
 
-fn alone(check: &Check, ids: usize) -> Vec<String> {
+/// What was measured beside its bound.
+fn alone(head: &str, check: &Check, ids: usize) -> Vec<String> {
     let measured = words::measured(check);
     let room = WIDTH - 4 - ids - width(&measured) - 6;
     let subject = clip(&words::one_line(&check.subject), room);
-    let mut lines = vec![format!("{}  {subject}  {measured}", head(check, ids))];
-    if check.status != CheckStatus::Pass && !check.message.is_empty() {
-        let message = format!("      {}", words::one_line(&check.message));
-        lines.extend(wrap(&message, WIDTH, "      "));
-    }
-    lines
+    vec![format!("{head}  {subject}  {measured}")]
 }
 
-/// Several with the same result: whom it is about, what was measured, and what there is to say.
-fn together(checks: &[&Check], ids: usize) -> Vec<String> {
-    let first = checks[0];
-    let texts: Vec<String> = checks
-        .iter()
-        .map(|check| {
-            let measured = check.measured.map(words::quantity).unwrap_or_default();
-            let text = format!("{} {measured}", words::one_line(&check.subject));
-            text.trim_end().to_owned()
-        })
-        .collect();
-    let line = format!("{}  {}", head(first, ids), texts.join(", "));
-    let mut lines = wrap(&line, WIDTH, &" ".repeat(8 + ids));
-    if first.status != CheckStatus::Pass {
-        let message = format!("      {}", words::one_line(reason(first)));
-        lines.extend(wrap(&message, WIDTH, "      "));
-    }
-    lines
+/// Of one check among several with the same result: whom it is about and what was measured.
+fn measured(check: &&Check) -> String {
+    let measured = check.measured.map(words::quantity).unwrap_or_default();
+    let text = format!("{} {measured}", words::one_line(&check.subject));
+    text.trim_end().to_owned()
+}
+
+/// Several texts after their head.
+fn together(head: &str, texts: impl Iterator<Item = String>, ids: usize) -> Vec<String> {
+    let texts: Vec<String> = texts.collect();
+    let line = format!("{head}  {}", texts.join(", "));
+    wrap(&line, WIDTH, &" ".repeat(8 + ids))
 }
