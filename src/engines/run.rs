@@ -278,20 +278,6 @@ impl Run {
     }
 }
 
-impl Engine for Run {
-    fn step(&mut self) -> Result<(), StepError> {
-        self.advance(1)
-    }
-
-    fn state(&self) -> &State {
-        self.engine.state()
-    }
-
-    fn counts(&self) -> Counts {
-        self.engine.counts()
-    }
-}
-
 impl Drop for Run {
     fn drop(&mut self) {
         if let Some(tally) = &self.tally {

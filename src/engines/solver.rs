@@ -229,8 +229,21 @@ impl Solver {
         system: &ParticleSystem,
         setting: &Setting,
     ) -> Result<Run, Unsupported> {
+        Ok(Run::new(self.engine(scene, system, setting)?, *setting))
+    }
+
+    /// What a [`Run`] takes the steps of, bare: to hold an engine itself against a law.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start).
+    pub fn engine(
+        &self,
+        scene: &Scene,
+        system: &ParticleSystem,
+        setting: &Setting,
+    ) -> Result<Box<dyn Engine>, Unsupported> {
         let (system, timestep) = (system.clone(), setting.timestep());
-        let engine: Box<dyn Engine> = match &self.source {
+        Ok(match &self.source {
             Source::Method(method) => {
                 system.admits(&self.id, method.takes())?;
                 let settings = Settings::stated(scene.solver.tolerance);
@@ -256,8 +269,7 @@ impl Solver {
                     reason: "another program takes no single steps".to_owned(),
                 });
             }
-        };
-        Ok(Run::new(engine, *setting))
+        })
     }
 }
 

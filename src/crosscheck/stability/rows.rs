@@ -3,7 +3,7 @@
 use super::path::Path;
 use super::{StabilityPlan, explain};
 use crate::crosscheck::Host;
-use crate::engines::{Engine, Run, Setting, Solver, Tally, Unsupported};
+use crate::engines::{Run, Setting, Solver, Tally, Unsupported};
 use crate::integrators::Method;
 use crate::measure::stability::{Limit, Linearised, Measured, Prediction, Tightest, measure};
 use crate::outcome::{Kind, StabilityRow, TightestLimit};
@@ -32,7 +32,7 @@ const UNCOUNTED: u64 = 150;
 /// Passes over all particles a step takes, from a few steps of the scene: counted, not timed, so that
 /// every machine searches alike.
 fn price(scene: &Scene, solver: &Solver, timestep: f64, tally: &Arc<Tally>) -> u64 {
-    let Ok(mut run) = run(solver, scene, timestep, tally) else {
+    let Ok(mut run) = start(solver, scene, timestep, tally) else {
         return BESIDE;
     };
     // A step that fails ends the sample.
@@ -71,7 +71,7 @@ pub(super) struct Asked<'a> {
 }
 
 /// A fresh run of a scene at a step, s, counted with the others where it is an integrator's.
-fn run(
+pub(super) fn start(
     solver: &Solver,
     scene: &Scene,
     timestep: f64,
@@ -83,16 +83,6 @@ fn run(
         Kind::Integrator => run.tallied(tally),
         Kind::Rapier | Kind::External => run,
     })
-}
-
-/// The same for what measures limits.
-pub(super) fn start(
-    solver: &Solver,
-    scene: &Scene,
-    timestep: f64,
-    tally: &Arc<Tally>,
-) -> Result<Box<dyn Engine>, Unsupported> {
-    Ok(Box::new(run(solver, scene, timestep, tally)?))
 }
 
 /// The method whose step a solver takes, as often as this in one timestep.

@@ -30,8 +30,8 @@ fn theirs(scene: &Scene, id: &str, timestep: f64) -> Box<dyn Engine> {
 
 fn build(solver: &Solver, scene: &Scene, timestep: f64) -> Box<dyn Engine> {
     let system = ParticleSystem::new(scene);
-    let run = solver.start(scene, &system, &Setting::step(timestep));
-    Box::new(run.unwrap_or_else(|e| panic!("{}: {e}", scene.name)))
+    let engine = solver.engine(scene, &system, &Setting::step(timestep));
+    engine.unwrap_or_else(|e| panic!("{}: {e}", scene.name))
 }
 
 /// rapier with so many substeps and sweeps, none after the drift.

@@ -10,9 +10,9 @@ fn of(row: &Solver, scene: &Scene) -> Identity {
     let h = scene.solver.timestep;
     let system = ParticleSystem::new(scene);
     let mut engine = row
-        .start(scene, &system, &Setting::step(h))
+        .engine(scene, &system, &Setting::step(h))
         .expect("supported");
-    name(scene, &record(&mut engine, h, 200))
+    name(scene, &record(engine.as_mut(), h, 200))
 }
 
 fn engine_row(id: &str) -> Solver {

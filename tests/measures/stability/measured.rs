@@ -6,7 +6,7 @@ use crate::testkit::{crossed, method};
 use rayon::prelude::*;
 use springcheck::conformance::measured_limit;
 use springcheck::conformance::systems::Oscillator;
-use springcheck::engines::{Engine, IntegratorEngine, Setting, Unsupported};
+use springcheck::engines::{Run, Setting, Solver, Unsupported};
 use springcheck::integrators::{EnergyLaw, Method, REGISTRY, Settings, Stable};
 use springcheck::measure::stability::{Limit, Make, Measured, classify, measure};
 use springcheck::outcome::Cell;
@@ -66,14 +66,10 @@ particles:
     )
 }
 
-fn engine(
-    method: &'static Method,
-) -> impl Fn(&Scene, f64) -> Result<Box<dyn Engine>, Unsupported> + Sync {
+fn engine(method: &'static Method) -> impl Fn(&Scene, f64) -> Result<Run, Unsupported> + Sync {
     move |scene, h| {
         let system = ParticleSystem::new(scene);
-        let settings = Settings::default();
-        let engine = IntegratorEngine::new(scene, system, method, &settings, h);
-        Ok(Box::new(engine))
+        Solver::method(method).start(scene, &system, &Setting::step(h))
     }
 }
 
@@ -196,7 +192,7 @@ fn the_law_of_limits_kills_mutants() {
             square(&s.v[3..]) + 49.0 * square(&x)
         };
         let start = energy(engine.state());
-        (0..20_000).all(|_| engine.step().is_ok() && energy(engine.state()) < 1e4 * start)
+        (0..20_000).all(|_| engine.advance(1).is_ok() && energy(engine.state()) < 1e4 * start)
     };
     let (mut low, mut high) = (0.1 / W, 0.4 / W);
     while high - low > 1e-4 * low {
@@ -304,7 +300,7 @@ fn the_test_equation_is_smooth_then_oscillates_then_explodes() {
         let mut engine = make(&scene, h).unwrap();
         let mut v = vec![1.0_f64];
         for _ in 0..20 {
-            engine.step().unwrap();
+            engine.advance(1).unwrap();
             v.push(engine.state().v[0]);
         }
         let turns = v.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
@@ -316,7 +312,7 @@ fn the_test_equation_is_smooth_then_oscillates_then_explodes() {
 }
 
 /// Stable as symplectic Euler, but for a window.
-fn with_a_window(scene: &Scene, h: f64) -> Result<Box<dyn Engine>, Unsupported> {
+fn with_a_window(scene: &Scene, h: f64) -> Result<Run, Unsupported> {
     let id = if (0.1..0.15).contains(&h) {
         "explicit_euler"
     } else {
@@ -368,7 +364,7 @@ fn a_motion_hidden_by_symmetry_is_shaken_out() {
     pushed.particles[1].velocity = [1.0, 0.0, 0.0];
     let mut engine = make(&pushed, 0.018).unwrap();
     for _ in 0..20_000 {
-        engine.step().unwrap();
+        engine.advance(1).unwrap();
     }
     assert!(engine.state().v[3].abs() < 1e-6 && engine.state().v[4] == 0.0);
 }
@@ -380,10 +376,9 @@ fn chain(links: usize, stiffness: f64) -> Scene {
     scene
 }
 
-fn rapier(scene: &Scene, h: f64) -> Result<Box<dyn Engine>, Unsupported> {
+fn rapier(scene: &Scene, h: f64) -> Result<Run, Unsupported> {
     let rapier = springcheck::engines::find("rapier").unwrap();
-    let run = rapier.start(scene, &ParticleSystem::new(scene), &Setting::step(h))?;
-    Ok(Box::new(run))
+    rapier.start(scene, &ParticleSystem::new(scene), &Setting::step(h))
 }
 
 #[test]
@@ -430,7 +425,7 @@ fn a_cell_is_what_its_run_does() {
     ] {
         assert_eq!(cell(id, z, zeta), expected, "{id}, z = {z}, ζ = {zeta}");
     }
-    let unsupported = |_: &Scene, _: f64| -> Result<Box<dyn Engine>, Unsupported> {
+    let unsupported = |_: &Scene, _: f64| -> Result<Run, Unsupported> {
         Err(Unsupported {
             reason: "not here".into(),
         })

@@ -10,7 +10,7 @@ mod watched;
 
 use super::Limit;
 use super::matrix::Matrix;
-use crate::engines::{Engine, Unsupported};
+use crate::engines::{Run, Unsupported};
 use crate::measure::energy_scale;
 use crate::outcome::Cell;
 use crate::scene::Scene;
@@ -21,8 +21,8 @@ use search::{Search, Stop};
 use setup::Setup;
 use watched::{ExcessEnergy, Runs};
 
-/// Makes an engine at a timestep, s, at the scene's start, or says why there can be none.
-pub type Make<'a> = dyn Fn(&Scene, f64) -> Result<Box<dyn Engine>, Unsupported> + Sync + 'a;
+/// Starts a run of a scene at a timestep, s, or says why there can be none.
+pub type Make<'a> = dyn Fn(&Scene, f64) -> Result<Run, Unsupported> + Sync + 'a;
 
 /// What running found.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,13 +11,13 @@
 
 use super::Make;
 use super::perturbation::Perturbation;
-use crate::engines::{Engine, Unsupported};
+use crate::engines::{Run, Unsupported};
 use crate::integrators::StepError;
 use crate::scene::Scene;
 use crate::system::{ParticleSystem, State, System};
 
 /// Runs at one timestep from different starts, advanced together.
-pub(super) struct Runs(Vec<Box<dyn Engine>>);
+pub(super) struct Runs(Vec<Run>);
 
 /// What a linear solve counts as, in force passes.
 const SOLVE: u64 = 3;
@@ -25,8 +25,8 @@ const SOLVE: u64 = 3;
 impl Runs {
     /// One from the start of each scene, at `h` seconds.
     pub fn new(make: &Make, h: f64, scenes: &[&Scene]) -> Result<Self, Unsupported> {
-        let engines = scenes.iter().map(|scene| make(scene, h));
-        Ok(Self(engines.collect::<Result<_, _>>()?))
+        let runs = scenes.iter().map(|scene| make(scene, h));
+        Ok(Self(runs.collect::<Result<_, _>>()?))
     }
 
     pub fn len(&self) -> usize {
@@ -35,7 +35,7 @@ impl Runs {
 
     /// A step of each.
     pub fn step(&mut self) -> Result<(), StepError> {
-        self.0.iter_mut().try_for_each(|engine| engine.step())
+        self.0.iter_mut().try_for_each(|run| run.advance(1))
     }
 
     pub fn state(&self, run: usize) -> &State {
@@ -51,8 +51,8 @@ impl Runs {
 
     /// Force passes so far, linear solves turned into such, where engines count them.
     pub fn passes(&self) -> u64 {
-        let passes = self.0.iter().map(|engine| {
-            let counts = engine.counts();
+        let passes = self.0.iter().map(|run| {
+            let counts = run.counts();
             counts.all_force_passes().unwrap_or(0) + SOLVE * counts.linear_solves.unwrap_or(0)
         });
         passes.sum()
