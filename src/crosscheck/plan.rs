@@ -30,7 +30,7 @@ pub struct Choice {
 /// What becomes of what a scene expects of its engines.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum Expectations {
-    /// Nobody asks.
+    /// They are not asked for: no check.
     #[default]
     Ignored,
     /// A check for each, as [`expect::check`](super::expect::check) makes them.

@@ -53,7 +53,7 @@ pub type BuildIntegrator = dyn Fn() -> Box<dyn Integrator> + Send + Sync;
 /// What a solver runs at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Setting {
-    /// So many steps of this size, s.
+    /// A number of equal steps of this size, s.
     Steps { timestep: f64, steps: u64 },
     /// The tolerance of an adaptive pair, relative to the scene's size.
     Tolerance {

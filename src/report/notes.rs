@@ -7,7 +7,7 @@ pub struct Note {
     pub sentence: String,
 }
 
-/// Who says what, with equal sentences said once: by `subject` of all who say them.
+/// Sentences with their subjects. Equal sentences stand once, with one text for all their subjects.
 pub fn notes<W>(
     said: impl Iterator<Item = (W, String)>,
     subject: impl Fn(&[W]) -> String,
