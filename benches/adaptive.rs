@@ -2,11 +2,11 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use springcheck::crosscheck;
-use springcheck::engines::{Limits, Run, Setting, Solver, Unwatched};
 use springcheck::integrators::adaptive::{self, Pair};
 use springcheck::integrators::{self, Method};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
-use springcheck::system::ParticleSystem;
+use springcheck::solvers::{Limits, Run, Setting, Solver, Unwatched};
 use springcheck::truth::{self, Demand, NoStore};
 use std::fmt::Write;
 

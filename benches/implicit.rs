@@ -2,8 +2,8 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use springcheck::integrators::{self, Settings};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
-use springcheck::system::ParticleSystem;
 use std::fmt::Write;
 use std::hint::black_box;
 

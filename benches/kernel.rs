@@ -7,10 +7,10 @@ mod testkit;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use rayon::ThreadPoolBuilder;
-use springcheck::effects::{Effect, Gravity, Springs};
 use springcheck::integrators::{self, Settings};
+use springcheck::physics::effects::{Effect, Gravity, Springs};
+use springcheck::physics::{ForceKinds, ParticleSystem, Power, System};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{ForceKinds, ParticleSystem, Power, System};
 use std::hint::black_box;
 use testkit::cloth::{cloth, shuffled};
 

@@ -2,11 +2,11 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use springcheck::crosscheck;
-use springcheck::engines::{Limits, Setting, Solver, Unwatched};
 use springcheck::integrators::{self, Settings};
 use springcheck::measure::{self, EnergySeries};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
-use springcheck::system::ParticleSystem;
+use springcheck::solvers::{Limits, Setting, Solver, Unwatched};
 use springcheck::trajectory::Recorder;
 use std::fmt::Write;
 use std::hint::black_box;

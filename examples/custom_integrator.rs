@@ -6,11 +6,11 @@
 
 use springcheck::conformance::{Claims, check};
 use springcheck::crosscheck::{self, Choice, Plan, Quiet};
-use springcheck::engines::Solver;
 use springcheck::integrators::{Integrator, PerStep, StepError};
 use springcheck::outcome::CheckStatus;
+use springcheck::physics::{State, System};
 use springcheck::scene;
-use springcheck::system::{State, System};
+use springcheck::solvers::Solver;
 use std::process::ExitCode;
 
 /// Kicks and drifts with these coefficients, in turn.

@@ -4,8 +4,8 @@
 mod testkit;
 
 use springcheck::integrators::{self, Settings};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::ParticleSystem;
 
 #[global_allocator]
 static ALLOCATOR: dhat::Alloc = dhat::Alloc;

@@ -3,10 +3,10 @@
 use super::rapier::Custom;
 use anyhow::{Context, bail};
 use springcheck::crosscheck::Choice;
-use springcheck::engines::{self, Solver};
 use springcheck::integrators::{self, adaptive};
 use springcheck::outcome::Kind;
 use springcheck::scene::Scene;
+use springcheck::solvers::{self, Solver};
 
 /// The integrators of these ids in this order, all of them for `all`, and the `usual` ones for none.
 pub fn integrators(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
@@ -48,8 +48,8 @@ pub fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Re
 /// The engines of these ids, none for `none`, and the `usual` ones without ids; after them the rapier rows
 /// with settings of the user's own, the same settings once.
 pub fn engines(ids: &[String], rapier: &[Custom], usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
-    let known = || format!("engines: {}, or none", engines::rapier::IDS.join(", "));
-    let find = |id: &str| engines::find(id).filter(|solver| solver.kind == Kind::Rapier);
+    let known = || format!("engines: {}, or none", solvers::rapier::IDS.join(", "));
+    let find = |id: &str| solvers::find(id).filter(|solver| solver.kind == Kind::Rapier);
     let mut chosen = match ids {
         [] => of_kind(usual, Kind::Rapier),
         [none] if none == "none" => Vec::new(),

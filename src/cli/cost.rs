@@ -12,9 +12,9 @@ use super::time::Time;
 use anyhow::{Context, bail};
 use springcheck::crosscheck;
 use springcheck::crosscheck::cost::{self, CostChoice, CostPlan};
-use springcheck::engines::Solver;
 use springcheck::outcome::Report;
 use springcheck::scene::{self, Scene};
+use springcheck::solvers::Solver;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -2,12 +2,13 @@
 
 use clap::ValueEnum;
 use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
-use springcheck::engines::catalogue;
+use springcheck::integrators;
 use springcheck::integrators::adaptive::{self, Estimate};
 use springcheck::integrators::{EnergyLaw, Method, PerStep, Stable};
 use springcheck::measure::identify::{MISTAKES, Mistake, Wrong};
 use springcheck::outcome::Kind;
-use springcheck::{effects, integrators};
+use springcheck::physics::effects;
+use springcheck::solvers::catalogue;
 use std::process::ExitCode;
 
 #[derive(Debug, clap::Args)]

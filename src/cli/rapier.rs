@@ -1,7 +1,7 @@
 //! `--rapier dt=0.001,iterations=8,pgs=4`: one more rapier row.
 
-use springcheck::engines::Solver;
-use springcheck::engines::rapier::Settings;
+use springcheck::solvers::Solver;
+use springcheck::solvers::rapier::Settings;
 use std::str::FromStr;
 
 /// rapier's settings as the flag states them; what it leaves out keeps rapier's default.

@@ -10,9 +10,9 @@ use super::shown::{self, HUMAN, formats};
 use anyhow::{Context, bail};
 use springcheck::crosscheck::stability::{MapPlan, Range, StabilityPlan, Vary};
 use springcheck::crosscheck::{Choice, Estimate, Plan};
-use springcheck::engines;
 use springcheck::outcome::{Report, StabilityRow};
 use springcheck::scene::{self, Scene, limits};
+use springcheck::solvers;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -119,7 +119,7 @@ fn read(args: &Args) -> anyhow::Result<Scene> {
 fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> {
     chosen::without_timestep(&args.rapier, "searched; leave dt out")?;
     let mut usual = Choice::all_methods(scene);
-    usual.extend(engines::find("rapier"));
+    usual.extend(solvers::find("rapier"));
     let map = match &args.vary {
         None => None,
         Some(text) => Some(MapPlan {

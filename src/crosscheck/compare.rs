@@ -2,10 +2,10 @@
 
 use super::plan::{Choice, Expectations, Orders, Plan};
 use super::{Host, Measured, identity};
-use crate::engines::Solver;
-use crate::engines::external::{Failure, Program, Recording, Task};
 use crate::outcome::{Beside, Body, Outcome, Report, Series};
 use crate::scene::Scene;
+use crate::solvers::Solver;
+use crate::solvers::external::{Failure, Program, Recording, Task};
 use crate::trajectory::{Rows, SaveError};
 use crate::truth::Demand;
 use std::sync::Arc;

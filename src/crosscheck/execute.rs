@@ -2,9 +2,9 @@
 
 use super::plan::{Case, Label, Plan};
 use super::program;
-use crate::engines::external::Program;
-use crate::engines::{Counts, Ended, Limits, Observer, Unsupported, Unwatched};
 use crate::outcome::{Status, WallTime};
+use crate::solvers::external::Program;
+use crate::solvers::{Counts, Ended, Limits, Observer, Unsupported, Unwatched};
 use crate::trajectory::{Recorder, SaveError, Trajectory};
 use crate::truth::{NoStore, Store};
 use rayon::prelude::*;

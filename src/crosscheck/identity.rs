@@ -5,7 +5,7 @@ use super::plan::{Case, Plan};
 use crate::integrators::Settings;
 use crate::measure::identify::{Question, first_fault, identify, moved_anchor};
 use crate::outcome::{Fault, Identified, Kind};
-use crate::system::ParticleSystem;
+use crate::physics::ParticleSystem;
 use crate::trajectory::Rows;
 use std::borrow::Cow;
 

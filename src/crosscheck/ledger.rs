@@ -2,11 +2,11 @@
 
 use super::execute::Run;
 use super::plan::Plan;
-use crate::effects::Effect;
 use crate::measure::twin;
 use crate::outcome::{Check, CheckStatus, EffectUse, Kind, SceneFacts};
+use crate::physics::ParticleSystem;
+use crate::physics::effects::Effect;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
 use std::time::{Duration, Instant};
 
 pub(super) fn scene_facts(plan: &Plan, runs: &[Run], scale: Option<f64>) -> SceneFacts {

@@ -25,9 +25,9 @@ pub use execute::{Host, Quiet, Saver};
 pub use expect::names;
 pub use plan::{Case, Choice, Estimate, Expectations, Label, Orders, Plan};
 
-use crate::engines::Limits;
 use crate::measure;
 use crate::outcome::{Beside, Body, Check, Figures, Header, Outcome, Report, Series};
+use crate::solvers::Limits;
 use crate::trajectory::SaveError;
 use crate::truth;
 use truths::Truths;

@@ -4,7 +4,7 @@ use super::plan::{Orders, Plan};
 use crate::integrators::Method;
 use crate::measure::order::{Study, check};
 use crate::outcome::{Check, CheckStatus};
-use crate::system::System;
+use crate::physics::System;
 use crate::truth::Truth;
 use rayon::prelude::*;
 

@@ -1,10 +1,10 @@
 //! What will run: each chosen solver at each timestep.
 
-use crate::engines::{self, Setting, Solver, Unsupported};
 use crate::integrators;
 use crate::outcome::Kind;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::{self, Setting, Solver, Unsupported};
 use crate::truth::Demand;
 use std::time::{Duration, Instant};
 
@@ -70,7 +70,7 @@ impl Choice {
             .iter()
             .filter_map(|id| integrators::find(id));
         let mut solvers = with_own_first(scene, usual.map(Solver::method));
-        solvers.extend(DEFAULT_ENGINES.iter().filter_map(|id| engines::find(id)));
+        solvers.extend(DEFAULT_ENGINES.iter().filter_map(|id| solvers::find(id)));
         Self {
             solvers,
             timesteps: vec![scene.solver.timestep],
@@ -140,7 +140,7 @@ impl Case {
     ///
     /// # Errors
     /// [`Unsupported`] as [`Solver::start`] has it.
-    pub fn start(&self, plan: &Plan) -> Result<engines::Run, Unsupported> {
+    pub fn start(&self, plan: &Plan) -> Result<solvers::Run, Unsupported> {
         self.solver.start(plan.scene, &plan.system, &self.setting())
     }
 }

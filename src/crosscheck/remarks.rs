@@ -4,7 +4,7 @@ use super::plan::{Case, Plan};
 use super::step_limit::StepLimits;
 use crate::integrators::{EnergyLaw, Method, PerStep, Settings, Stable};
 use crate::outcome::{Energy, EnergyClass, Outcome, Status};
-use crate::system::System;
+use crate::physics::System;
 
 pub(super) fn remarks(
     plan: &Plan,

@@ -2,7 +2,7 @@
 
 use super::plan::{Case, Plan};
 use crate::measure::stability::{Limit, Linearised, Prediction};
-use crate::system::ParticleSystem;
+use crate::physics::ParticleSystem;
 
 /// The scene linearised about its start, if anybody here has a limit.
 pub(super) struct StepLimits(Option<Linearised>);

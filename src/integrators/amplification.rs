@@ -14,7 +14,7 @@ pub enum Amplification {
     Composition(&'static [Stage], DampingTreatment),
     /// (I + h C + h² K') v1 = v0 - h K x0, x1 = x0 + h v1: linearly implicit Euler whose matrix holds
     /// the stiffness along springs, K', only
-    /// ([`Linearization::Material`](crate::system::Linearization)).
+    /// ([`Linearization::Material`](crate::physics::Linearization)).
     MaterialImplicit,
 }
 

@@ -5,7 +5,7 @@ use super::{
     Amplification, Coefficients, DampingTreatment, EnergyLaw, Exact, Method, Oscillator, PerStep,
     Scheme, Stable, Stage, Tableau,
 };
-use crate::system::Linearization;
+use crate::physics::Linearization;
 use nalgebra::Complex;
 
 /// What a method's author writes. Everything else follows: [`Method::new`].

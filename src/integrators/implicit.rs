@@ -3,7 +3,7 @@
 
 use super::newton::Newton;
 use super::{Coefficients, Integrator, Row, Settings, StepError, Tableau, axpy, fit, refuse};
-use crate::system::{ForceKinds, Linearization, Power, State, System};
+use crate::physics::{ForceKinds, Linearization, Power, State, System};
 use std::f64::consts::SQRT_2;
 
 /// Which member of the family a stepper is.

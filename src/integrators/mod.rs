@@ -17,7 +17,7 @@ pub use implicit::{Implicit, Scheme};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
 
-use crate::system::{ForceKinds, Refused, State, System};
+use crate::physics::{ForceKinds, Refused, State, System};
 use crate::vector::axpy;
 use std::sync::LazyLock;
 
@@ -35,7 +35,7 @@ pub trait Integrator: Send {
     fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError>;
 
     /// The kinds of forces it is right for, to its order. What it does not take is refused before a
-    /// run starts ([`ParticleSystem::admits`](crate::system::ParticleSystem::admits)).
+    /// run starts ([`ParticleSystem::admits`](crate::physics::ParticleSystem::admits)).
     fn takes(&self) -> ForceKinds {
         ForceKinds::ANY
     }

@@ -1,7 +1,7 @@
 //! Explicit Runge-Kutta methods: one stepper, a tableau a method.
 
 use super::{Coefficients, Integrator, Row, StepError, axpy, fit};
-use crate::system::{Power, State, System};
+use crate::physics::{Power, State, System};
 use crate::vector;
 
 /// A tableau for the first-order system (x, v)' = (v, a), s stages.

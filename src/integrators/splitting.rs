@@ -2,7 +2,7 @@
 
 use super::velocity_flow::VelocityFlow;
 use super::{Coefficients, Integrator, Row, StepError, axpy, fit, refuse};
-use crate::system::{ForceKinds, State, System};
+use crate::physics::{ForceKinds, State, System};
 use crate::vector;
 
 /// One factor of the composition; its coefficient multiplies the step.

@@ -11,7 +11,7 @@
 
 use super::{StepError, axpy, fit, largest, phi1, worst_particle};
 use crate::krylov::Space;
-use crate::system::{ForceKinds, State, System};
+use crate::physics::{ForceKinds, State, System};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Taylor terms before Lanczos takes over.

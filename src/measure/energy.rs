@@ -1,9 +1,9 @@
 //! The energy balance of a run, and the verdict on it.
 
 use super::trend::trend;
-use crate::effects::Effect;
 use crate::outcome::{Energy, EnergyClass};
-use crate::system::{ParticleSystem, System, Work};
+use crate::physics::effects::Effect;
+use crate::physics::{ParticleSystem, System, Work};
 use crate::trajectory::Trajectory;
 use std::collections::BTreeMap;
 

@@ -1,8 +1,8 @@
 //! Linear and angular momentum where the scene conserves them.
 
 use crate::outcome::Momentum;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
 use crate::trajectory::Trajectory;
 use crate::truth::farthest;
 
@@ -10,7 +10,7 @@ use crate::truth::farthest;
 /// something is fixed or an effect does not keep it. None where velocities are not known.
 pub fn momentum(scene: &Scene, system: &ParticleSystem, run: &Trajectory) -> Option<Momentum> {
     let free = scene.particles.iter().all(|p| !p.fixed);
-    let keeps = |keeps: fn(&dyn crate::effects::Effect) -> bool| {
+    let keeps = |keeps: fn(&dyn crate::physics::effects::Effect) -> bool| {
         free && system.effects().iter().all(|(_, e)| keeps(e.as_ref()))
     };
     let linear = keeps(|e| e.keeps_momentum());

@@ -8,10 +8,10 @@ mod claim;
 mod lockstep;
 mod shake;
 
-use crate::engines::rapier::Settings;
-use crate::engines::{Solver, Unsupported, find};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::rapier::Settings;
+use crate::solvers::{Solver, Unsupported, find};
 use claim::Claim;
 use lockstep::{Path, distance};
 use shake::{condition, nudged, shaken};

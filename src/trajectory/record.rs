@@ -3,8 +3,8 @@
 //! A [`Recorder`] fills it while a run goes on, a [`RowRecorder`] from the rows of one that is over.
 
 use super::{Precision, Rows};
-use crate::engines::Observer;
-use crate::system::{State, Work};
+use crate::physics::{State, Work};
+use crate::solvers::Observer;
 
 /// At most this many instants, both ends included.
 const INSTANTS: u64 = 2_000;

@@ -7,8 +7,8 @@ pub mod closed;
 pub mod converged;
 
 use crate::outcome::TruthKind;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
 use serde::{Deserialize, Serialize};
 
 /// A known motion.

@@ -1,9 +1,9 @@
 //! Springs and attractions where their ends meet: no direction, so no force along it, and no NaN.
 
 use crate::testkit::swinging_triangle;
-use springcheck::effects::{self, Effect};
+use springcheck::physics::effects::{self, Effect};
+use springcheck::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power};
 use springcheck::scene::{DampingModel, GravitationalPair, Scene};
-use springcheck::system::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power};
 
 /// One spring and one attraction between two particles at the same place.
 fn coincident(model: DampingModel, rest_length: f64) -> Scene {

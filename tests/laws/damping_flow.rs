@@ -5,10 +5,10 @@ use crate::testkit::scenes::{free, spring};
 use crate::testkit::{Build, Random, advance, built, method, own, swinging_triangle};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use springcheck::crosscheck::{Choice, Plan, Quiet};
-use springcheck::engines::Solver;
 use springcheck::integrators::{DampingTreatment, Integrator, Splitting, Stage};
+use springcheck::physics::{Counting, State, System};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
-use springcheck::system::{Counting, State, System};
+use springcheck::solvers::Solver;
 
 /// The kick alone: positions stay where they are.
 const KICK: &[Stage] = &[Stage::Kick(1.0)];

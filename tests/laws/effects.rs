@@ -2,9 +2,9 @@
 //! over the whole registry, on a scene that calls for all of them.
 
 use crate::testkit::{Random, everything, force, sample};
-use springcheck::effects::{self, Effect, EffectRow};
+use springcheck::physics::effects::{self, Effect, EffectRow};
+use springcheck::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power};
 
 fn close(what: &str, found: f64, wanted: f64, scale: f64, tolerance: f64) -> Result<(), String> {
     if (found - wanted).abs() <= tolerance * scale {

@@ -4,14 +4,14 @@
 use crate::testkit::{Random, everything, force, method, sample};
 use nalgebra::{DMatrix, DVector};
 use springcheck::crosscheck::{self, Choice, Plan, Quiet};
-use springcheck::effects::{self, Effect, EffectRow};
-use springcheck::engines::Solver;
 use springcheck::integrators::adaptive::{self, Adaptive};
 use springcheck::integrators::{Method, REGISTRY, Settings, StepError};
 use springcheck::outcome::Status;
+use springcheck::physics::effects::{self, Effect, EffectRow};
+use springcheck::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem};
+use springcheck::physics::{Power, State, System};
 use springcheck::scene::{self, DampingModel};
-use springcheck::system::{ForceKinds, Jacobian, Linearization, ParticleSystem};
-use springcheck::system::{Power, State, System};
+use springcheck::solvers::Solver;
 
 /// f = q B v x e_z on every particle, with this q B, kg/s.
 struct Magnetic(f64, ForceKinds);

@@ -2,9 +2,9 @@
 //! public kit (`conformance`).
 
 use crate::testkit::{Random, everything, force, sample};
-use springcheck::effects::{self, Effect};
+use springcheck::physics::effects::{self, Effect};
+use springcheck::physics::{ForceKinds, Power};
 use springcheck::scene::DampingModel;
-use springcheck::system::{ForceKinds, Power};
 
 /// Total force and torque vanish exactly where the effect says that momentum is kept.
 fn effect_law(effect: &dyn Effect, x: &[f64], v: &[f64]) -> Result<(), String> {

@@ -10,8 +10,8 @@ use springcheck::integrators::{
 };
 use springcheck::measure::order::{Measured, RATIOS, Reason, Study, Verdict, check, observed};
 use springcheck::outcome::CheckStatus;
+use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::Scene;
-use springcheck::system::{ParticleSystem, State, System};
 use springcheck::truth::Motion;
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -8,8 +8,8 @@ use springcheck::conformance::systems::Driven;
 use springcheck::conformance::{self, Claims};
 use springcheck::integrators::{Integrator, Method, REGISTRY, StepError};
 use springcheck::outcome::CheckStatus;
+use springcheck::physics::{Counting, ForceKinds, Jacobian, Linearization, Power, State, System};
 use springcheck::scene::DampingModel;
-use springcheck::system::{Counting, ForceKinds, Jacobian, Linearization, Power, State, System};
 
 const W: f64 = Driven::W;
 

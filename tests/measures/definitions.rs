@@ -3,12 +3,12 @@
 use crate::testkit::scenes::{self, parsed};
 use crate::testkit::{free_triangle, swinging_triangle};
 use springcheck::crosscheck::{Choice, Plan, Quiet};
-use springcheck::engines::{Limits, Setting, Solver};
 use springcheck::integrators;
 use springcheck::measure::{self, deviation};
 use springcheck::outcome::{EnergyClass, Outcome, Report, Status};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{DampingModel, Scene, Wind};
-use springcheck::system::ParticleSystem;
+use springcheck::solvers::{Limits, Setting, Solver};
 use springcheck::trajectory::{Recorder, Trajectory};
 use springcheck::truth::Demand;
 

@@ -2,10 +2,10 @@
 
 use crate::testkit::scenes::parsed;
 use springcheck::crosscheck::{Choice, Plan, Quiet};
-use springcheck::effects;
 use springcheck::outcome::{Deviation, Report};
+use springcheck::physics::effects;
+use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{ParticleSystem, State, System};
 
 /// Explicit Euler and rapier, whose four iterations a step are four steps of symplectic Euler.
 fn report(scene: &Scene, timesteps: &[f64]) -> Report {

@@ -2,10 +2,10 @@
 
 use crate::testkit::scenes::shipped;
 use springcheck::crosscheck::{Choice, Plan, Quiet};
-use springcheck::engines::Solver;
 use springcheck::integrators::{self, Settings};
 use springcheck::outcome::{Kind, Outcome, Report};
 use springcheck::scene::Scene;
+use springcheck::solvers::Solver;
 
 fn circle() -> Scene {
     shipped("oscillator/circle.yml")

@@ -1,7 +1,7 @@
 //! A reference made of another formula than any method under test: Gauss-Legendre with three stages,
 //! order 6.
 
-use springcheck::system::{State, System};
+use springcheck::physics::{State, System};
 use springcheck::truth::{Motion, States};
 use std::sync::Mutex;
 

@@ -10,10 +10,10 @@ pub mod scenes;
 
 pub use springcheck::conformance::Build;
 pub use springcheck::conformance::systems::{Oscillator, free_triangle, swinging_triangle};
-use springcheck::effects::Effect;
 use springcheck::integrators::{Integrator, Method, REGISTRY, Settings};
+use springcheck::physics::effects::Effect;
+use springcheck::physics::{ForceKinds, ParticleSystem, Power, State, System};
 use springcheck::scene::{DampingModel, GravitationalPair, Scene, Wind};
-use springcheck::system::{ForceKinds, ParticleSystem, Power, State, System};
 
 /// All of these in a whole run, which `SPRINGCHECK_WHOLE=1` asks for as CI does; else one in `of`,
 /// beginning with number `at`: what lies in a loop over at least `of` cases that hands in its own number

@@ -4,7 +4,7 @@ pub mod numerics;
 pub mod physics;
 
 use springcheck::integrators::{Integrator, StepError};
-use springcheck::system::{State, System};
+use springcheck::physics::{State, System};
 
 /// One step, written out.
 pub type Step = fn(&dyn System, f64, &mut State);

@@ -4,9 +4,9 @@
 use crate::testkit::scenes::shipped;
 use crate::testkit::{advance, method, own};
 use springcheck::crosscheck::{Choice, Expectations, Orders, Plan, Quiet};
-use springcheck::engines::{Solver, rapier::Settings};
+use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::{self, Scene};
-use springcheck::system::{ParticleSystem, State, System};
+use springcheck::solvers::{Solver, rapier::Settings};
 use springcheck::truth::Demand;
 
 const SIXTIETH: f64 = 1.0 / 60.0;

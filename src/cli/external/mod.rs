@@ -6,9 +6,9 @@ mod tree;
 
 use crate::cli::time::Time;
 use anyhow::bail;
-use springcheck::engines::external::Command;
-use springcheck::engines::{Solver, rapier};
 use springcheck::integrators;
+use springcheck::solvers::external::Command;
+use springcheck::solvers::{Solver, rapier};
 use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ impl FromStr for External {
             name: name.to_owned(),
             command: command
                 .parse()
-                .map_err(|error: springcheck::engines::external::CommandError| error.to_string())?,
+                .map_err(|error: springcheck::solvers::external::CommandError| error.to_string())?,
         })
     }
 }

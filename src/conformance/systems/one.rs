@@ -1,6 +1,6 @@
 //! Systems of one coordinate (the constant force has three) whose motion is known in closed form.
 
-use crate::system::{ForceKinds, Jacobian, Linearization, Power, State, System};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power, State, System};
 
 /// x'' = -w² x - 2 ζ w x', one coordinate, mass 1.
 #[derive(Debug, Clone, Copy)]

@@ -3,10 +3,10 @@
 use super::CostChoice;
 use super::errors::Errors;
 use super::sweep::{Sweep, Swept};
-use crate::engines::Solver;
 use crate::measure::cost::{self, Judged};
 use crate::outcome::{Cost, CostCurve, Kind, TruthKind};
 use crate::scene::Scene;
+use crate::solvers::Solver;
 
 pub(super) fn answer(
     scene: &Scene,

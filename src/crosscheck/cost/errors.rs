@@ -2,8 +2,8 @@
 
 use super::sampler::Samples;
 use crate::outcome::TruthKind;
+use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, System};
 use crate::truth::{States, Truth};
 
 /// Instants of a run that are looked at, at most.

@@ -15,13 +15,13 @@ mod settings;
 mod sweep;
 
 use super::{Choice, Estimate, Host, Label, ledger, truths};
-use crate::engines::rapier::Settings;
-use crate::engines::{self, Limits, Setting, Solver};
 use crate::integrators::adaptive;
 use crate::measure;
 use crate::outcome::{Beside, Body, Header, Report, Series};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::rapier::Settings;
+use crate::solvers::{self, Limits, Setting, Solver};
 use crate::truth::{self, Demand};
 use errors::Errors;
 use rayon::prelude::*;
@@ -66,7 +66,7 @@ impl CostChoice {
         });
         let mut solvers = Choice::all_methods(scene);
         solvers.extend(adaptive::REGISTRY.iter().map(Solver::pair));
-        solvers.extend(engines::find("rapier").into_iter().chain(others));
+        solvers.extend(solvers::find("rapier").into_iter().chain(others));
         Self {
             solvers,
             targets: TARGETS.to_vec(),

@@ -1,10 +1,10 @@
 //! What a run is expected to take on a nominal machine, from what it counts: the same on every machine,
 //! so that all sweep the same settings.
 
-use crate::engines::{Setting, Solver};
 use crate::outcome::Kind;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::{Setting, Solver};
 
 /// Nanoseconds on the nominal machine. A step beside its forces, and each particle in it:
 const STEP: f64 = 30.0;

@@ -2,8 +2,8 @@
 //! cheapest does not hang on where its settings happen to lie.
 
 use super::sweep::{Ground, Sweep, Swept};
-use crate::engines::Setting;
 use crate::measure::cost::reach;
+use crate::solvers::Setting;
 
 /// Attempts for each target.
 const ATTEMPTS: usize = 2;

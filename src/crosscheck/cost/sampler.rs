@@ -1,7 +1,7 @@
 //! States of a run at some instants, few enough to be kept of every run of a sweep.
 
-use crate::engines::{Observer, Setting};
-use crate::system::{State, Work};
+use crate::physics::{State, Work};
+use crate::solvers::{Observer, Setting};
 
 /// States of a run at some instants, the start and the end among them.
 #[derive(Debug, Clone, Default)]

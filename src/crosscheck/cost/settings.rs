@@ -2,11 +2,11 @@
 //! share of the budget ends.
 
 use super::price;
-use crate::engines::{Setting, Solver};
 use crate::integrators::Stable;
 use crate::measure::stability::{Limit, Linearised};
 use crate::outcome::Kind;
 use crate::scene::Scene;
+use crate::solvers::{Setting, Solver};
 
 /// h w_max at which a method starts that is stable at no step, and one that is at every step.
 const NEVER: f64 = 0.2;

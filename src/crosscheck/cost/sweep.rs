@@ -5,11 +5,11 @@ use super::errors::Errors;
 use super::sampler::{Sampler, Samples};
 use super::{price, settings};
 use crate::crosscheck::Host;
-use crate::engines::{Counts, Ended, Limits, Run, Setting, Solver};
 use crate::measure::stability::Linearised;
 use crate::outcome::{CostPoint, Kind, Status};
+use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, System};
+use crate::solvers::{Counts, Ended, Limits, Run, Setting, Solver};
 
 /// A solver and the settings it is planned to run at: one line of the diagram.
 pub(super) struct Sweep {

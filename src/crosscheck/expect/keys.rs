@@ -1,9 +1,9 @@
 //! What a scene may expect something of: the keys of an outcome, a table.
 
-use crate::engines::rapier;
 use crate::integrators;
 use crate::measure::identify::{MISTAKES, Wrong};
 use crate::scene::{Key, KeyKind, Names};
+use crate::solvers::rapier;
 use std::sync::LazyLock;
 
 /// A key's kind before its words are known.

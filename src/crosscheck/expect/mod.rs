@@ -6,9 +6,9 @@ mod keys;
 pub use keys::names;
 
 use super::plan::{Choice, Expectations, Orders};
-use crate::engines::{Solver, catalogue};
 use crate::outcome::{Check, CheckStatus, Kind, Outcome, Report, SceneFacts, Truth};
 use crate::scene::{Expectation, Scene};
+use crate::solvers::{Solver, catalogue};
 use crate::truth::Demand;
 
 /// The id of these checks.

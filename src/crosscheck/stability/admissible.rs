@@ -6,11 +6,11 @@
 //! larger almost everywhere, and what is left of the plane shrinks to the line l = L and to places
 //! from where the ends pass through each other and happen to land well.
 
-use crate::engines::advance;
 use crate::integrators::{self, Integrator, Settings};
 use crate::outcome::{Admissible, AdmissiblePanel};
+use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State};
+use crate::solvers::advance;
 use rayon::prelude::*;
 
 /// The method the picture is about.

@@ -1,10 +1,10 @@
 //! The sentences of a row: what prediction and measurement say, and why they differ.
 
 use super::rows::Asked;
-use crate::engines::Solver;
 use crate::integrators::{Amplification, Stage};
 use crate::measure::stability::{Limit, Measured, Prediction};
 use crate::outcome::StabilityRow;
+use crate::solvers::Solver;
 
 /// Limits are found to this part of themselves.
 const RESOLUTION: f64 = 1e-3;

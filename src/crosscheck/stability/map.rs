@@ -3,11 +3,11 @@
 use super::rows::{as_keys, predicted, start};
 use super::vary::{COUNT, Range, Vary};
 use crate::crosscheck::Host;
-use crate::engines::{Solver, Tally};
 use crate::measure::stability::{Linearised, classify};
 use crate::outcome::{Cell, MapPanel, StabilityMap};
+use crate::physics::ParticleSystem;
 use crate::scene::{Scene, limits};
-use crate::system::ParticleSystem;
+use crate::solvers::{Solver, Tally};
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -13,12 +13,12 @@ pub use map::{BudgetError, MapPlan};
 pub use vary::{COUNT, Range, RangeError, Vary, VaryError};
 
 use super::{Host, ledger};
-use crate::engines::{Solver, Tally};
 use crate::measure;
 use crate::measure::stability::{Linearised, is_linear};
 use crate::outcome::{Beside, Body, Header, Report, Stability, Truth, TruthKind};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::{Solver, Tally};
 use rayon::prelude::*;
 use std::sync::Arc;
 

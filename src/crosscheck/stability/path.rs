@@ -1,11 +1,11 @@
 //! States along a trajectory, where limits are taken again.
 
 use super::StabilityPlan;
-use crate::engines::{Limits, Observer, Setting, Solver};
 use crate::integrators::Method;
 use crate::measure;
 use crate::measure::stability::{Along, Linearised};
-use crate::system::{ParticleSystem, State};
+use crate::physics::{ParticleSystem, State};
+use crate::solvers::{Limits, Observer, Setting, Solver};
 
 /// States kept of a path.
 const STATES: u64 = 100;

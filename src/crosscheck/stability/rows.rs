@@ -3,12 +3,12 @@
 use super::path::Path;
 use super::{StabilityPlan, explain};
 use crate::crosscheck::Host;
-use crate::engines::{Run, Setting, Solver, Tally, Unsupported};
 use crate::integrators::Method;
 use crate::measure::stability::{Limit, Linearised, Measured, Prediction, Tightest, measure};
 use crate::outcome::{Kind, StabilityRow, TightestLimit};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::{Run, Setting, Solver, Tally, Unsupported};
 use std::sync::Arc;
 
 /// Work the search for one limit may take, in particles passed over: some ten seconds. A probe takes

@@ -19,7 +19,7 @@ mod stage;
 mod tests;
 
 use super::{StepError, fit, worst_particle};
-use crate::system::{Jacobian, Linearization, Power, Slope, State, System};
+use crate::physics::{Jacobian, Linearization, Power, Slope, State, System};
 use choose::Kind;
 use matrix::Matrix;
 use search::{Merit, Search};

@@ -10,7 +10,7 @@
 //! Hager & Zhang 2005, SIAM J. Optim. 16.)
 
 use super::stage::{Stage, Trial};
-use crate::system::{ForceKinds, Jacobian, Slope};
+use crate::physics::{ForceKinds, Jacobian, Slope};
 
 /// Share of the decrease its slope promises that Φ has to make (Armijo).
 const ARMIJO: f64 = 1e-4;

@@ -4,8 +4,8 @@ use super::stage::{Stage, Trial};
 use super::*;
 use crate::conformance::systems::swinging_triangle;
 use crate::integrators::{axpy, largest};
+use crate::physics::ParticleSystem;
 use crate::scene::{DampingModel, Particle, Scene, Spring};
-use crate::system::ParticleSystem;
 
 fn particle(position: [f64; 3], fixed: bool, mass: f64) -> Particle {
     Particle {

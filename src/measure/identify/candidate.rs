@@ -1,8 +1,8 @@
 //! What a trajectory may follow: a method, whole or in substeps, or one of the common mistakes.
 
-use crate::engines::advance;
 use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError};
-use crate::system::{ParticleSystem, State, System};
+use crate::physics::{ParticleSystem, State, System};
+use crate::solvers::advance;
 
 /// A scheme to replay: known method, known mistake, or a guess at what went wrong.
 #[derive(Clone)]

@@ -13,8 +13,8 @@ pub use rows::MISTAKES;
 
 use super::{Candidate, Map};
 use crate::integrators::{self, Method};
+use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, System};
 
 /// One way to get it wrong.
 pub struct Mistake {

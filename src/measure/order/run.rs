@@ -1,8 +1,8 @@
 //! One run at one step, held against the truth.
 
-use crate::engines::advance;
 use crate::integrators::Integrator;
-use crate::system::{State, System};
+use crate::physics::{State, System};
+use crate::solvers::advance;
 use crate::truth::{Motion, States, farthest};
 
 /// Makes a fresh integrator for each run.

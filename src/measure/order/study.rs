@@ -3,8 +3,8 @@
 use super::observed::{Observed, Point, RATIOS, Reason, Verdict, observed};
 use super::run::{Build, Grid, Problem};
 use crate::integrators::{self, Method, Settings};
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State, System};
 use crate::truth::Motion;
 use rayon::prelude::*;
 

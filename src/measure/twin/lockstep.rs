@@ -1,9 +1,9 @@
 //! Two engines over the same few instants.
 
-use crate::engines::{Setting, Solver, Unsupported};
 use crate::integrators::{self, StepError};
+use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State};
+use crate::solvers::{Setting, Solver, Unsupported};
 
 /// The states at the start and after each of a few world steps.
 pub(super) struct Path {

@@ -1,7 +1,7 @@
 //! What a closed form is asked for, and the independent groups it falls into.
 
+use crate::physics::{ParticleSystem, State};
 use crate::scene::{DampingModel, Scene, Spring};
-use crate::system::{ParticleSystem, State};
 use nalgebra::Vector3;
 
 /// A scene from t = 0 to `until`.

@@ -6,7 +6,7 @@ use super::mesh::Mesh;
 use super::rate::fastest_rate;
 use super::reference::STEPS;
 use super::stepper::Precise;
-use crate::system::{State, System};
+use crate::physics::{State, System};
 
 /// Bytes of kept states.
 const MEMORY: usize = 10 << 20;

@@ -8,7 +8,7 @@ use super::noise::{MAGNIFIED, Noisy};
 use super::rate::scatter;
 use super::reference::STEPS;
 use super::stepper::{Precise, Stepper, integrate};
-use crate::system::System;
+use crate::physics::System;
 use crate::truth::{States, farthest};
 
 /// Estimates closer than this, relative to the size, have converged; and steps whose own error is

@@ -33,8 +33,8 @@ pub use reference::{Reference, SharedSystem};
 pub use stepper::{Precise, Stepper};
 
 use super::Store;
+use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State};
 use halving::{Ended, Halved, Wanted, halve};
 use level::Level;
 use reference::{Record, STEPS};

@@ -1,6 +1,6 @@
 //! The fastest rate of a system at one state: what decides how small steps must be.
 
-use crate::system::{State, System};
+use crate::physics::{State, System};
 use crate::truth::farthest;
 
 /// More change little: a factor of two in the rate is one halving.

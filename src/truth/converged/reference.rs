@@ -3,7 +3,7 @@
 use super::dormand_prince::DormandPrince;
 use super::mesh::Mesh;
 use super::stepper::{Precise, Stepper};
-use crate::system::System;
+use crate::physics::System;
 use crate::truth::{Motion, States};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

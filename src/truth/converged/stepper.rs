@@ -2,7 +2,7 @@
 //! advance them, and whole integrations.
 
 use super::mesh::Mesh;
-use crate::system::{State, System};
+use crate::physics::{State, System};
 use crate::truth::States;
 
 /// Positions and velocities whose updates are summed with compensation (Kahan 1965, in Knuth's

@@ -1,8 +1,8 @@
 //! What `run --save` writes comes back to the last bit.
 
 use super::{CHAIN, expected, scene};
-use springcheck::engines::Observer;
-use springcheck::system::State;
+use springcheck::physics::State;
+use springcheck::solvers::Observer;
 use springcheck::trajectory::{self, CsvWriter, NpzWriter, Precision, Rows};
 use std::io::Cursor;
 

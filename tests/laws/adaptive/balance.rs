@@ -4,8 +4,8 @@ use super::{pair, run, slope, tolerances};
 use crate::testkit::scenes::shipped;
 use springcheck::integrators::Tableau;
 use springcheck::integrators::adaptive::{Pair, REGISTRY};
+use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::Scene;
-use springcheck::system::{ParticleSystem, State, System};
 
 /// The largest change of E + dissipated - injected over a run, J.
 fn imbalance(scene: &Scene, pair: &Pair, tolerance: f64) -> f64 {

@@ -3,9 +3,9 @@
 use super::{pair, run};
 use crate::testkit::built;
 use crate::testkit::scenes::shipped;
-use springcheck::engines::{AdaptiveEngine, Engine};
 use springcheck::integrators::adaptive::{Adaptive, Pair, REGISTRY};
-use springcheck::system::{Power, State, System};
+use springcheck::physics::{Power, State, System};
+use springcheck::solvers::{AdaptiveEngine, Engine};
 use std::cell::Cell;
 
 /// Six a step of Dormand-Prince 5(4), rejected or not, and two at the start; twelve of DOP853, eleven of

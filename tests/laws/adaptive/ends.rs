@@ -3,10 +3,10 @@
 use super::{chain, pair, run};
 use crate::testkit::built;
 use crate::testkit::scenes::shipped;
-use springcheck::engines::{AdaptiveEngine, Engine};
 use springcheck::integrators::adaptive::{Adaptive, REGISTRY};
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::Scene;
-use springcheck::system::{ParticleSystem, State};
+use springcheck::solvers::{AdaptiveEngine, Engine};
 
 #[test]
 fn runs_end_where_they_should_and_stay_there() {

@@ -2,10 +2,10 @@
 
 use super::{pair, run};
 use crate::testkit::scenes::shipped;
-use springcheck::engines::Engine;
 use springcheck::integrators::StepError;
 use springcheck::integrators::adaptive::{Adaptive, Estimate, Pair, REGISTRY};
-use springcheck::system::{Power, State, System};
+use springcheck::physics::{Power, State, System};
+use springcheck::solvers::Engine;
 use std::f64::consts::PI;
 
 /// Two ends run into each other: the force turns round in no time. Steps become short there, and it is

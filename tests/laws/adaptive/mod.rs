@@ -8,10 +8,10 @@ mod orders;
 mod tableaux;
 mod tolerance;
 
-use springcheck::engines::{AdaptiveEngine, Engine};
 use springcheck::integrators::adaptive::{self, Pair};
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::Scene;
-use springcheck::system::{ParticleSystem, State};
+use springcheck::solvers::{AdaptiveEngine, Engine};
 
 fn pair(id: &str) -> &'static Pair {
     adaptive::find(id).unwrap_or_else(|| panic!("no pair {id}"))

@@ -8,7 +8,7 @@ use crate::testkit::scenes::shipped;
 use springcheck::integrators::adaptive::{Adaptive, Pair, REGISTRY};
 use springcheck::integrators::{Integrator, StepError, Tableau};
 use springcheck::measure::order::{Study, Verdict};
-use springcheck::system::{State, System};
+use springcheck::physics::{State, System};
 use springcheck::truth::Motion;
 
 /// A pair whose steps are given to it.

@@ -4,8 +4,8 @@ use super::{chain, pair, run, slope, tolerances};
 use crate::testkit::line::released;
 use crate::testkit::scenes::shipped;
 use springcheck::integrators::adaptive::{Estimate, Pair, REGISTRY};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
-use springcheck::system::ParticleSystem;
 use springcheck::truth::{self, Demand, Motion, NoStore};
 
 /// The largest error of a position over all steps, m: nothing passes through zero in it.

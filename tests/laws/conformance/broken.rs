@@ -3,7 +3,7 @@
 use springcheck::conformance::{Claims, LAWS, check};
 use springcheck::integrators::{EnergyLaw, Integrator, Oscillator, PerStep, Stable, StepError};
 use springcheck::outcome::CheckStatus;
-use springcheck::system::{State, System};
+use springcheck::physics::{State, System};
 
 #[derive(Clone, Copy)]
 enum Fault {

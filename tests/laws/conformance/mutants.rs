@@ -5,7 +5,7 @@ use crate::testkit::{Build, method, own};
 use springcheck::conformance::{self, Claims};
 use springcheck::integrators::{Integrator, StepError};
 use springcheck::outcome::CheckStatus;
-use springcheck::system::{State, System};
+use springcheck::physics::{State, System};
 
 /// What a law says of an integrator that claims to be a row's.
 fn status(law: &str, id: &str, build: Build) -> CheckStatus {

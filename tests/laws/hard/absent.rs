@@ -1,8 +1,8 @@
 //! What a scene does not call for, or what could do nothing, is not built.
 
 use super::scene;
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
-use springcheck::system::ParticleSystem;
 
 /// Effects that were built, and how many members each has.
 fn built(scene: &Scene) -> Vec<(&'static str, usize)> {

@@ -3,9 +3,9 @@
 use super::{remembering, scene};
 use crate::testkit::method;
 use springcheck::crosscheck::{Choice, Plan};
-use springcheck::engines::Solver;
 use springcheck::outcome::{EnergyClass, Report};
 use springcheck::report;
+use springcheck::solvers::Solver;
 
 /// Explicit Euler as the scene's own integrator.
 fn run(name: &str) -> Report {

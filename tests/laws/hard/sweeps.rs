@@ -3,10 +3,10 @@
 
 use super::scene;
 use crate::testkit::distance;
-use springcheck::engines;
-use springcheck::engines::Setting;
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{Scene, Spring};
-use springcheck::system::ParticleSystem;
+use springcheck::solvers;
+use springcheck::solvers::Setting;
 
 /// Impulse, N s, along each spring of the one free particle, from its fixed end.
 struct Row<'a> {
@@ -66,7 +66,7 @@ fn rapier_sweeps_once_before_the_drift_and_once_after() {
     let scene = scene("transverse_kick");
     let h = scene.solver.timestep;
     let steps = scene.steps(h);
-    let row = engines::find("rapier").expect("a row");
+    let row = solvers::find("rapier").expect("a row");
     let system = ParticleSystem::new(&scene);
     let mut rapier = row
         .start(&scene, &system, &Setting::step(h))

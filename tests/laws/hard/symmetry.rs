@@ -5,10 +5,10 @@ use super::scene;
 use crate::testkit::{self, built, distance, mutants, own};
 use springcheck::conformance::Build;
 use springcheck::crosscheck::{Choice, Plan, Quiet};
-use springcheck::engines::{Solver, rapier::Settings};
 use springcheck::integrators::{Integrator, REGISTRY, StepError};
+use springcheck::physics::{State, System};
 use springcheck::scene::{Scene, Wanted};
-use springcheck::system::{State, System};
+use springcheck::solvers::{Solver, rapier::Settings};
 
 /// Largest position error against the truth, m, of every method of the registry; then the mutant's.
 fn errors(scene: &Scene) -> (Vec<f64>, f64) {

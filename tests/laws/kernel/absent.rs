@@ -1,9 +1,9 @@
 //! An effect the scene does not call for is not built and cannot be called.
 
 use crate::testkit::cloth::cloth;
-use springcheck::effects::{EffectRow, REGISTRY};
+use springcheck::physics::ParticleSystem;
+use springcheck::physics::effects::{EffectRow, REGISTRY};
 use springcheck::scene::{DampingModel, GravitationalPair, Scene, Wind};
-use springcheck::system::ParticleSystem;
 
 /// The ids of what a system has to call.
 fn called(scene: &Scene) -> Vec<&'static str> {

@@ -3,9 +3,9 @@
 use super::plain::{self, FAULTS, Fault};
 use crate::testkit::cloth::{cloth, shuffled};
 use rayon::ThreadPoolBuilder;
-use springcheck::effects::{Effect, Springs};
+use springcheck::physics::ParticleSystem;
+use springcheck::physics::effects::{Effect, Springs};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::ParticleSystem;
 
 const MODELS: [(f64, DampingModel); 3] = [
     (0.0, DampingModel::Axial),

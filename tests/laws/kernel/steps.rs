@@ -5,8 +5,8 @@ use super::plain::{self, Fault};
 use crate::testkit::cloth::cloth;
 use rayon::ThreadPoolBuilder;
 use springcheck::integrators::{self, Settings};
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{ParticleSystem, State};
 
 const STEP: f64 = 1e-4;
 

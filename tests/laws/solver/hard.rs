@@ -5,8 +5,8 @@ use super::{SOLVED, stage};
 use crate::testkit::scenes::{fixed, free, shipped, spring};
 use crate::testkit::{Random, built, method, own, swinging_triangle};
 use springcheck::integrators::{Integrator, Settings, StepError};
+use springcheck::physics::{Jacobian, Linearization, State, System};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring, Wind};
-use springcheck::system::{Jacobian, Linearization, State, System};
 
 /// A particle of this mass at rest, fixed for a mass of 0.
 fn particle(position: [f64; 3], mass: f64) -> Particle {

@@ -6,10 +6,10 @@ use crate::testkit::mutants::{self, mutant};
 use crate::testkit::scenes::{free, spring};
 use crate::testkit::{Build, Random, built, method, own, swinging_triangle};
 use springcheck::integrators::{Integrator, Settings, StepError};
-use springcheck::scene::{DampingModel, Particle, Scene, Spring};
-use springcheck::system::{
+use springcheck::physics::{
     ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, System,
 };
+use springcheck::scene::{DampingModel, Particle, Scene, Spring};
 
 /// A strip of `rows` times two particles, crossed by springs with dampers, hung by its corners and
 /// shaken: as non-linear as a cloth is.

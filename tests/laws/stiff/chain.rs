@@ -2,8 +2,8 @@
 
 use super::hard;
 use crate::testkit::{advance, built, method, own};
+use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::{Scene, steps};
-use springcheck::system::{ParticleSystem, State, System};
 
 /// Of the stiff springs, rad/s; and how long each spring is at rest, m.
 const W: f64 = 50.0;

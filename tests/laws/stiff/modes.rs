@@ -5,8 +5,8 @@ use super::hard;
 use crate::testkit::{advance, built, method, own};
 use nalgebra::{DMatrix, DVector};
 use springcheck::integrators::{EnergyLaw, Integrator};
+use springcheck::physics::State;
 use springcheck::scene::Scene;
-use springcheck::system::State;
 
 /// Soft springs of 1 N/m for the quartic ones: slow modes below 2 rad/s beside fast ones at 50.
 fn linear() -> Scene {

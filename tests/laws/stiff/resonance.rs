@@ -3,8 +3,8 @@
 
 use super::hard;
 use crate::testkit::{advance, built, method, own};
+use springcheck::physics::{State, System};
 use springcheck::scene::Scene;
-use springcheck::system::{State, System};
 
 /// w² of small motions, 1/s²: 3 g / s.
 const W2: f64 = 300.0;

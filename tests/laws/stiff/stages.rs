@@ -2,8 +2,8 @@
 
 use crate::testkit::{advance, built, method, own, swinging_triangle};
 use springcheck::integrators::{Integrator, Settings};
+use springcheck::physics::{State, System};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{State, System};
 
 const H: f64 = 0.02;
 

@@ -1,11 +1,11 @@
 //! rapier-forces is symplectic Euler, bit for bit.
 
 use super::{apart, mutated, ours, scenes, theirs};
-use springcheck::engines::rapier::Settings;
-use springcheck::engines::{Counts, Engine, IntegratorEngine};
 use springcheck::integrators::{self, StepError};
+use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::Scene;
-use springcheck::system::{ParticleSystem, State, System};
+use springcheck::solvers::rapier::Settings;
+use springcheck::solvers::{Counts, Engine, IntegratorEngine};
 
 /// Both sides round v += h (f (1/m)) and x += h v, on forces from the same code: no tolerance.
 fn law(ours_scene: &Scene, theirs: &mut dyn Engine) -> f64 {
@@ -177,7 +177,7 @@ fn fast_particles_stay_fast() {
         assert_eq!(engine.state().v[0], 5000.0, "{id}");
     }
     // As rapier ships, where somebody asks for it.
-    let capped = springcheck::engines::Solver::rapier(Settings {
+    let capped = springcheck::solvers::Solver::rapier(Settings {
         speed: Some(400.0),
         ..Settings::DEFAULT
     });

@@ -1,10 +1,10 @@
 //! rapier-converged is linearly implicit Euler without geometric stiffness, at dt / 4.
 
 use super::{apart, build, mutated, ours, scenes, swept, theirs};
-use springcheck::engines::Setting;
-use springcheck::engines::find;
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::ParticleSystem;
+use springcheck::solvers::Setting;
+use springcheck::solvers::find;
 
 const METHOD: &str = "linearized_implicit_material";
 

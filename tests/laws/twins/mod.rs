@@ -7,10 +7,10 @@ mod proofs;
 mod scenes;
 mod worlds;
 
-use springcheck::engines::{Engine, IntegratorEngine, Setting, Solver, find, rapier::Settings};
 use springcheck::integrators;
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
-use springcheck::system::ParticleSystem;
+use springcheck::solvers::{Engine, IntegratorEngine, Setting, Solver, find, rapier::Settings};
 
 /// An integrator of ours on a scene.
 fn ours(scene: &Scene, method: &str, h: f64) -> Box<dyn Engine> {

@@ -2,10 +2,10 @@
 //! published elsewhere are in `tests/golden.rs`.
 
 use super::{apart, build, mutated, ours, scenes, theirs};
-use springcheck::engines::rapier::{IDS, Settings};
-use springcheck::engines::{Solver, catalogue, find};
 use springcheck::outcome::Kind;
 use springcheck::scene::Scene;
+use springcheck::solvers::rapier::{IDS, Settings};
+use springcheck::solvers::{Solver, catalogue, find};
 
 /// Symplectic Euler at h = dt / n falls g h² N (N + 1) / 2 in N substeps from rest.
 #[test]

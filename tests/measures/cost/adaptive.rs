@@ -3,9 +3,9 @@
 use super::{choice, cost, of};
 use crate::testkit::mutants;
 use crate::testkit::scenes::shipped;
-use springcheck::engines::Solver;
 use springcheck::integrators::{self, Settings, adaptive};
 use springcheck::outcome::{Kind, Status};
+use springcheck::solvers::Solver;
 
 #[test]
 fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {

@@ -6,10 +6,10 @@ mod theory;
 
 use springcheck::crosscheck::Quiet;
 use springcheck::crosscheck::cost::{CostChoice, CostPlan};
-use springcheck::engines::Solver;
 use springcheck::integrators::{self, Method};
 use springcheck::outcome::{Cost, CostCurve};
 use springcheck::scene::Scene;
+use springcheck::solvers::Solver;
 use springcheck::truth::Demand;
 
 /// These methods over a small budget, no engines.

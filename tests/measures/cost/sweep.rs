@@ -4,10 +4,10 @@ use super::{all, choice, cost, of};
 use crate::testkit::scenes::shipped;
 use springcheck::crosscheck::Quiet;
 use springcheck::crosscheck::cost::{CostChoice, CostPlan};
-use springcheck::engines;
 use springcheck::integrators;
 use springcheck::outcome::{Body, Cost, Kind, Report, Status};
 use springcheck::scene::Scene;
+use springcheck::solvers;
 use springcheck::truth::Demand;
 
 /// Everything but the clock's: points, slopes, fronts, who reaches what and why not.
@@ -50,10 +50,10 @@ fn on_threads(threads: usize, scene: &Scene, choice: &CostChoice) -> Report {
 fn all_but_the_clock_is_the_same_on_every_number_of_threads() {
     let scene = shipped("pa1/scene03.yml");
     let mut choice = choice(all());
-    let rapier = engines::rapier::IDS.iter();
+    let rapier = solvers::rapier::IDS.iter();
     choice
         .solvers
-        .extend(rapier.filter_map(|id| engines::find(id)));
+        .extend(rapier.filter_map(|id| solvers::find(id)));
     (choice.budget_s, choice.settings) = (1.0, 4);
     let [one, four] = [1, 4].map(|threads| counted(&on_threads(threads, &scene, &choice)));
     assert_eq!(one, four);
@@ -122,7 +122,7 @@ fn every_sweep_keeps_its_laws() {
         let mut scene = shipped(name);
         scene.duration = scene.duration.min(3.0);
         let mut choice = choice(all());
-        choice.solvers.extend(engines::find("rapier"));
+        choice.solvers.extend(solvers::find("rapier"));
         (choice.budget_s, choice.settings) = (1.0, 4);
         laws(&cost(&scene, &choice));
     }

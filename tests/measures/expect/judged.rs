@@ -2,10 +2,10 @@
 
 use super::{oscillator, run};
 use springcheck::crosscheck::{Choice, expect, names};
-use springcheck::engines::rapier;
 use springcheck::integrators;
 use springcheck::outcome::{Body, Check, CheckStatus, Outcome, Report};
 use springcheck::scene::{Expectation, Scene, Wanted, Whom};
+use springcheck::solvers::rapier;
 use springcheck::truth::Demand;
 
 fn judged(expect: &str) -> (Scene, Report, Vec<Check>) {

@@ -4,9 +4,9 @@ use super::run;
 use serde_json::Value;
 use springcheck::conformance::systems::free_triangle;
 use springcheck::crosscheck::{Choice, names};
-use springcheck::engines;
 use springcheck::outcome::{EnergyClass, Status, Undecided};
 use springcheck::scene::{DampingModel, KeyKind};
+use springcheck::solvers;
 use std::collections::BTreeMap;
 
 /// Stated by the expectation itself, different in every run, or lists.
@@ -50,7 +50,7 @@ fn everything() -> BTreeMap<String, Value> {
     let mut scene = free_triangle(0.0, DampingModel::Axial);
     scene.duration = 1.0;
     let mut choice = Choice::default_for(&scene);
-    choice.solvers.extend(engines::find("rapier-converged"));
+    choice.solvers.extend(solvers::find("rapier-converged"));
     let mut found = BTreeMap::new();
     for outcome in run(&scene, &choice).outcomes() {
         let value = serde_json::to_value(outcome).expect("JSON");

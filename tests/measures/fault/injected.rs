@@ -4,8 +4,8 @@ use super::record::{PRECISIONS, fault_of, rows, run};
 use crate::testkit::{everything, method};
 use springcheck::measure::identify::Candidate;
 use springcheck::outcome::Fault;
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{ParticleSystem, State};
 use springcheck::trajectory::{Precision, Rows};
 
 /// Where faults are put.

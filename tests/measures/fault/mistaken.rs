@@ -4,8 +4,8 @@ use super::record::{PRECISIONS, fault_of, question, rows, run, thinned};
 use crate::testkit::{distance, everything, mutants, part, swinging_triangle};
 use springcheck::integrators::{REGISTRY, Settings};
 use springcheck::measure::identify::{Candidate, MISTAKES, Wrong, first_fault, identify, mistakes};
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{ParticleSystem, State};
 use springcheck::trajectory::Precision;
 use std::collections::BTreeMap;
 

@@ -3,8 +3,8 @@
 use springcheck::integrators::Settings;
 use springcheck::measure::identify::{Candidate, Question, first_departure};
 use springcheck::outcome::Fault;
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::Scene;
-use springcheck::system::{ParticleSystem, State};
 use springcheck::trajectory::{Precision, Rows};
 
 /// The precisions data comes in.

@@ -6,8 +6,8 @@ use crate::testkit::part;
 use crate::testkit::scenes::all_shipped;
 use springcheck::integrators::REGISTRY;
 use springcheck::measure::identify::{Candidate, first_fault, identify};
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::Scene;
-use springcheck::system::{ParticleSystem, State};
 use springcheck::trajectory::{Precision, Rows};
 
 fn shipped() -> Vec<Scene> {
@@ -63,7 +63,7 @@ fn the_effects_of_shipped_scenes_are_missed_where_they_are_missing() {
         for id in ["symplectic_euler", "rk4"] {
             let own = Candidate::method(&system, crate::testkit::method(id), 1);
             for (row, _) in system.effects() {
-                let left = |other: &springcheck::effects::EffectRow| {
+                let left = |other: &springcheck::physics::effects::EffectRow| {
                     if other.id == row.id { 0.0 } else { 1.0 }
                 };
                 let without = own.under(&ParticleSystem::scaled(scene, &left));

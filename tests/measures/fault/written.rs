@@ -6,10 +6,10 @@ use super::injected::{
 };
 use super::record::{PRECISIONS, fault_of, rows, run, thinned};
 use crate::testkit::swinging_triangle;
-use springcheck::effects::EffectRow;
 use springcheck::outcome::Quantity;
+use springcheck::physics::effects::EffectRow;
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Particle, Spring};
-use springcheck::system::{ParticleSystem, State};
 use springcheck::trajectory::Precision;
 
 #[test]

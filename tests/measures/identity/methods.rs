@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::testkit::{part, swinging_triangle};
-use springcheck::engines::{Limits, Setting, find};
 use springcheck::integrators::REGISTRY;
 use springcheck::measure::identify::Sameness;
 use springcheck::scene::DampingModel;
+use springcheck::solvers::{Limits, Setting, find};
 use springcheck::trajectory::Recorder;
 
 /// Named, decisively, and followed throughout.

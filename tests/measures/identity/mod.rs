@@ -9,11 +9,11 @@ mod rapier;
 mod scenes;
 mod strangers;
 
-use springcheck::engines::{Engine, IntegratorEngine};
 use springcheck::integrators::{self, Settings};
 use springcheck::measure::identify::{Identity, Question, identify};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
-use springcheck::system::ParticleSystem;
+use springcheck::solvers::{Engine, IntegratorEngine};
 use springcheck::trajectory::{Precision, Rows};
 
 /// Every state of an engine over `steps` steps, as a file of doubles would give it.

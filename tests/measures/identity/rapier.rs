@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::testkit::swinging_triangle;
-use springcheck::engines::{Setting, Solver, find, rapier::Settings};
 use springcheck::measure::identify::Sameness;
 use springcheck::scene::DampingModel;
+use springcheck::solvers::{Setting, Solver, find, rapier::Settings};
 
 fn of(row: &Solver, scene: &Scene) -> Identity {
     let h = scene.solver.timestep;

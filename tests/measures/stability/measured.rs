@@ -6,12 +6,12 @@ use crate::testkit::{crossed, method};
 use rayon::prelude::*;
 use springcheck::conformance::measured_limit;
 use springcheck::conformance::systems::Oscillator;
-use springcheck::engines::{Run, Setting, Solver, Unsupported};
 use springcheck::integrators::{EnergyLaw, Method, REGISTRY, Settings, Stable};
 use springcheck::measure::stability::{Limit, Make, Measured, classify, measure};
 use springcheck::outcome::Cell;
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::Scene;
-use springcheck::system::{ParticleSystem, State};
+use springcheck::solvers::{Run, Setting, Solver, Unsupported};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What the limits are promised to; bisection ends at half of it.
@@ -377,7 +377,7 @@ fn chain(links: usize, stiffness: f64) -> Scene {
 }
 
 fn rapier(scene: &Scene, h: f64) -> Result<Run, Unsupported> {
-    let rapier = springcheck::engines::find("rapier").unwrap();
+    let rapier = springcheck::solvers::find("rapier").unwrap();
     rapier.start(scene, &ParticleSystem::new(scene), &Setting::step(h))
 }
 

@@ -2,12 +2,12 @@
 
 use crate::testkit::scenes::parsed;
 use springcheck::crosscheck::{Choice, Plan, Quiet};
-use springcheck::engines::Solver;
-use springcheck::engines::external::{Failure, Program, Recording, Task};
 use springcheck::integrators::{self, Settings};
 use springcheck::outcome::{EnergyClass, Kind, Outcome, Status, Undecided};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
-use springcheck::system::ParticleSystem;
+use springcheck::solvers::Solver;
+use springcheck::solvers::external::{Failure, Program, Recording, Task};
 use springcheck::trajectory::{Precision, Rows};
 use std::sync::Arc;
 

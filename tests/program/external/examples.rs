@@ -5,8 +5,8 @@ use crate::testkit::program::{outcomes, output};
 use crate::testkit::scenes::shipped;
 use serde_json::Value;
 use springcheck::integrators::{self, Settings};
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::Scene;
-use springcheck::system::{ParticleSystem, State};
 
 const NET: &str = "scenes/pa1/scene04.yml";
 

@@ -187,7 +187,7 @@ fn lists_show_every_row() {
         ("integrators", springcheck::integrators::adaptive::ids()),
         (
             "effects",
-            springcheck::effects::REGISTRY
+            springcheck::physics::effects::REGISTRY
                 .iter()
                 .map(|row| row.id)
                 .collect(),

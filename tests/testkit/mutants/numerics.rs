@@ -2,7 +2,7 @@
 //! that holds in the scenes one tries first.
 
 use super::{acceleration, add, rk4};
-use springcheck::system::{State, System};
+use springcheck::physics::{State, System};
 
 /// Undamped.
 fn verlet(system: &dyn System, h: f64, s: &mut State) {

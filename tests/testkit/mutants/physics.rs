@@ -2,7 +2,7 @@
 //! that it has and they do not.
 
 use super::add;
-use springcheck::system::{Power, State, System};
+use springcheck::physics::{Power, State, System};
 
 /// Accelerations, and the powers to book.
 fn forces(system: &dyn System, s: &State) -> (Vec<f64>, Power) {

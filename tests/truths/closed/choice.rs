@@ -4,8 +4,8 @@ use super::families;
 use super::{exact, form};
 use crate::testkit::Random;
 use crate::testkit::scenes::{empty, shipped};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{DampingModel, GravitationalPair, Scene};
-use springcheck::system::ParticleSystem;
 use springcheck::truth::closed::find;
 
 /// Shipped scenes and their forms.

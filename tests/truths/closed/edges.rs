@@ -3,8 +3,8 @@
 use super::families::{self, empty, fixed, free, spring};
 use super::{exact, form, gauss};
 use crate::testkit::{Random, distance};
+use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{ParticleSystem, State};
 
 /// A mass an ulp beside the line of two compressed springs buckles; `far` puts the line where that
 /// ulp is large. The distance of its anchors is 2, `rest` the rest length of each spring.

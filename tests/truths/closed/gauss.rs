@@ -1,6 +1,6 @@
 //! Gauss's method of three stages and order 6 on the public system: slow, simple, and exact enough.
 
-use springcheck::system::{State, System};
+use springcheck::physics::{State, System};
 
 /// Carries a state over `time` in `steps` steps, stages iterated to the last bit or nearly.
 pub fn advance(system: &dyn System, state: &mut State, time: f64, steps: usize) {

@@ -10,8 +10,8 @@ mod gauss;
 mod motion;
 mod pendulum;
 
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
-use springcheck::system::ParticleSystem;
 use springcheck::truth::closed::{Found, find};
 
 /// The closed form of a scene up to `until`, if it has one.

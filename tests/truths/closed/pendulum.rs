@@ -2,7 +2,7 @@
 
 use super::gauss;
 use crate::testkit::Conservative;
-use springcheck::system::State;
+use springcheck::physics::State;
 use springcheck::truth::Motion;
 use springcheck::truth::closed::Pendulum;
 

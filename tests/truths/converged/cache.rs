@@ -3,8 +3,8 @@
 use super::honesty::times;
 use super::problems::shot;
 use crate::testkit::swinging_triangle;
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::ParticleSystem;
 use springcheck::truth::converged::{Converged, NotConverged, find, key};
 use springcheck::truth::{Motion, Store};
 use std::collections::HashMap;

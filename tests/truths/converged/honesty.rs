@@ -2,8 +2,8 @@
 
 use super::problems::{self, Known, pendulum, pleiades};
 use crate::testkit::Random;
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
-use springcheck::system::ParticleSystem;
 use springcheck::truth::converged::{BUDGET, Converged, converge, find};
 use springcheck::truth::{Motion, NoStore};
 

@@ -4,8 +4,8 @@ use super::honesty::times;
 use super::problems::{self, Rough, bodies, closure, shot};
 use crate::testkit::scenes::{shipped, spring};
 use crate::testkit::swinging_triangle;
+use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{ParticleSystem, State, System};
 use springcheck::truth::converged::{
     BUDGET, Converged, HORIZON, NotConverged, SharedSystem, converge, find,
 };

@@ -2,8 +2,8 @@
 
 use crate::testkit::{built, swinging_triangle};
 use springcheck::integrators::Tableau;
+use springcheck::physics::{Counting, ParticleSystem, System};
 use springcheck::scene::DampingModel;
-use springcheck::system::{Counting, ParticleSystem, System};
 use springcheck::truth::converged::{DORMAND_PRINCE_8, DormandPrince, Gragg, Precise, Stepper};
 
 /// Σ b c^(q-1) = 1/q up to the order and not beyond, and Σ a = c.

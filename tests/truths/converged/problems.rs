@@ -2,8 +2,8 @@
 
 use crate::testkit::scenes::{empty, free, spring};
 use crate::testkit::{Conservative, Oscillator};
+use springcheck::physics::{ParticleSystem, Power, State, System};
 use springcheck::scene::{GravitationalPair, Particle, Scene};
-use springcheck::system::{ParticleSystem, Power, State, System};
 use springcheck::truth::converged::SharedSystem;
 use std::sync::Arc;
 

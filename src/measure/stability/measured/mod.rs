@@ -10,11 +10,11 @@ mod watched;
 
 use super::Limit;
 use super::matrix::Matrix;
-use crate::engines::{Run, Unsupported};
 use crate::measure::energy_scale;
 use crate::outcome::Cell;
+use crate::physics::{Jacobian, Linearization, ParticleSystem, System, Triplets};
 use crate::scene::Scene;
-use crate::system::{Jacobian, Linearization, ParticleSystem, System, Triplets};
+use crate::solvers::{Run, Unsupported};
 use perturbation::Perturbation;
 use probe::{Budget, Fate, Watch, probe};
 use search::{Search, Stop};

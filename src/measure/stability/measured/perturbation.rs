@@ -1,8 +1,8 @@
 //! Small deterministic perturbations of a scene's start.
 
 use crate::measure::energy_scale;
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State, System};
 
 /// A displacement and a change of velocity of every coordinate, zero on fixed ones.
 #[derive(Debug, Clone, Default)]

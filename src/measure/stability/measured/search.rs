@@ -3,8 +3,8 @@
 use super::growth::Maxima;
 use super::probe::{Budget, Fate, Probed};
 use super::setup::{STEPS, Setup};
-use crate::engines::Unsupported;
 use crate::measure::stability::Limit;
+use crate::solvers::Unsupported;
 
 /// An answer.
 pub(super) struct Found {

@@ -4,10 +4,10 @@ use super::Make;
 use super::perturbation::Perturbation;
 use super::probe::{Budget, Fate, Probed, Watch, probe};
 use super::watched::{DifferenceEnergy, ExcessEnergy, Quadratic, Runs};
-use crate::engines::Unsupported;
 use crate::measure::energy_scale;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::Unsupported;
 
 /// Times the energy scale at which a run is lost.
 const LOST: f64 = 1e4;

@@ -4,8 +4,8 @@ use super::perturbation::Perturbation;
 use super::probe::Budget;
 use super::setup::Setup;
 use crate::measure::stability::Linearised;
+use crate::physics::{ForceKinds, ParticleSystem, System};
 use crate::scene::Scene;
-use crate::system::{ForceKinds, ParticleSystem, System};
 
 /// Differences taken of the run: the k-th multiplies each mode by (R - 1)^k, which leaves the mode
 /// whose R is farthest below 1, the first to turn negative, and costs 2^k roundings.

@@ -11,10 +11,10 @@
 
 use super::Make;
 use super::perturbation::Perturbation;
-use crate::engines::{Run, Unsupported};
 use crate::integrators::StepError;
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State, System};
+use crate::solvers::{Run, Unsupported};
 
 /// Runs at one timestep from different starts, advanced together.
 pub(super) struct Runs(Vec<Run>);

@@ -11,8 +11,8 @@ mod verdict;
 
 use super::Limit;
 use crate::integrators::Method;
+use crate::physics::{State, System};
 use crate::scene::{DampingModel, Scene};
-use crate::system::{State, System};
 use spectrum::{Solved, Spectrum};
 use verdict::Verdict;
 

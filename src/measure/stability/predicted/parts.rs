@@ -1,7 +1,7 @@
 //! The mass-normalised matrices of x'' = -K x - C v, and the parts of them that do not couple.
 
 use crate::measure::stability::matrix::Matrix;
-use crate::system::{Jacobian, Linearization, System, Triplets};
+use crate::physics::{Jacobian, Linearization, System, Triplets};
 use std::cmp::Ordering;
 
 /// Coordinates that couple with each other and with no others, such as all x of a chain along x.

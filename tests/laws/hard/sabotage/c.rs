@@ -4,7 +4,7 @@
 use super::{Row, mutants};
 use crate::testkit::method;
 use springcheck::integrators::Settings;
-use springcheck::system::{ForceKinds, Jacobian, Linearization, Power, State, System};
+use springcheck::physics::{ForceKinds, Jacobian, Linearization, Power, State, System};
 
 pub const SABOTAGES: &[Row] = &[
     ("chain_20", "implicit_euler", euler_with_one_iteration),

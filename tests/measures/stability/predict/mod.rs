@@ -7,8 +7,8 @@ use springcheck::conformance::measured_limit;
 use springcheck::conformance::systems::Across;
 use springcheck::integrators::{Amplification, Method, REGISTRY, Rational, Stable};
 use springcheck::measure::stability::{Along, Effort, Limit, Linearised, is_linear};
+use springcheck::physics::{Jacobian, Linearization, Power, State, System};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
-use springcheck::system::{Jacobian, Linearization, Power, State, System};
 
 mod large;
 mod networks;

@@ -1,7 +1,7 @@
 //! Several modes: a chain's frequencies, and dampers that couple modes, against one-step matrices.
 
 use super::*;
-use springcheck::system::ForceKinds;
+use springcheck::physics::ForceKinds;
 
 /// N masses of 0.3 kg between fixed ends, springs of k = 40 and rest length 0.
 fn chain(n: usize) -> Scene {

@@ -3,7 +3,7 @@
 //! An effect is built only when the scene calls for it; an absent effect is not in the list and
 //! costs nothing. Contact, rods and strain limits act between or inside steps and are not
 //! forces: they will be a second kind of row, called by
-//! [`IntegratorEngine`](crate::engines::IntegratorEngine) after its integrator, not members of this
+//! [`IntegratorEngine`](crate::solvers::IntegratorEngine) after its integrator, not members of this
 //! trait.
 
 mod cubic;
@@ -22,8 +22,8 @@ pub use scaled::Scaled;
 pub use springs::Springs;
 pub use wind::Wind;
 
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;
-use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 
 /// A force on particles: a batch over all its members, in flat vectors of length 3n.
 ///

@@ -1,9 +1,9 @@
 //! A scene's particles as rapier bodies, and back.
 
 use super::settings::Settings;
-use crate::engines::Unsupported;
+use crate::physics::State;
 use crate::scene::{Axis, Scene};
-use crate::system::State;
+use crate::solvers::Unsupported;
 use rapier3d::dynamics::{GenericJoint, RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;

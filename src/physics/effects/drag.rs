@@ -1,8 +1,8 @@
 //! Linear drag against still air.
 
 use super::{Effect, EffectRow, boxed};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;
-use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 
 pub(super) const ROW: EffectRow = EffectRow {
     id: "drag",

@@ -2,10 +2,10 @@
 
 use super::settings::Settings;
 use super::world::World;
-use crate::engines::{Counts, Engine, Unsupported};
 use crate::integrators::StepError;
+use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State};
+use crate::solvers::{Counts, Engine, Unsupported};
 
 /// A rapier world without joints or gravity that is handed all forces of the scene before each
 /// step, one substep a step: symplectic Euler (kick, drift), the same operations in the same order.

@@ -3,10 +3,10 @@
 use super::mirrors;
 use super::settings::Settings;
 use super::world::World;
-use crate::engines::{Counts, Engine, Unsupported};
 use crate::integrators::StepError;
+use crate::physics::{ParticleSystem, Power, State, System};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, Power, State, System};
+use crate::solvers::{Counts, Engine, Unsupported};
 
 /// A rapier world that mirrors a scene.
 ///

@@ -1,8 +1,8 @@
 //! Newtonian attraction between chosen pairs.
 
 use super::{Effect, EffectRow, boxed};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;
-use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 use nalgebra::{Matrix3, Vector3};
 
 pub(super) const ROW: EffectRow = EffectRow {

@@ -1,7 +1,7 @@
 //! An effect with all its forces multiplied: physics that is wrong on purpose.
 
 use super::Effect;
-use crate::system::{ForceKinds, Jacobian, Linearization, Power};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
 
 /// `factor` times another effect: -1 turns its sign, 2 applies it twice.
 ///

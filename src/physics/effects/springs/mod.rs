@@ -7,8 +7,8 @@ mod network;
 mod share;
 
 use super::{Effect, EffectRow, boxed};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::{DampingModel, Scene};
-use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 use kernel::Motion;
 use network::Network;
 use pulp::Arch;

@@ -11,7 +11,7 @@ pub use run::{Ended, Limits, Observer, Run, Tally, Unwatched};
 pub use solver::{BuildIntegrator, Setting, Solver, catalogue, find};
 
 use crate::integrators::StepError;
-use crate::system::{Refused, State};
+use crate::physics::{Refused, State};
 
 /// A scene that advances step by step. Only a [`Run`] takes its steps.
 ///

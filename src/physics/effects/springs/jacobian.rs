@@ -2,7 +2,7 @@
 
 use super::network::Spring;
 use super::{Damping, SHORTEST, difference};
-use crate::system::Linearization;
+use crate::physics::Linearization;
 use nalgebra::{Matrix3, Vector3};
 
 /// ∂f_i/∂(x_j - x_i) and ∂f_i/∂(v_j - v_i) of one spring.

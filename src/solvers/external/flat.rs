@@ -1,8 +1,8 @@
 //! A scene as flat arrays of numbers: what a program in any language reads in a few lines.
 
 use super::Task;
+use crate::physics::ParticleSystem;
 use crate::scene::DampingModel;
-use crate::system::ParticleSystem;
 use serde::Serialize;
 
 /// Version of the keys and of what they mean.

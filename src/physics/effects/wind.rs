@@ -1,8 +1,8 @@
 //! A constant force on every free particle.
 
 use super::{Effect, EffectRow, boxed};
+use crate::physics::{ForceKinds, Power};
 use crate::scene::Scene;
-use crate::system::{ForceKinds, Power};
 
 pub(super) const ROW: EffectRow = EffectRow {
     id: "wind",

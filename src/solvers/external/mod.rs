@@ -15,8 +15,8 @@ pub use command::{Command, CommandError, Placeholder};
 pub use failure::Failure;
 pub use flat::{Flat, FlatPairs, FlatSprings};
 
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
 use crate::trajectory::Rows;
 
 /// What a program is asked for: the scene from its start to `steps` timesteps.

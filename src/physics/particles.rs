@@ -1,7 +1,7 @@
 //! The system a scene describes: particles and the effects that act on them.
 
 use super::{ForceKinds, Jacobian, Linearization, Power, Refused, State, System};
-use crate::effects::{self, Effect, EffectRow, Scaled};
+use crate::physics::effects::{self, Effect, EffectRow, Scaled};
 use crate::scene::Scene;
 use crate::vector;
 use std::sync::Arc;

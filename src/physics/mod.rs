@@ -3,6 +3,7 @@
 //! Nothing here knows of particles or scenes except [`ParticleSystem`], which is built from one.
 
 mod counting;
+pub mod effects;
 mod jacobian;
 mod kinds;
 mod particles;

@@ -4,9 +4,9 @@
 //! answered [`Unsupported`].
 
 use super::world::{End, NEGLIGIBLE, World, unsupported};
-use crate::engines::Unsupported;
+use crate::physics::ParticleSystem;
 use crate::scene::{DampingModel, Scene, Spring};
-use crate::system::ParticleSystem;
+use crate::solvers::Unsupported;
 use rapier3d::dynamics::{
     GenericJoint, GenericJointBuilder, JointAxesMask, JointAxis, MotorModel, SpringJointBuilder,
 };

@@ -3,8 +3,8 @@
 use super::{Counts, Engine};
 use crate::integrators::adaptive::{Adaptive, Pair};
 use crate::integrators::{Integrator, Method, Settings, StepError};
+use crate::physics::{Counting, ParticleSystem, State, System};
 use crate::scene::Scene;
-use crate::system::{Counting, ParticleSystem, State, System};
 
 /// Advances a state by a step of `h` seconds, from `state.t` to `state.t + h`.
 ///

@@ -2,8 +2,8 @@
 
 use super::springs::{SHORTEST, difference, dot};
 use super::{Effect, EffectRow, boxed};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;
-use crate::system::{ForceKinds, Jacobian, Linearization, Power};
 use nalgebra::{Matrix3, Vector3};
 
 pub(super) const ROW: EffectRow = EffectRow {

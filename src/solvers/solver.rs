@@ -8,8 +8,8 @@ use super::{Engine, Unsupported};
 use crate::integrators::adaptive::{self, Pair};
 use crate::integrators::{self, Integrator, Method, Settings};
 use crate::outcome::Kind;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
 use std::borrow::Cow;
 use std::sync::Arc;
 

@@ -3,7 +3,7 @@
 use super::solver::Setting;
 use super::{Counts, Engine};
 use crate::integrators::StepError;
-use crate::system::{ParticleSystem, State, System};
+use crate::physics::{ParticleSystem, State, System};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
