@@ -3,7 +3,7 @@
 use super::super::replay::FIT;
 use super::spot::Spot;
 use super::words::{short, vector};
-use crate::outcome::Quantity;
+use crate::measure::identify::Quantity;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 

@@ -7,7 +7,7 @@ use super::guesses::{Guess, Way};
 use super::spot::Spot;
 use super::words;
 use super::{edits, fit, guesses, is_finite, within};
-use crate::outcome::Fault;
+use crate::measure::identify::Fault;
 
 /// A guess this near needs no better one: what data of a scheme itself can reach.
 const GOOD: f64 = 0.25 * FIT;

@@ -6,7 +6,7 @@ use super::super::replay::{BEYOND, Replay};
 use super::super::transition::Transition;
 use super::NUDGES;
 use super::words;
-use crate::outcome::{Fault, Quantity};
+use crate::measure::identify::{Fault, Quantity};
 use crate::physics::State;
 
 /// Two errors within this share of each other are equally large.

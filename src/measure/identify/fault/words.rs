@@ -1,7 +1,7 @@
 //! The sentences of an explanation.
 
 use super::spot::Spot;
-use crate::outcome::Quantity;
+use crate::measure::identify::Quantity;
 use crate::scene::Spring;
 
 /// Four digits.
