@@ -7,6 +7,7 @@ pub mod cli;
 pub mod clock;
 pub mod compare;
 pub mod cost;
+mod facts;
 pub mod formats;
 pub mod host;
 pub mod list;

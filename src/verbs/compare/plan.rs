@@ -6,9 +6,8 @@ use crate::solvers::external::{Failure, Program, Recording, Task};
 use crate::trajectory::{Rows, SaveError};
 use crate::truth::Demand;
 use crate::verbs::host::Host;
-use crate::verbs::run::Outcome;
-use crate::verbs::run::{Choice, Expectations, Measured, Orders, Plan, identity};
-use crate::verbs::{Beside, Body, Report, Series};
+use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity};
+use crate::verbs::{Body, Report};
 use std::sync::Arc;
 
 /// A trajectory and the scene it simulates, whose duration is the trajectory's.
@@ -54,23 +53,15 @@ impl Comparison<'_> {
             expectations: Expectations::Ignored,
         };
         let plan = Plan::new(self.scene, &choice);
-        let Measured {
-            header,
-            outcomes,
-            figures,
-        } = plan.measured(host)?;
+        let mut report = plan.execute(host)?;
         let (identified, fault) = identity::of_rows(&plan, &self.rows);
-        let named = outcomes.into_iter().map(|outcome| Outcome {
-            identified: identified.clone(),
-            ..outcome
-        });
-        Ok(Report {
-            header,
-            body: Body::Compare {
-                outcomes: named.collect(),
-                fault,
-            },
-            beside: Beside::Here(Series::Curves(figures)),
-        })
+        if let Body::Run { outcomes } = &mut report.body {
+            let mut outcomes = std::mem::take(outcomes);
+            for outcome in &mut outcomes {
+                outcome.identified.clone_from(&identified);
+            }
+            report.body = Body::Compare { outcomes, fault };
+        }
+        Ok(report)
     }
 }

@@ -26,16 +26,14 @@ pub use result::{
 };
 
 use crate::integrators::adaptive;
-use crate::measure;
 use crate::physics::ParticleSystem;
 use crate::report::Header;
 use crate::scene::Scene;
 use crate::solvers::rapier::Settings;
-use crate::solvers::{self, Limits, Setting, Solver};
+use crate::solvers::{self, Setting, Solver};
 use crate::truth::{self, Demand};
 use crate::verbs::host::{Estimate, Host, Label};
-use crate::verbs::run::{ledger, truths};
-use crate::verbs::{Beside, Body, Report, Series};
+use crate::verbs::{Beside, Body, Report, Series, facts};
 use errors::Errors;
 use rayon::prelude::*;
 use sweep::{Ground, Sweep, Swept};
@@ -134,11 +132,8 @@ impl<'a> CostPlan<'a> {
     pub fn execute(&self, host: &dyn Host) -> Report {
         let (scene, system) = (self.scene, &self.system);
         let truth = truth::find(scene, system, self.choice.truth, self.until(), host.store());
-        let scale = measure::energy_scale(scene, system, truths::peak(system, &truth));
-        // When a run stops must not depend on whether a truth was asked for.
-        let before = measure::energy_scale(scene, system, None);
-        let limit = measure::divergence_limit(scene, before);
-        let limits = Limits::new(system.clone(), limit).now_and_then();
+        let scale = facts::energy_scale(scene, system, &truth);
+        let limits = facts::limits(scene, system).now_and_then();
         let errors = Errors::new(scene, system, &truth, scale);
         let named = self.choice.timesteps.is_some();
         let ground = Ground {
@@ -162,13 +157,12 @@ impl<'a> CostPlan<'a> {
         }
         let counted = Swept::evaluations(&swept, &self.sweeps);
         let panels = named.then(|| panels::panels(scene, &errors, &self.sweeps, &swept));
-        let facts = ledger::facts(scene, ledger::effects(scene, system, counted), scale);
         let cost = answer::answer(scene, &errors, &self.choice, &self.sweeps, swept);
         Report {
             header: Header {
-                scene: facts,
-                truth: truths::facts(&truth),
-                checks: ledger::no_scale(scale).into_iter().collect(),
+                scene: facts::scene(scene, system, counted, scale),
+                truth: facts::truth(&truth),
+                checks: facts::no_scale(scale).into_iter().collect(),
             },
             body: Body::Cost { outcomes: [], cost },
             beside: panels.map_or(Beside::Nothing, |panels| {

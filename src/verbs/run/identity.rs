@@ -1,24 +1,22 @@
 //! Which scheme each trajectory follows.
 
 use super::plan::{Case, Plan};
-use super::ran::Ran;
 use crate::integrators::Settings;
-use crate::measure::identify::{Fault, Identified};
-use crate::measure::identify::{Question, first_fault, identify, moved_anchor};
+use crate::measure::identify::{Fault, Identified, Question, first_fault, identify, moved_anchor};
 use crate::physics::ParticleSystem;
 use crate::solvers::Kind;
-use crate::trajectory::Rows;
+use crate::trajectory::{Rows, Trajectory};
 use std::borrow::Cow;
 
 /// Steps replayed of a run: enough to name it, few enough to be quick. A file is replayed whole.
 const TRANSITIONS: usize = 16;
 
 /// The scheme of a run, by some of its steps.
-pub fn of_run(plan: &Plan, case: &Case, run: &Ran) -> Option<Identified> {
+pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Option<Identified> {
     let question = Question {
         transitions: Some(TRANSITIONS),
         hint: expected(plan, case),
-        ..question(plan, run.trajectory.rows())
+        ..question(plan, run.rows())
     };
     identify(&question)?.report()
 }

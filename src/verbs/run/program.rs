@@ -1,13 +1,12 @@
 //! Runs other people's programs and makes of their rows what measures read.
 
+use super::execute::Record;
 use super::plan::{Case, Plan};
-use super::ran::{Ran, Run};
 use crate::physics::{ParticleSystem, Power, State, System};
-use crate::solvers::Status;
 use crate::solvers::external::{Program, Recording, Task};
-use crate::solvers::{Counts, Limits};
+use crate::solvers::{Counts, Limits, Status};
 use crate::trajectory::{Precision, RowRecorder, Rows};
-use crate::verbs::clock::WallTime;
+use crate::verbs::clock::spread;
 use crate::verbs::host::Host;
 
 /// One case of a program, from its start to what came of it.
@@ -17,7 +16,7 @@ pub fn one(
     program: &dyn Program,
     limits: &Limits,
     host: &dyn Host,
-) -> Run {
+) -> Record {
     let task = Task {
         scene: plan.scene,
         system: &plan.system,
@@ -28,16 +27,16 @@ pub fn one(
     host.progress(case.label.steps);
     match answer {
         Ok(recording) => made_of(recording, &task, limits),
-        Err(failure) => Run::Failed(failure.to_string()),
+        Err(failure) => Record::none(Status::Failed, failure.to_string()),
     }
 }
 
 /// The run behind a recording.
-fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Run {
+fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
     let Recording { mut rows, seconds } = recording;
     let start = ParticleSystem::initial_state(task.scene);
     if let Some(wrong) = misfit(&rows, &start, task.timestep) {
-        return Run::Failed(wrong);
+        return Record::none(Status::Failed, wrong);
     }
     let mut remarks: Vec<String> = other_start(&rows, &start).into_iter().collect();
     complete(&mut rows, &start, task.steps);
@@ -83,19 +82,15 @@ fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Run {
     if status == Status::Completed && seconds.is_some() {
         remarks.push("the time is of the whole program, taken once".to_owned());
     }
-    Run::Ran(Box::new(Ran {
+    Record {
         status,
         reason,
         steps,
-        trajectory: recorder.finish(),
+        trajectory: Some(recorder.finish()),
         counts: Counts::default(),
-        wall: seconds.map(|seconds| WallTime {
-            min: seconds,
-            median: seconds,
-            mad: None,
-        }),
+        wall: seconds.map(|seconds| spread(vec![seconds])),
         remarks,
-    }))
+    }
 }
 
 /// Why rows are not states of this scene, for a program that did not read them from a file.

@@ -22,16 +22,14 @@ pub use result::{
     Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow, TightestLimit,
 };
 
-use crate::measure;
 use crate::measure::stability::{Linearised, is_linear};
 use crate::physics::ParticleSystem;
-use crate::report::{Header, TruthFacts};
+use crate::report::Header;
 use crate::scene::Scene;
 use crate::solvers::{Solver, Tally};
-use crate::truth::TruthKind;
+use crate::truth::Truth;
 use crate::verbs::host::Host;
-use crate::verbs::run::ledger;
-use crate::verbs::{Beside, Body, Report};
+use crate::verbs::{Beside, Body, Report, facts};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -112,21 +110,12 @@ impl StabilityPlan<'_> {
             map,
             admissible: pair,
         };
-        let scale = measure::energy_scale(scene, &system, None);
+        let truth = Truth::none("stability compares nothing with a truth");
+        let scale = facts::energy_scale(scene, &system, &truth);
         Ok(Report {
             header: Header {
-                scene: ledger::facts(
-                    scene,
-                    ledger::effects(scene, &system, tally.evaluations()),
-                    scale,
-                ),
-                truth: TruthFacts {
-                    kind: TruthKind::None,
-                    method: None,
-                    error_bound_m: None,
-                    horizon_s: None,
-                    reason: Some("stability compares nothing with a truth".to_owned()),
-                },
+                scene: facts::scene(scene, &system, tally.evaluations(), scale),
+                truth: facts::truth(&truth),
                 checks: Vec::new(),
             },
             body: Body::Stability {

@@ -1,15 +1,21 @@
 //! One expectation held against one outcome.
 
-use super::{Found, ID};
+use super::ID;
 use crate::measure::{Check, CheckStatus};
 use crate::scene::{Expectation, Wanted};
 use crate::solvers::Status;
 use crate::truth::TruthKind;
+use crate::verbs::Report;
 use crate::verbs::run::Outcome;
 use serde_json::Value;
 
 /// `value` is the outcome as JSON.
-pub fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, runs: &Found) -> Check {
+pub fn judge(
+    expectation: &Expectation,
+    outcome: &Outcome,
+    value: &Value,
+    report: &Report,
+) -> Check {
     let Expectation { whom, key, wanted } = expectation;
     let engine = &outcome.engine;
     let check = |status, measured, bound, message| Check {
@@ -21,7 +27,7 @@ pub fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, runs: 
         derivation: format!("the scene's `expect`, under `{whom}`"),
         message,
     };
-    if let Some(reference) = absent_reference(key, outcome, runs.outcomes) {
+    if let Some(reference) = absent_reference(key, outcome, report.outcomes()) {
         let message = format!("{engine}: {key} has no value, since {reference} did not run");
         return check(CheckStatus::Skip, None, None, message);
     }
@@ -41,7 +47,7 @@ pub fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, runs: 
     };
     let said = match found {
         Some(found) => said(key, found, outcome),
-        None => format!("no value ({})", missing(key, outcome, runs)),
+        None => format!("no value ({})", missing(key, outcome, report)),
     };
     let verb = if met { "is to be" } else { "should be" };
     let at = outcome.timestep;
@@ -91,15 +97,15 @@ fn said(key: &str, found: &Value, outcome: &Outcome) -> String {
 }
 
 /// Why a key has no value.
-fn missing(key: &str, outcome: &Outcome, runs: &Found) -> String {
+fn missing(key: &str, outcome: &Outcome, report: &Report) -> String {
     let error = key.starts_with("position_error_m") || key.starts_with("velocity_error_m_s");
-    match (&outcome.reason, &runs.truth.reason) {
+    match (&outcome.reason, &report.header.truth.reason) {
         (Some(reason), _) => reason.clone(),
-        (None, Some(reason)) if error && runs.truth.kind == TruthKind::None => {
+        (None, Some(reason)) if error && report.header.truth.kind == TruthKind::None => {
             format!("there is no truth: {reason}")
         }
         _ if error => "the truth ends before its second instant".to_owned(),
-        _ if key.starts_with("energy.") && runs.scene.energy_scale_j.is_none() => {
+        _ if key.starts_with("energy.") && report.header.scene.energy_scale_j.is_none() => {
             "the scene has no energy scale".to_owned()
         }
         _ if key.starts_with("momentum.") => "the scene does not conserve it".to_owned(),

@@ -7,10 +7,8 @@ pub use keys::names;
 
 use super::plan::{Choice, Expectations, Orders};
 use crate::measure::{Check, CheckStatus};
-use crate::report::{SceneFacts, TruthFacts};
 use crate::scene::{Expectation, Scene};
-use crate::solvers::Kind;
-use crate::solvers::{Solver, catalogue};
+use crate::solvers::{Kind, Solver, catalogue};
 use crate::truth::Demand;
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
@@ -33,72 +31,51 @@ const OF_THE_TRUTH: &[&str] = &[
 /// `scene` is the scene as its file states it: runs of another duration are not judged. Where a key has
 /// no value, the expectation fails.
 pub fn check(scene: &Scene, report: &Report) -> Vec<Check> {
-    Found {
-        truth: &report.header.truth,
-        scene: &report.header.scene,
-        outcomes: report.outcomes(),
+    if scene.expect.is_empty() {
+        return Vec::new();
     }
-    .check(scene)
-}
-
-/// What a scene's runs left, as far as expectations are about it.
-pub struct Found<'a> {
-    pub truth: &'a TruthFacts,
-    pub scene: &'a SceneFacts,
-    pub outcomes: &'a [Outcome],
-}
-
-impl Found<'_> {
-    /// As [`check`].
-    fn check(&self, scene: &Scene) -> Vec<Check> {
-        if scene.expect.is_empty() {
-            return Vec::new();
-        }
-        if self.scene.duration != scene.duration {
-            return vec![not_judged(&format!(
-                "they are about {:?} s, and {:?} s ran",
-                scene.duration, self.scene.duration
-            ))];
-        }
-        let timestep = scene.solver.timestep;
-        let outcome = |id: &str| -> Option<&Outcome> {
-            let of = |o: &&Outcome| o.engine == id && o.timestep == timestep;
-            self.outcomes.iter().find(of)
-        };
-        let subjects: Vec<Solver> = subjects(scene).collect();
-        if subjects
-            .iter()
-            .all(|subject| outcome(&subject.id).is_none())
-        {
-            return vec![not_judged(&format!(
-                "none of the engines they are about ran at the scene's own timestep, {timestep:?} s; \
+    let ran = report.header.scene.duration;
+    if ran != scene.duration {
+        return vec![not_judged(&format!(
+            "they are about {:?} s, and {ran:?} s ran",
+            scene.duration
+        ))];
+    }
+    let timestep = scene.solver.timestep;
+    let outcome = |id: &str| -> Option<&Outcome> {
+        let of = |o: &&Outcome| o.engine == id && o.timestep == timestep;
+        report.outcomes().iter().find(of)
+    };
+    let subjects: Vec<Solver> = subjects(scene).collect();
+    if !subjects
+        .iter()
+        .any(|subject| outcome(&subject.id).is_some())
+    {
+        return vec![not_judged(&format!(
+            "none of the engines they are about ran at the scene's own timestep, {timestep:?} s; \
              --integrators all runs every integrator"
-            ))];
-        }
-        let mut checks = Vec::new();
-        for subject in subjects {
-            let Some(outcome) = outcome(&subject.id) else {
-                let why = "did not run at the scene's own timestep";
-                checks.push(skipped(&subject.id, why.to_owned()));
-                continue;
-            };
-            // Whatever an outcome holds has a JSON form.
-            let value = serde_json::to_value(outcome).unwrap_or_default();
-            let expected = expected_of(scene, &subject);
-            let judged = expected
-                .into_iter()
-                .map(|expectation| judge::judge(expectation, outcome, &value, self));
-            checks.extend(judged);
-        }
-        checks
+        ))];
     }
+    let mut checks = Vec::new();
+    for subject in subjects {
+        let Some(outcome) = outcome(&subject.id) else {
+            let why = "did not run at the scene's own timestep";
+            checks.push(skipped(&subject.id, why.to_owned()));
+            continue;
+        };
+        // Whatever an outcome holds has a JSON form.
+        let value = serde_json::to_value(outcome).unwrap_or_default();
+        let expected = expected_of(scene, &subject).into_iter();
+        checks.extend(expected.map(|e| judge::judge(e, outcome, &value, report)));
+    }
+    checks
 }
 
 impl Expectations {
     /// The checks that say what came of them.
-    pub fn checks(&self, scene: &Scene, found: &Found) -> Vec<Check> {
+    pub fn checks(&self, scene: &Scene, report: &Report) -> Vec<Check> {
         match self {
-            Self::Judged => found.check(scene),
+            Self::Judged => check(scene, report),
             Self::Skipped(why) if !scene.expect.is_empty() => vec![not_judged(why)],
             Self::Ignored | Self::Skipped(_) => Vec::new(),
         }
