@@ -58,7 +58,7 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
             .to_string()
         }
     };
-    crate::verbs::cli::print(&format!("{text}\n"))?;
+    crate::verbs::cli::output::print(&format!("{text}\n"))?;
     Ok(ExitCode::SUCCESS)
 }
 

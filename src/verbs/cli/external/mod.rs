@@ -7,7 +7,7 @@ mod tree;
 use crate::integrators;
 use crate::solvers::external::Command;
 use crate::solvers::{Solver, rapier};
-use crate::verbs::cli::time::Time;
+use crate::verbs::cli::flags::Time;
 use anyhow::bail;
 use std::path::Path;
 use std::str::FromStr;

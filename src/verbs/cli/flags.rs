@@ -1,7 +1,40 @@
-//! A length of time as flags state it.
+//! What flags of several verbs mean: the scene with its duration, `--truth`, lengths of time.
 
+use crate::scene::{self, Scene};
+use crate::truth::Demand;
+use crate::verbs;
+use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
+
+/// The scene of a file, with another duration, s, where a flag states one.
+///
+/// # Errors
+/// Where the file is no scene. Whether the duration fits a timestep is
+/// [`check_times`](scene::check_times)'s to say.
+pub fn scene(path: &Path, duration: Option<f64>) -> anyhow::Result<Scene> {
+    let mut scene = scene::read(path, verbs::names())?;
+    scene.duration = duration.unwrap_or(scene.duration);
+    Ok(scene)
+}
+
+/// `--truth`.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub enum Truth {
+    Auto,
+    Closed,
+    None,
+}
+
+impl Truth {
+    pub fn demand(self) -> Demand {
+        match self {
+            Self::Auto => Demand::Auto,
+            Self::Closed => Demand::Closed,
+            Self::None => Demand::None,
+        }
+    }
+}
 
 /// `60s`, `2m`, `1.5h`, `500ms`, or seconds without a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
