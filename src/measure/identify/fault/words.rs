@@ -1,6 +1,5 @@
 //! The sentences of an explanation.
 
-use crate::measure::identify::Quantity;
 use crate::scene::Spring;
 
 /// Four digits.
