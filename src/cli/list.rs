@@ -2,9 +2,8 @@
 
 use clap::ValueEnum;
 use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
-use springcheck::integrators;
-use springcheck::integrators::adaptive::{self, Estimate};
-use springcheck::integrators::{EnergyLaw, Method, PerStep, Stable};
+use springcheck::integrators::adaptive::Estimate;
+use springcheck::integrators::{self, EnergyLaw, Method, PerStep, Stable};
 use springcheck::measure::identify::{MISTAKES, Mistake, Wrong};
 use springcheck::outcome::Kind;
 use springcheck::physics::effects;
@@ -72,7 +71,7 @@ fn of_integrators() -> Table {
             "stable, z = hω",
             "energy a step",
         ],
-        integrators::REGISTRY.iter().map(|method| {
+        integrators::fixed().iter().map(|method| {
             vec![
                 method.id.into(),
                 order(method),
@@ -108,11 +107,12 @@ fn of_pairs() -> Table {
             "forces a step",
             "and a rejected one",
         ],
-        adaptive::REGISTRY.iter().map(|pair| {
+        integrators::pairs().iter().filter_map(|method| {
+            let pair = method.pair()?;
             let [accepted, rejected] = pair.evaluations();
-            vec![
-                pair.id.into(),
-                pair.order.to_string(),
+            Some(vec![
+                method.id.into(),
+                method.order.to_string(),
                 match pair.estimate {
                     Estimate::Embedded { order, .. } => format!("of order {order}"),
                     Estimate::Mixed53 { .. } => "of orders 5 and 3, mixed".into(),
@@ -120,7 +120,7 @@ fn of_pairs() -> Table {
                 pair.stages().to_string(),
                 accepted.to_string(),
                 rejected.to_string(),
-            ]
+            ])
         }),
     )
 }
@@ -136,12 +136,13 @@ fn meant(mistake: &Mistake) -> &'static str {
 /// Where each method is from and what it is not.
 fn sources() -> Table {
     let methods = integrators::REGISTRY.iter();
-    let methods = methods.map(|method| [method.id, method.source, method.not]);
-    let pairs = adaptive::REGISTRY.iter();
-    let pairs = pairs.map(|pair| [pair.id, pair.source, pair.not]);
     table(
         &["integrator", "from", "not to be confused with"],
-        methods.chain(pairs).map(|row| row.map(String::from).into()),
+        methods.map(|method| {
+            [method.id, method.source, method.not]
+                .map(String::from)
+                .into()
+        }),
     )
 }
 

@@ -97,13 +97,13 @@ impl Choice {
 
     /// Every method of the registry, the scene's own first.
     pub fn all_methods(scene: &Scene) -> Vec<Solver> {
-        with_own_first(scene, integrators::REGISTRY.iter().map(Solver::method))
+        with_own_first(scene, integrators::fixed().iter().map(Solver::method))
     }
 }
 
 fn with_own_first(scene: &Scene, methods: impl Iterator<Item = Solver>) -> Vec<Solver> {
-    let own = integrators::find(&scene.solver.method).map(Solver::method);
-    own.into_iter()
+    let own = integrators::find(&scene.solver.method).filter(|method| method.pair().is_none());
+    (own.map(Solver::method).into_iter())
         .chain(methods.filter(|method| method.id != scene.solver.method))
         .collect()
 }

@@ -1,5 +1,6 @@
 //! A method's facts, from its coefficients alone: order, symmetry, stability, energy.
 
+use super::adaptive::Pair;
 use super::amplification::{Rational, band, oscillator_limit};
 use super::{
     Amplification, Coefficients, DampingTreatment, EnergyLaw, Exact, Method, Oscillator, PerStep,
@@ -58,7 +59,7 @@ impl Method {
     /// Works all facts out. To be done once for a method: they live as long as the program.
     pub fn new(row: Row) -> Self {
         match row.coefficients {
-            Coefficients::Tableau(tableau) => {
+            Coefficients::Tableau(tableau) | Coefficients::Pair(Pair { tableau, .. }) => {
                 let evaluations = PerStep::Exactly(tableau.b.len() as u32);
                 of_tableau(row, &tableau, evaluations)
             }

@@ -15,7 +15,7 @@ mod settings;
 mod sweep;
 
 use super::{Choice, Estimate, Host, Label, ledger, truths};
-use crate::integrators::adaptive;
+use crate::integrators;
 use crate::measure;
 use crate::outcome::{Beside, Body, Header, Report, Series};
 use crate::physics::ParticleSystem;
@@ -65,7 +65,7 @@ impl CostChoice {
             })
         });
         let mut solvers = Choice::all_methods(scene);
-        solvers.extend(adaptive::REGISTRY.iter().map(Solver::pair));
+        solvers.extend(integrators::pairs().iter().map(Solver::method));
         solvers.extend(solvers::find("rapier").into_iter().chain(others));
         Self {
             solvers,

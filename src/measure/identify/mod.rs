@@ -26,7 +26,7 @@ pub use mistakes::{MISTAKES, Mistake, Wrong, mistakes};
 pub use replay::{BEYOND, Defect, FIT, Replay};
 pub use transition::Transition;
 
-use crate::integrators::{REGISTRY, Settings};
+use crate::integrators::{Settings, fixed};
 use crate::outcome::{Identified, Undecided};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
@@ -162,7 +162,7 @@ fn bare(weighed: &[Weighed]) -> Vec<Transition> {
 
 /// Every scheme that is known, in the order of preference among equals.
 fn candidates(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
-    let methods = REGISTRY.iter().flat_map(|method| {
+    let methods = fixed().iter().flat_map(|method| {
         let substeps = 1..=MOST_SUBSTEPS;
         substeps.map(|n| Candidate::method(system, method, n))
     });

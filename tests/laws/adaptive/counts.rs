@@ -1,9 +1,9 @@
 //! Evaluations, and the stages that are reused.
 
-use super::{pair, run};
+use super::{pair, pairs, run};
 use crate::testkit::built;
 use crate::testkit::scenes::shipped;
-use springcheck::integrators::adaptive::{Adaptive, Pair, REGISTRY};
+use springcheck::integrators::adaptive::{Adaptive, Pair};
 use springcheck::physics::{Power, State, System};
 use springcheck::solvers::{AdaptiveEngine, Engine};
 use std::cell::Cell;
@@ -27,12 +27,12 @@ fn law(id: &str, engine: &AdaptiveEngine, steps: u64) -> Result<(), String> {
 #[test]
 fn evaluations_are_as_stated() {
     let scene = shipped("hard/through_each_other.yml");
-    for right in REGISTRY {
+    for (id, right) in pairs() {
         let (engine, states) = run(&scene, right, 1e-6);
         let steps = states.len() as u64 - 1;
         assert!(steps > 20 && engine.rejected() > 5);
-        law(right.id, &engine, steps).unwrap();
-        let per = match right.id {
+        law(id, &engine, steps).unwrap();
+        let per = match id {
             "dop853" => [12, 11],
             _ => [6, 6],
         };
@@ -48,7 +48,7 @@ fn evaluations_are_as_stated() {
             ..*right
         };
         let (engine, states) = run(&scene, &forgetful, 1e-6);
-        law(right.id, &engine, states.len() as u64 - 1).unwrap_err();
+        law(id, &engine, states.len() as u64 - 1).unwrap_err();
     }
 }
 
@@ -100,7 +100,7 @@ impl System for Turned<'_> {
 #[test]
 fn a_state_that_was_changed_is_evaluated_anew() {
     let (system, start) = built(&shipped("order/axial.yml"));
-    for pair in REGISTRY {
+    for (id, pair) in pairs() {
         let turned = Turned {
             inner: &system,
             turned: Cell::new(false),
@@ -127,11 +127,11 @@ fn a_state_that_was_changed_is_evaluated_anew() {
                 two(change, false, false),
                 two(change, false, true),
                 "{}",
-                pair.id
+                id
             );
         }
         // The mutant: what the stepper cannot see, and a stale stage with it.
         let stale = two(&|_| (), true, false) != two(&|_| (), true, true);
-        assert_eq!(stale, pair.first_same_as_last, "{}", pair.id);
+        assert_eq!(stale, pair.first_same_as_last, "{}", id);
     }
 }
