@@ -16,5 +16,6 @@ pub use deviation::{TOLERANCE, deviation, reach};
 pub use energy::{EnergySeries, judge};
 pub use error::{Errors, Known, errors};
 pub use momentum::momentum;
+pub(crate) use momentum::totals;
 pub use scale::{divergence_limit, energy_scale};
 pub use trend::{Trend, trend};

@@ -25,11 +25,13 @@ pub use state::{Power, State, Work};
 /// How the force depends on v is for the system to say ([`kinds`](System::kinds)): some methods treat
 /// it as linear, f(t, x, v) = f(t, x, 0) + D(x) v with D symmetric, and refuse any other.
 pub trait System {
-    /// Number of coordinates.
-    fn dim(&self) -> usize;
-
     /// 1/m of each coordinate, 1/kg; 0 for a fixed one.
     fn inverse_mass(&self) -> &[f64];
+
+    /// Number of coordinates.
+    fn dim(&self) -> usize {
+        self.inverse_mass().len()
+    }
 
     /// Overwrites `a` with the acceleration, m/s², and returns the powers at this point, W.
     ///
