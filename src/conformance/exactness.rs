@@ -3,7 +3,6 @@
 use super::subject::distance;
 use super::systems::ConstantForce;
 use super::{Finding, Law, SOLVED_TO};
-use crate::integrators::Exact;
 
 /// s; nothing depends on it.
 const STEP: f64 = 0.1;
@@ -20,7 +19,7 @@ pub(super) const LAW: Law = Law {
         let mut state = ConstantForce::start();
         subject.advance(&ConstantForce, STEP, STEPS, &mut state)?;
         let off = distance(&state, &ConstantForce::exact(STEP * STEPS as f64));
-        let claimed = subject.claims.exact == Exact::ConstantForce;
+        let claimed = subject.claims.exact;
         let property = "exact under a constant force";
         Ok(Finding::of_property(claimed, off, BOUND, property))
     },

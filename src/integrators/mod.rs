@@ -13,6 +13,7 @@ mod velocity_flow;
 pub use amplification::{Amplification, Rational};
 pub(crate) use amplification::{bisect, map, phi1};
 pub use facts::Row;
+pub(crate) use facts::is_exact;
 pub use implicit::{Implicit, Scheme};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
@@ -125,7 +126,8 @@ pub struct Method {
     pub coefficients: Coefficients,
     /// On any linear system; `oscillator` is its summary.
     pub amplification: Amplification,
-    pub exact: Exact,
+    /// Follows free fall without any error but rounding, at every step size: a parabola stays one.
+    pub exact: bool,
     /// Paper or textbook.
     pub source: &'static str,
     /// What it must not be confused with.
@@ -211,26 +213,6 @@ pub enum Stable {
     AlwaysAlong {
         across: f64,
     },
-}
-
-/// Which motions a method follows without any error but rounding, at every step size.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Exact {
-    Nothing,
-    /// Under a force that depends on nothing: free fall is a parabola, and stays one.
-    ConstantForce,
-}
-
-impl Exact {
-    /// What the order implies for a method whose errors are derivatives of the force: under a
-    /// constant force all of them vanish, but for the first order's own h² a / 2.
-    pub const fn of_order(order: u32) -> Self {
-        if order > 1 {
-            Self::ConstantForce
-        } else {
-            Self::Nothing
-        }
-    }
 }
 
 /// A function of z = h w.

@@ -10,8 +10,8 @@ mod particles;
 mod state;
 
 pub use counting::{Counting, Evaluations};
-pub use jacobian::{Jacobian, Linearization, Triplets};
-pub(crate) use jacobian::{PairBlock, Slope};
+pub(crate) use jacobian::PairBlock;
+pub use jacobian::{Jacobian, Linearization, Slope, Triplets};
 pub use kinds::{ForceKinds, Refused};
 pub use particles::{Effects, ParticleSystem};
 pub use state::{Power, State, Work};

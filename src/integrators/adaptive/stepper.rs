@@ -161,24 +161,6 @@ impl Adaptive {
         }
     }
 
-    /// Advances a state by a step of `h` seconds, whatever its error, which is returned, as estimated,
-    /// in units of the tolerance. For those who hold the pair's formula against its order.
-    ///
-    /// # Errors
-    /// [`StepError::NotFinite`].
-    pub fn step_of(
-        &mut self,
-        system: &dyn System,
-        h: f64,
-        state: &mut State,
-    ) -> Result<f64, StepError> {
-        self.trial.begin(system, state);
-        let (scale, _) = self.started(system, state.t, h)?;
-        let error = self.trial.attempt(system, state.t, h, &scale) / self.tolerance;
-        let moved = self.trial.accept(h, state.t + h, state);
-        moved.map(|_| error).ok_or_else(|| self.not_finite())
-    }
-
     /// Scale and step; at the first call from the state begun with, `left` seconds before the end.
     ///
     /// The first step is (tolerance / 100)^(1/k) / rate: Hairer's rule (Solving ODEs I, II.4) with a

@@ -3,7 +3,7 @@
 
 use super::springs::{SHORTEST, difference, dot};
 use super::{Effect, EffectRow, boxed};
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Slope};
 use crate::scene::Scene;
 use nalgebra::{Matrix3, Vector3};
 
@@ -175,7 +175,7 @@ impl Effect for Central {
         out: &mut Jacobian,
     ) {
         for (law, [i, j], d) in self.separations(x) {
-            out.add_pair(i / 3, j / 3, Some(&law.block(d.into(), kept)), None);
+            out.add_pair(Slope::Position, [i / 3, j / 3], law.block(d.into(), kept));
         }
     }
 

@@ -107,16 +107,20 @@ fn a_state_that_was_changed_is_evaluated_anew() {
         };
         let two = |change: &dyn Fn(&mut State), turn: bool, fresh: bool| {
             turned.turned.set(false);
-            let mut stepper = Adaptive::new(pair, 1e-6, 1.0);
+            let mut stepper = Adaptive::new(pair, 1.0, 1.0);
             let mut state = start.clone();
             let h = 0.01;
-            stepper.step_of(&turned, h, &mut state).expect("a step");
+            let until = state.t + h;
+            stepper.step(&turned, until, &mut state).expect("a step");
+            assert_eq!(state.t, until);
             change(&mut state);
             turned.turned.set(turn);
             if fresh {
-                stepper = Adaptive::new(pair, 1e-6, 1.0);
+                stepper = Adaptive::new(pair, 1.0, 1.0);
             }
-            stepper.step_of(&turned, h, &mut state).expect("a step");
+            let until = state.t + h;
+            stepper.step(&turned, until, &mut state).expect("a step");
+            assert_eq!(state.t, until);
             state
         };
         let flip = |state: &mut State| state.v.iter_mut().for_each(|v| *v = -*v);

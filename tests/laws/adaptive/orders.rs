@@ -5,23 +5,14 @@ use crate::testkit::built;
 use crate::testkit::gauss::Gauss;
 use crate::testkit::line::released;
 use crate::testkit::scenes::shipped;
-use springcheck::integrators::adaptive::{Adaptive, Pair};
-use springcheck::integrators::{Integrator, StepError, Tableau};
+use springcheck::integrators::adaptive::Pair;
+use springcheck::integrators::{Integrator, RungeKutta, Tableau};
 use springcheck::measure::order::{Study, Verdict};
 use springcheck::physics::{State, System};
 use springcheck::truth::Motion;
 
-/// A pair whose steps are given to it.
-struct Fixed(Adaptive);
-
-impl Integrator for Fixed {
-    fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
-        self.0.step_of(system, h, state).map(|_| ())
-    }
-}
-
 fn fixed(pair: Pair) -> impl Fn() -> Box<dyn Integrator> + Sync {
-    move || Box::new(Fixed(Adaptive::new(&pair, 1.0, 1.0)))
+    move || Box::new(RungeKutta::new(pair.tableau))
 }
 
 /// Slope of ln error over ln h through runs of these numbers of steps, by least squares; the error is the
@@ -38,10 +29,10 @@ fn slope(
         .iter()
         .map(|&n| {
             let h = until / f64::from(n);
-            let mut stepper = Adaptive::new(pair, 1.0, 1.0);
+            let mut stepper = RungeKutta::new(pair.tableau);
             let mut state = start.clone();
             for _ in 0..n {
-                stepper.step_of(system, h, &mut state).expect("a step");
+                stepper.step(system, h, &mut state).expect("a step");
             }
             let squares = state.x.iter().zip(truth).map(|(a, b)| (a - b) * (a - b));
             (h.ln(), 0.5 * squares.sum::<f64>().ln())

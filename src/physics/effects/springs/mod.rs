@@ -4,7 +4,7 @@ mod kernel;
 mod network;
 
 use super::{Effect, EffectRow, boxed};
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Slope};
 use crate::scene::{DampingModel, Scene, Spring};
 use kernel::Motion;
 use nalgebra::{Matrix3, Vector3};
@@ -136,9 +136,10 @@ impl Effect for Springs {
     ) {
         self.network.springs().for_each(|spring| {
             let (position, velocity) = blocks(&spring, self.damping, x, v, linearization);
-            let [i, j] = spring.ends;
-            let velocity = (self.damping != Damping::None).then_some(&velocity);
-            out.add_pair(i, j, Some(&position), velocity);
+            out.add_pair(Slope::Position, spring.ends, position);
+            if self.damping != Damping::None {
+                out.add_pair(Slope::Velocity, spring.ends, velocity);
+            }
         });
     }
 
