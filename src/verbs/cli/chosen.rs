@@ -1,7 +1,7 @@
 //! The integrators and engines a command line names.
 
 use super::rapier::Custom;
-use crate::integrators::{self, adaptive};
+use crate::integrators::{self, Method};
 use crate::scene::Scene;
 use crate::solvers::Kind;
 use crate::solvers::{self, Solver};
@@ -28,8 +28,13 @@ impl Truth {
 
 /// The integrators of these ids in this order, all of them for `all`, and the `usual` ones for none.
 pub fn integrators(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
-    let known = || format!("integrators: {}, or all", integrators::ids().join(", "));
-    let find = |id: &str| integrators::find(id).map(Solver::method);
+    let known = || {
+        format!(
+            "integrators: {}, or all",
+            integrators::ids(integrators::fixed()).join(", ")
+        )
+    };
+    let find = |id: &str| among(integrators::fixed(), id);
     match ids {
         [] => Ok(of_kind(usual, Kind::Integrator)),
         [all] if all == "all" => Ok(crate::solvers::methods(&scene.solver.method)),
@@ -42,13 +47,18 @@ pub fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Re
     let (pairs, others): (Vec<String>, Vec<String>) = ids
         .iter()
         .cloned()
-        .partition(|id| adaptive::find(id).is_some());
-    let find = |id: &str| adaptive::find(id).map(Solver::pair);
+        .partition(|id| among(integrators::pairs(), id).is_some());
+    let find = |id: &str| among(integrators::pairs(), id);
     let pairs = each(&pairs, find, String::new)?;
     if others.is_empty() && !pairs.is_empty() {
         return Ok(pairs);
     }
-    let known = || format!("--integrators (adaptive: {})", adaptive::ids().join(", "));
+    let known = || {
+        format!(
+            "--integrators (adaptive: {})",
+            integrators::ids(integrators::pairs()).join(", ")
+        )
+    };
     let all = others.first().is_some_and(|id| id == "all");
     let mut chosen = integrators(&others, scene, usual).with_context(known)?;
     chosen.extend(if all && pairs.is_empty() {
@@ -79,6 +89,11 @@ pub fn engines(ids: &[String], rapier: &[Custom], usual: &[Solver]) -> anyhow::R
         }
     }
     Ok(chosen)
+}
+
+fn among(methods: &'static [Method], id: &str) -> Option<Solver> {
+    let found = methods.iter().find(|method| method.id == id);
+    found.map(Solver::method)
 }
 
 fn of_kind(solvers: &[Solver], kind: Kind) -> Vec<Solver> {
