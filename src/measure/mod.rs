@@ -16,6 +16,7 @@ pub use check::{Check, CheckStatus};
 pub use deviation::{Deviation, TOLERANCE, deviation, reach};
 pub use energy::{Energy, EnergySeries, judge};
 pub use error::{Errors, Known, Spread, errors};
+pub(crate) use momentum::totals;
 pub use momentum::{Momentum, momentum};
 pub use scale::{divergence_limit, energy_scale};
 pub use trend::{EnergyClass, Trend, trend};

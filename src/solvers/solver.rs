@@ -6,7 +6,6 @@ use super::rapier::{self, RapierEngine, RapierForces};
 use super::run::Run;
 use super::setting::Setting;
 use super::{Engine, Unsupported};
-use crate::integrators::adaptive::{self, Pair};
 use crate::integrators::{self, Integrator, Method, Settings};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
@@ -48,7 +47,6 @@ pub struct Solver {
 enum Source {
     Method(&'static Method),
     Own(Arc<BuildIntegrator>),
-    Pair(&'static Pair),
     /// rapier's world in its own terms.
     Joints(rapier::Settings),
     /// rapier's bodies under forces computed here.
@@ -60,17 +58,12 @@ enum Source {
 pub type BuildIntegrator = dyn Fn() -> Box<dyn Integrator> + Send + Sync;
 
 impl Solver {
-    /// A fixed-step method of the registry.
+    /// A method of the registry; a pair chooses its own steps.
     pub fn method(method: &'static Method) -> Self {
         Self {
-            follows: Some(method),
+            follows: method.pair().is_none().then_some(method),
             ..Self::integrator(method.id.into(), method.name, Source::Method(method))
         }
-    }
-
-    /// An adaptive pair: it chooses its own steps.
-    pub fn pair(pair: &'static Pair) -> Self {
-        Self::integrator(pair.id.into(), pair.name, Source::Pair(pair))
     }
 
     /// An integrator of the caller's own, under a name no other solver has. Nothing is claimed of it:
@@ -119,18 +112,19 @@ impl Solver {
         }
     }
 
-    /// Its row, for a method of the registry.
+    /// Its row, for a method of fixed steps.
     pub fn as_method(&self) -> Option<&'static Method> {
-        match self.source {
-            Source::Method(method) => Some(method),
-            _ => None,
-        }
+        self.row().filter(|method| method.pair().is_none())
     }
 
     /// Its row, for an adaptive pair.
-    pub fn as_pair(&self) -> Option<&'static Pair> {
+    pub fn as_pair(&self) -> Option<&'static Method> {
+        self.row().filter(|method| method.pair().is_some())
+    }
+
+    fn row(&self) -> Option<&'static Method> {
         match self.source {
-            Source::Pair(pair) => Some(pair),
+            Source::Method(method) => Some(method),
             _ => None,
         }
     }
@@ -145,12 +139,8 @@ impl Solver {
 
     /// The order its row states for a scene with or without damping; None where nothing is stated.
     pub fn order(&self, damped: bool) -> Option<u32> {
-        match self.source {
-            Source::Method(method) if damped => Some(method.order_damped),
-            Source::Method(method) => Some(method.order),
-            Source::Pair(pair) => Some(pair.order),
-            _ => None,
-        }
+        let of = |row: &Method| if damped { row.order_damped } else { row.order };
+        self.row().map(of)
     }
 
     /// Why a run loses energy by this solver's design; None where it should not.
@@ -187,19 +177,20 @@ impl Solver {
         Ok(match &self.source {
             Source::Method(method) => {
                 system.admits(&self.id, method.takes())?;
-                let settings = Settings::stated(scene.solver.tolerance);
-                let engine = IntegratorEngine::new(scene, system, method, &settings, timestep);
-                Box::new(engine)
+                if let Some(pair) = method.pair() {
+                    let tolerance = setting.tolerance().unwrap_or(f64::EPSILON);
+                    let until = scene.duration;
+                    Box::new(AdaptiveEngine::new(scene, system, pair, tolerance, until))
+                } else {
+                    let settings = Settings::stated(scene.solver.tolerance);
+                    let engine = IntegratorEngine::new(scene, system, method, &settings, timestep);
+                    Box::new(engine)
+                }
             }
             Source::Own(build) => {
                 let integrator = build();
                 system.admits(&self.id, integrator.takes())?;
                 Box::new(IntegratorEngine::with(scene, system, integrator, timestep))
-            }
-            Source::Pair(pair) => {
-                let tolerance = setting.tolerance().unwrap_or(f64::EPSILON);
-                let engine = AdaptiveEngine::new(scene, system, pair, tolerance, scene.duration);
-                Box::new(engine)
             }
             Source::Joints(settings) => {
                 Box::new(RapierEngine::new(scene, system, timestep, settings)?)
@@ -261,8 +252,7 @@ fn joints(settings: rapier::Settings) -> Solver {
 /// Every solver that ships, in the order reports list them: methods, adaptive pairs, rapier's worlds.
 pub fn catalogue() -> impl Iterator<Item = Solver> {
     let methods = integrators::REGISTRY.iter().map(Solver::method);
-    let pairs = adaptive::REGISTRY.iter().map(Solver::pair);
-    methods.chain(pairs).chain(worlds())
+    methods.chain(worlds())
 }
 
 /// The solver of this id.
@@ -272,7 +262,8 @@ pub fn find(id: &str) -> Option<Solver> {
 
 /// These methods after the integrator of the id `own`, which a scene names.
 pub fn own_first(own: &str, methods: impl Iterator<Item = Solver>) -> Vec<Solver> {
-    let first = integrators::find(own).map(Solver::method).into_iter();
+    let own_method = integrators::find(own).filter(|method| method.pair().is_none());
+    let first = own_method.map(Solver::method).into_iter();
     first
         .chain(methods.filter(|method| method.id != own))
         .collect()
@@ -280,5 +271,5 @@ pub fn own_first(own: &str, methods: impl Iterator<Item = Solver>) -> Vec<Solver
 
 /// Every method of the registry, the one with the id `own` first.
 pub fn methods(own: &str) -> Vec<Solver> {
-    own_first(own, integrators::REGISTRY.iter().map(Solver::method))
+    own_first(own, integrators::fixed().iter().map(Solver::method))
 }

@@ -3,8 +3,8 @@
 
 use crate::testkit::{Random, everything, force, method, sample};
 use nalgebra::{DMatrix, DVector};
-use springcheck::integrators::adaptive::{self, Adaptive};
-use springcheck::integrators::{Method, REGISTRY, Settings, StepError};
+use springcheck::integrators::adaptive::Adaptive;
+use springcheck::integrators::{Method, Settings, StepError, fixed, pairs};
 use springcheck::physics::effects::{self, Effect, EffectRow};
 use springcheck::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem};
 use springcheck::physics::{Power, State, System};
@@ -273,7 +273,7 @@ fn a_method_is_right_to_its_order_or_refuses() {
         (driven_on(), ForceKinds::NEGATIVE_DAMPING),
     ];
     for (problem, kind) in both {
-        for method in REGISTRY.iter() {
+        for method in fixed().iter() {
             let taken = right_or_refused(&problem, method).unwrap();
             assert_eq!(taken, method.takes().has(kind), "{}: {kind}", method.id);
             // Whoever asks beforehand hears the same, with names.
@@ -317,7 +317,8 @@ fn pairs_take_any_force() {
         charged(ForceKinds::GYROSCOPIC),
         dragged(ForceKinds::NON_LINEAR),
     ] {
-        for pair in adaptive::REGISTRY {
+        for method in pairs() {
+            let pair = method.pair().expect("a pair");
             let mut state = State::new(vec![0.0; 3], vec![1.0, 0.0, 0.0]);
             let mut stepper = Adaptive::new(pair, 1e-10, 1.0);
             while state.t < END {
@@ -325,7 +326,7 @@ fn pairs_take_any_force() {
             }
             // Some twenty steps of 1e-10 each.
             let off = crate::testkit::distance(&state.x, &problem.end);
-            assert!(off < 2e-9, "{}: {off:e}", pair.id);
+            assert!(off < 2e-9, "{}: {off:e}", method.id);
         }
     }
 }
@@ -351,7 +352,7 @@ impl System for Undeclared {
 #[test]
 fn who_says_nothing_is_taken_only_where_nothing_is_asked() {
     let system = Undeclared(charged(ForceKinds::GYROSCOPIC).system);
-    for method in REGISTRY.iter() {
+    for method in fixed().iter() {
         let mut state = State::new(vec![0.0; 3], vec![1.0, 0.0, 0.0]);
         let before = state.clone();
         let stepped = method

@@ -28,7 +28,7 @@ pub use replay::{BEYOND, Defect, FIT, Replay};
 pub use result::{Fault, Identified, Quantity, Undecided};
 pub use transition::Transition;
 
-use crate::integrators::{REGISTRY, Settings};
+use crate::integrators::{Settings, fixed};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::trajectory::Rows;
@@ -163,7 +163,7 @@ fn bare(weighed: &[Weighed]) -> Vec<Transition> {
 
 /// Every scheme that is known, in the order of preference among equals.
 fn candidates(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
-    let methods = REGISTRY.iter().flat_map(|method| {
+    let methods = fixed().iter().flat_map(|method| {
         let substeps = 1..=MOST_SUBSTEPS;
         substeps.map(|n| Candidate::method(system, method, n))
     });

@@ -1,6 +1,6 @@
 //! The solvers a command line names: `--integrators`, `--engines`, `--rapier dt=0.001,iterations=8,pgs=4`.
 
-use crate::integrators::{self, adaptive};
+use crate::integrators::{self, Method};
 use crate::scene::Scene;
 use crate::solvers::{self, Kind, Solver, rapier};
 use anyhow::{Context, bail};
@@ -40,8 +40,14 @@ pub fn chosen(
 }
 
 fn methods(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
-    let known = || format!("integrators: {}, or all", integrators::ids().join(", "));
-    let find = |id: &str| integrators::find(id).map(Solver::method);
+    let fixed = integrators::fixed();
+    let known = || {
+        format!(
+            "integrators: {}, or all",
+            integrators::ids(fixed).join(", ")
+        )
+    };
+    let find = |id: &str| among(fixed, id);
     match ids {
         [] => Ok(of_kind(usual, Kind::Integrator)),
         [all] if all == "all" => Ok(solvers::methods(&scene.solver.method)),
@@ -51,16 +57,17 @@ fn methods(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Ve
 
 /// Methods first, then pairs.
 fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
-    let (pairs, others): (Vec<String>, Vec<String>) = ids
-        .iter()
-        .cloned()
-        .partition(|id| adaptive::find(id).is_some());
-    let find = |id: &str| adaptive::find(id).map(Solver::pair);
+    let find = |id: &str| among(integrators::pairs(), id);
+    let (pairs, others): (Vec<String>, Vec<String>) =
+        ids.iter().cloned().partition(|id| find(id).is_some());
     let pairs = each(&pairs, find, String::new)?;
     if others.is_empty() && !pairs.is_empty() {
         return Ok(pairs);
     }
-    let known = || format!("--integrators (adaptive: {})", adaptive::ids().join(", "));
+    let known = || {
+        let pairs = integrators::ids(integrators::pairs()).join(", ");
+        format!("--integrators (adaptive: {pairs})")
+    };
     let all = others.first().is_some_and(|id| id == "all");
     let mut chosen = methods(&others, scene, usual).with_context(known)?;
     chosen.extend(if all && pairs.is_empty() {
@@ -73,6 +80,11 @@ fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result
         pairs
     });
     Ok(chosen)
+}
+
+fn among(methods: &'static [Method], id: &str) -> Option<Solver> {
+    let found = methods.iter().find(|method| method.id == id);
+    found.map(Solver::method)
 }
 
 fn of_kind(solvers: &[Solver], kind: Kind) -> Vec<Solver> {

@@ -25,7 +25,7 @@ pub use result::{
     Cost, CostCurve, CostLine, CostPanel, CostPanels, CostPoint, CostRank, CostReached, CostTarget,
 };
 
-use crate::integrators::adaptive;
+use crate::integrators;
 use crate::physics::ParticleSystem;
 use crate::report::Header;
 use crate::scene::Scene;
@@ -76,7 +76,7 @@ impl CostChoice {
             })
         });
         let mut solvers = crate::solvers::methods(&scene.solver.method);
-        solvers.extend(adaptive::REGISTRY.iter().map(Solver::pair));
+        solvers.extend(integrators::pairs().iter().map(Solver::method));
         solvers.extend(solvers::find("rapier").into_iter().chain(others));
         Self {
             solvers,

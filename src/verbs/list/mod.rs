@@ -1,7 +1,7 @@
 //! `springcheck list integrators|effects|engines|mistakes`
 
 use crate::integrators;
-use crate::integrators::adaptive::{self, Estimate};
+use crate::integrators::adaptive::Estimate;
 use crate::integrators::{EnergyLaw, Method, PerStep, Stable};
 use crate::measure::identify::{MISTAKES, Mistake, Wrong};
 use crate::physics::effects;
@@ -72,7 +72,7 @@ fn of_integrators() -> Table {
             "stable, z = hω",
             "energy a step",
         ],
-        integrators::REGISTRY.iter().map(|method| {
+        integrators::fixed().iter().map(|method| {
             vec![
                 method.id.into(),
                 order(method),
@@ -108,11 +108,12 @@ fn of_pairs() -> Table {
             "forces a step",
             "and a rejected one",
         ],
-        adaptive::REGISTRY.iter().map(|pair| {
+        integrators::pairs().iter().filter_map(|method| {
+            let pair = method.pair()?;
             let [accepted, rejected] = pair.evaluations();
-            vec![
-                pair.id.into(),
-                pair.order.to_string(),
+            Some(vec![
+                method.id.into(),
+                method.order.to_string(),
                 match pair.estimate {
                     Estimate::Embedded { order, .. } => format!("of order {order}"),
                     Estimate::Mixed53 { .. } => "of orders 5 and 3, mixed".into(),
@@ -120,7 +121,7 @@ fn of_pairs() -> Table {
                 pair.stages().to_string(),
                 accepted.to_string(),
                 rejected.to_string(),
-            ]
+            ])
         }),
     )
 }
@@ -136,12 +137,13 @@ fn meant(mistake: &Mistake) -> &'static str {
 /// Where each method is from and what it is not.
 fn sources() -> Table {
     let methods = integrators::REGISTRY.iter();
-    let methods = methods.map(|method| [method.id, method.source, method.not]);
-    let pairs = adaptive::REGISTRY.iter();
-    let pairs = pairs.map(|pair| [pair.id, pair.source, pair.not]);
     table(
         &["integrator", "from", "not to be confused with"],
-        methods.chain(pairs).map(|row| row.map(String::from).into()),
+        methods.map(|method| {
+            [method.id, method.source, method.not]
+                .map(String::from)
+                .into()
+        }),
     )
 }
 

@@ -82,7 +82,7 @@ fn panel(
 /// A map of every engine there is.
 pub fn mapped() -> Report {
     let mut report = limits();
-    let names = crate::integrators::ids()
+    let names = crate::integrators::ids(crate::integrators::fixed())
         .into_iter()
         .chain(["rapier", "rapier(iterations=8,pgs=4)"]);
     let cell = |shift: usize| {

@@ -158,7 +158,9 @@ fn every_scene_speaks_of_every_engine() {
             let row = ELSEWHERE.iter().find(|(long, ..)| *long == stem);
             row.is_some_and(|(_, _, ids)| ids.contains(&id))
         };
-        let methods = integrators::ids().into_iter().map(|id| (id, true));
+        let methods = integrators::ids(integrators::fixed())
+            .into_iter()
+            .map(|id| (id, true));
         let engines = rapier::IDS.into_iter().map(|id| (id, false));
         let silent = methods
             .chain(engines)

@@ -25,7 +25,7 @@ fn choice(methods: Vec<&'static Method>) -> CostChoice {
 }
 
 fn all() -> Vec<&'static Method> {
-    integrators::REGISTRY.iter().collect()
+    integrators::fixed().iter().collect()
 }
 
 fn cost(scene: &Scene, choice: &CostChoice) -> Cost {

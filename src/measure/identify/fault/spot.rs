@@ -230,3 +230,17 @@ impl<'a> Spot<'a> {
         }
     }
 }
+
+/// (x, y, z) with what rounding explains as 0.
+pub(super) fn vector(spot: &Spot, quantity: Quantity, factor: f64) -> String {
+    let axis = |axis: usize| {
+        let at = 3 * spot.worst + axis;
+        let difference = spot.difference(quantity, at);
+        if difference.abs() > spot.unit(quantity, at) {
+            words::short(factor * difference)
+        } else {
+            "0".to_owned()
+        }
+    };
+    format!("({}, {}, {})", axis(0), axis(1), axis(2))
+}

@@ -50,7 +50,7 @@ impl FromStr for External {
 
 /// Refuses names that mean something else already. Before any work.
 pub fn distinct(externals: &[External]) -> anyhow::Result<()> {
-    let taken = [&integrators::ids()[..], &rapier::IDS].concat();
+    let taken = [&integrators::ids(integrators::fixed())[..], &rapier::IDS].concat();
     for (at, External { name, .. }) in externals.iter().enumerate() {
         // As file systems do that ignore case.
         let same = |other: &str| other.eq_ignore_ascii_case(name);

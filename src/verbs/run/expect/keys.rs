@@ -67,7 +67,7 @@ const ROWS: &[(&str, Row)] = &[
 /// and [`scene::read`](crate::scene::read).
 pub fn names() -> &'static Names {
     static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
-        methods: integrators::ids(),
+        methods: integrators::ids(integrators::fixed()),
         engines: rapier::IDS.to_vec(),
         keys: keys(),
     });
@@ -101,7 +101,7 @@ fn schemes() -> Vec<&'static str> {
     let steps = MISTAKES
         .iter()
         .filter(|mistake| matches!(mistake.wrong, Wrong::Step { .. }));
-    integrators::ids()
+    integrators::ids(integrators::fixed())
         .into_iter()
         .chain(steps.map(|mistake| mistake.id))
         .collect()

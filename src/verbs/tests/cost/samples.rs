@@ -290,7 +290,7 @@ pub fn priced() -> Report {
 
 /// Every integrator there is, and what stands beside them.
 pub fn full() -> Report {
-    let ids = crate::integrators::ids();
+    let ids = crate::integrators::ids(crate::integrators::fixed());
     let mut curves: Vec<CostCurve> = ids
         .into_iter()
         .enumerate()

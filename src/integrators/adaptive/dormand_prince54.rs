@@ -1,6 +1,24 @@
-//! The coefficients of Dormand and Prince's pair of orders 5 and 4.
+//! Dormand and Prince's pair of orders 5 and 4.
 
-use crate::integrators::Tableau;
+use super::{Estimate, Pair};
+use crate::integrators::{Coefficients, Row, Tableau};
+
+pub(in crate::integrators) const DORMAND_PRINCE_54: Row = Row {
+    id: "dormand_prince54",
+    name: "Dormand-Prince 5(4)",
+    coefficients: Coefficients::Pair(Pair {
+        tableau: DORMAND_PRINCE_5,
+        estimate: Estimate::Embedded {
+            order: 4,
+            weights: &ERROR_4,
+        },
+        first_same_as_last: true,
+    }),
+    energy: None,
+    source: "Dormand, Prince 1980, J. Comput. Appl. Math. 6, 19; Hairer, Nørsett, Wanner, \
+             Solving ODEs I, II.5 (DOPRI5)",
+    not: "the pair of Fehlberg, which advances the fourth order",
+};
 
 /// The seven stages of RK5(4)7M (Dormand, Prince 1980, J. Comput. Appl. Math. 6, table 2; Hairer,
 /// Nørsett, Wanner, Solving ODEs I, II.5, table 5.2), order 5. The last stage is the step's end.

@@ -1,6 +1,23 @@
-//! The coefficients of DOP853.
+//! DOP853. The converged truth takes its coefficients at fixed steps, too.
 
-use crate::integrators::Tableau;
+use super::{Estimate, Pair};
+use crate::integrators::{Coefficients, Row, Tableau};
+
+pub(in crate::integrators) const DOP853: Row = Row {
+    id: "dop853",
+    name: "Dormand-Prince 8(5,3)",
+    coefficients: Coefficients::Pair(Pair {
+        tableau: DORMAND_PRINCE_8,
+        estimate: Estimate::Mixed53 {
+            fifth: &ERROR_5,
+            third: &ERROR_3,
+        },
+        first_same_as_last: false,
+    }),
+    energy: None,
+    source: "Hairer, Nørsett, Wanner, Solving ODEs I, 2nd ed., II.5 and II.10 (DOP853)",
+    not: "Dormand and Prince's 8(7) of 1981 with 13 stages",
+};
 
 /// The twelve stages of DOP853 (Hairer, Nørsett, Wanner, Solving ODEs I, 2nd ed., II.5; 30 digits in
 /// the authors' `dop853.f`), order 8.

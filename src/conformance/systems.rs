@@ -1,6 +1,8 @@
-//! Systems of one coordinate (the constant force has three) whose motion is known in closed form.
+//! The systems integrators are tested on: one coordinate in closed form (the constant force has three),
+//! and small networks without symmetries that could hide an error, as scenes built in code.
 
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power, State, System};
+use crate::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, System};
+use crate::scene::{Axis, DampingModel, Particle, Scene, Solver, Spring};
 
 /// x'' = -w² x - 2 ζ w x', one coordinate, mass 1.
 #[derive(Debug, Clone, Copy)]
@@ -19,9 +21,6 @@ impl Oscillator {
 }
 
 impl System for Oscillator {
-    fn dim(&self) -> usize {
-        1
-    }
     fn inverse_mass(&self) -> &[f64] {
         &[1.0]
     }
@@ -66,9 +65,6 @@ impl Across {
 }
 
 impl System for Across {
-    fn dim(&self) -> usize {
-        1
-    }
     fn inverse_mass(&self) -> &[f64] {
         &[1.0]
     }
@@ -117,9 +113,6 @@ impl Driven {
 }
 
 impl System for Driven {
-    fn dim(&self) -> usize {
-        1
-    }
     fn inverse_mass(&self) -> &[f64] {
         &[1.0]
     }
@@ -166,9 +159,6 @@ impl ConstantForce {
 }
 
 impl System for ConstantForce {
-    fn dim(&self) -> usize {
-        3
-    }
     fn inverse_mass(&self) -> &[f64] {
         &[1.0, 2.0, 0.4]
     }
@@ -186,4 +176,84 @@ impl System for ConstantForce {
         -x.iter().zip(force).map(|(x, f)| x * f).sum::<f64>()
     }
     fn jacobian(&self, _: f64, _: &[f64], _: &[f64], _: Linearization, _: &mut Jacobian) {}
+}
+
+/// Three masses on a triangle of springs, hung from a fixed fourth, turning and swinging in
+/// 3D: non-linear, smooth, far from collisions, of unequal masses. `damping` goes on every spring,
+/// N s/m.
+pub fn swinging_triangle(damping: f64, model: DampingModel) -> Scene {
+    let particle = |position: [f64; 3], velocity: [f64; 3], mass: f64, fixed: bool| Particle {
+        position,
+        velocity,
+        fixed,
+        mass,
+        radius: 0.1,
+        drag: 0.0,
+    };
+    let spring = |a: usize, b: usize, stiffness: f64, rest_length: f64| Spring {
+        ends: [a, b],
+        stiffness,
+        cubic: 0.0,
+        damping,
+        rest_length,
+    };
+    Scene {
+        name: "swinging triangle".into(),
+        description: None,
+        file: String::new(),
+        solver: Solver {
+            method: "rk4".into(),
+            timestep: 0.01,
+            gravity: -9.81,
+            tolerance: None,
+        },
+        duration: 1.0,
+        up: Axis::Z,
+        damping_model: model,
+        plot: None,
+        particles: vec![
+            particle([0.0, 0.0, 2.0], [0.0; 3], 1.0, true),
+            particle([0.1, 0.0, 1.0], [0.3, 0.5, 0.0], 1.0, false),
+            particle([0.9, 0.2, 0.4], [0.0, -0.6, 0.4], 0.5, false),
+            particle([-0.3, 0.8, 0.3], [-0.4, 0.0, 0.2], 0.8, false),
+        ],
+        springs: vec![
+            spring(0, 1, 40.0, 0.9),
+            spring(1, 2, 25.0, 0.8),
+            spring(2, 3, 30.0, 1.1),
+            spring(3, 1, 20.0, 1.0),
+        ],
+        gravitational: Vec::new(),
+        wind: None,
+        expect: Vec::new(),
+    }
+}
+
+/// The same with drag on one particle.
+pub(super) fn dragged_triangle(damping: f64) -> Scene {
+    let mut scene = swinging_triangle(damping, DampingModel::Axial);
+    for particle in scene.particles.iter_mut().skip(2).take(1) {
+        particle.drag = 0.5;
+    }
+    scene
+}
+
+/// The swinging triangle without gravity and with nothing fixed: momentum and angular momentum are kept.
+pub fn free_triangle(damping: f64, model: DampingModel) -> Scene {
+    let mut scene = swinging_triangle(damping, model);
+    scene.particles.remove(0);
+    scene.springs.remove(0);
+    for spring in &mut scene.springs {
+        spring.ends = spring.ends.map(|end| end - 1);
+    }
+    scene.solver.gravity = 0.0;
+    scene
+}
+
+/// A scene's system and the state it starts from.
+pub(super) fn built(scene: &Scene) -> (ParticleSystem, State) {
+    (
+        ParticleSystem::new(scene),
+        ParticleSystem::initial_state(scene),
+    )
 }
