@@ -152,31 +152,22 @@ pub fn reach(points: &[CostPoint], target: f64) -> Result<usize, Misses> {
     })
 }
 
-/// Whether errors can be held against a target at all.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Judged {
-    /// Against a truth good enough.
-    Yes,
-    /// Why nobody can be said to reach it.
-    No(String),
-}
-
 /// Extrapolating farther than this is guessing; so is a line that hardly falls.
 const MOST_STEPS: f64 = 1e4;
 const SLOWEST: f64 = 0.5;
 
-/// The answer for one target, m, over all curves.
-pub fn target(curves: &[CostCurve], error: f64, judged: &Judged) -> CostTarget {
+/// The answer for one target, m, over all curves; none but the reason where the question is `open`: nobody can be
+/// said to reach it.
+pub fn target(curves: &[CostCurve], error: f64, open: Option<String>) -> CostTarget {
     let mut answer = CostTarget {
         error_m: error,
         cheapest: None,
         fewest_evaluations: None,
         ranking: Vec::new(),
         reference: Vec::new(),
-        reason: None,
+        reason: open,
     };
-    if let Judged::No(reason) = judged {
-        answer.reason = Some(reason.clone());
+    if answer.reason.is_some() {
         return answer;
     }
     let ranks = |ranked: bool| {
