@@ -9,8 +9,7 @@ use crate::verbs::cli::solvers::{Custom, chosen, without_timestep};
 use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::host::Estimate;
 use crate::verbs::run::{Choice, Plan};
-use crate::verbs::stability::StabilityRow;
-use crate::verbs::stability::{MapPlan, Range, StabilityPlan, Vary};
+use crate::verbs::stability::{MapPlan, Range, StabilityPlan, StabilityRow, Vary};
 use anyhow::{Context, bail};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -107,10 +106,13 @@ fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> 
         None => None,
         Some(text) => Some(MapPlan {
             vary: Vary::parse(text, scene).with_context(|| "--vary")?,
-            timesteps: timesteps(args.steps)?,
+            timesteps: args.steps,
             budget: args.budget,
         }),
     };
+    for h in args.steps.iter().flat_map(|range| [range.low, range.high]) {
+        within(h, limits::TIMESTEP).context("--steps")?;
+    }
     for &k in &args.admissible {
         within(k, limits::STIFFNESS).context("--admissible")?;
     }
@@ -133,14 +135,6 @@ fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> 
         bail!("nothing to look at: no integrators and no engines");
     }
     Ok(plan)
-}
-
-fn timesteps(range: Option<Range>) -> anyhow::Result<Option<Range>> {
-    if let Some(range) = range {
-        within(range.low, limits::TIMESTEP).context("--steps")?;
-        within(range.high, limits::TIMESTEP).context("--steps")?;
-    }
-    Ok(range)
 }
 
 fn within(value: f64, quantity: limits::Quantity) -> anyhow::Result<()> {
