@@ -5,7 +5,7 @@ use super::errors::Errors;
 use super::sampler::{Sampler, Samples};
 use super::{price, settings};
 use crate::crosscheck::Host;
-use crate::measure::stability::Linearised;
+use crate::measure::stability::{Effort, Linearised};
 use crate::outcome::{CostPoint, Kind, Status};
 use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
@@ -53,7 +53,7 @@ pub(super) fn plan(scene: &Scene, system: &ParticleSystem, choice: &CostChoice) 
     let solvers: Vec<&Solver> = choice.solvers.iter().filter(swept).collect();
     let share = choice.budget_s / solvers.len().max(1) as f64;
     let start = ParticleSystem::initial_state(scene);
-    let linearised = Linearised::brief(system, start.t, &start.x, &start.v);
+    let linearised = Linearised::new(system, &start, Effort::BRIEF);
     let sweep = |solver: &Solver| {
         let coarsest = settings::coarsest(scene, &linearised, solver);
         let each = price::of_step(scene, system, solver, &coarsest);

@@ -14,7 +14,7 @@ pub use vary::{COUNT, Range, RangeError, Vary, VaryError};
 
 use super::{Host, ledger};
 use crate::measure;
-use crate::measure::stability::{Linearised, is_linear};
+use crate::measure::stability::{Effort, Linearised, is_linear};
 use crate::outcome::{Beside, Body, Header, Report, Stability, Truth, TruthKind};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
@@ -56,7 +56,7 @@ impl StabilityPlan<'_> {
         };
         let system = ParticleSystem::new(scene);
         let start = ParticleSystem::initial_state(scene);
-        let linearised = Linearised::at(&system, start.t, &start.x, &start.v);
+        let linearised = Linearised::new(&system, &start, Effort::FULL);
         let linear = is_linear(scene);
         let path = path::of(self, &system, &linearised, linear);
         let asked = rows::Asked {
@@ -79,11 +79,7 @@ impl StabilityPlan<'_> {
             horizon_s: path.until,
             timestep_s: self.timestep,
             linear,
-            excluded: linearised
-                .excluded()
-                .iter()
-                .map(|excluded| excluded.what.clone())
-                .collect(),
+            excluded: linearised.excluded().to_vec(),
             rows,
             map,
             admissible: pair,

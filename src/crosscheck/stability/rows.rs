@@ -4,7 +4,7 @@ use super::path::Path;
 use super::{StabilityPlan, explain};
 use crate::crosscheck::Host;
 use crate::integrators::Method;
-use crate::measure::stability::{Limit, Linearised, Measured, Prediction, Tightest, measure};
+use crate::measure::stability::{Limit, Linearised, Measured, Prediction, measure};
 use crate::outcome::{Kind, StabilityRow, TightestLimit};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
@@ -107,10 +107,7 @@ pub(super) fn row(asked: &Asked, solver: &Solver, host: &dyn Host) -> StabilityR
         measured_growth_per_s: None,
         smooth_below_s: None,
         measured_smooth_below_s: None,
-        tightest: tightest.map(|tightest| TightestLimit {
-            limit_s: tightest.limit_s,
-            t_s: tightest.t_s,
-        }),
+        tightest,
         reason: None,
         remarks: Vec::new(),
     };
@@ -157,11 +154,11 @@ pub(super) fn predicted(
     Some(prediction)
 }
 
-fn tightest(asked: &Asked, solver: &Solver) -> Option<Tightest> {
+fn tightest(asked: &Asked, solver: &Solver) -> Option<TightestLimit> {
     let (method, substeps) = follows(solver)?;
     let tightest = asked.path.along.as_ref()?.tightest(method)?;
     let limit_s = tightest.limit_s * substeps;
-    (limit_s.is_finite() && tightest.t_s.is_finite()).then_some(Tightest {
+    (limit_s.is_finite() && tightest.t_s.is_finite()).then_some(TightestLimit {
         limit_s,
         ..tightest
     })

@@ -8,11 +8,10 @@ mod setup;
 mod smooth;
 mod watched;
 
-use super::Limit;
-use super::matrix::Matrix;
+use super::{Limit, predicted};
 use crate::measure::energy_scale;
 use crate::outcome::Cell;
-use crate::physics::{Jacobian, Linearization, ParticleSystem, System, Triplets};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
 use perturbation::Perturbation;
@@ -72,7 +71,8 @@ pub fn measure(
         steps: 0,
         reason: None,
     };
-    let unit = shortest(scene, system).unwrap_or(timestep);
+    let start = ParticleSystem::initial_state(scene);
+    let unit = predicted::shortest(system, &start).unwrap_or(timestep);
     let setup = match Setup::new(scene, system, make, 0.5 * unit, patience) {
         Ok(setup) => setup,
         Err(Unsupported { reason }) => {
@@ -108,27 +108,6 @@ pub fn measure(
     }
     measured.steps = budget.taken;
     measured
-}
-
-/// A time, s, no longer than the shortest time scale of the forces about the start: from the row sums
-/// of the Jacobians (Gershgorin). None where no force depends on the state.
-fn shortest(scene: &Scene, system: &ParticleSystem) -> Option<f64> {
-    let start = ParticleSystem::initial_state(scene);
-    let mut jacobian = Jacobian::default();
-    system.jacobian(0.0, &start.x, &start.v, Linearization::Exact, &mut jacobian);
-    let weights = system.inverse_mass();
-    let largest = |triplets: &Triplets| {
-        let summed = Matrix::new(system.dim(), triplets.clone());
-        // In mass-weighted coordinates the matrix is symmetric and its rows are alike.
-        let scaled = |(row, column, value): (usize, usize, f64)| {
-            (row, column, value * (weights[row] * weights[column]).sqrt())
-        };
-        Matrix::new(system.dim(), summed.entries().map(scaled).collect()).norm()
-    };
-    let rate = largest(&jacobian.position)
-        .sqrt()
-        .max(largest(&jacobian.velocity));
-    (rate > 0.0 && rate.is_finite()).then(|| 1.0 / rate)
 }
 
 /// Relative width to which a limit is promised; the search goes on to half of it.

@@ -3,7 +3,7 @@
 use super::perturbation::Perturbation;
 use super::probe::Budget;
 use super::setup::Setup;
-use crate::measure::stability::Linearised;
+use crate::measure::stability::{Effort, Linearised};
 use crate::physics::{ForceKinds, ParticleSystem, System};
 use crate::scene::Scene;
 
@@ -170,6 +170,6 @@ fn may_oscillate(scene: &Scene, system: &ParticleSystem) -> bool {
         return true;
     }
     let start = ParticleSystem::initial_state(scene);
-    let linearised = Linearised::at(system, start.t, &start.x, &start.v);
+    let linearised = Linearised::new(system, &start, Effort::FULL);
     linearised.is_unsure() || linearised.omega_max().is_some()
 }
