@@ -3,7 +3,7 @@
 use super::CostChoice;
 use super::errors::Errors;
 use super::sweep::{Sweep, Swept};
-use crate::measure::cost::{self, Judged};
+use crate::measure::cost;
 use crate::outcome::{Cost, CostCurve, Kind, TruthKind};
 use crate::scene::Scene;
 use crate::solvers::Solver;
@@ -20,7 +20,7 @@ pub(super) fn answer(
         .zip(swept)
         .map(|(sweep, swept)| curve(sweep, swept))
         .collect();
-    let target = |&error: &f64| cost::target(&curves, error, &judged(errors, error));
+    let target = |&error: &f64| cost::target(&curves, error, unjudged(errors, error));
     Cost {
         duration_s: scene.duration,
         horizon_s: errors.floor().map(|_| errors.truth.horizon),
@@ -62,16 +62,16 @@ fn explanation(solver: &Solver) -> Option<String> {
     })
 }
 
-/// Whether the truth can tell who is within this error, m.
-fn judged(errors: &Errors, error: f64) -> Judged {
+/// Why the truth cannot tell who is within this error, m.
+fn unjudged(errors: &Errors, error: f64) -> Option<String> {
     match errors.floor() {
-        None if errors.truth.kind == TruthKind::None => Judged::No(format!(
+        None if errors.truth.kind == TruthKind::None => Some(format!(
             "no truth to hold errors against: {}",
             errors.truth.reason
         )),
         Some(floor) if error < floor => {
-            Judged::No(format!("below the truth's own floor of {floor:.1e} m"))
+            Some(format!("below the truth's own floor of {floor:.1e} m"))
         }
-        _ => Judged::Yes,
+        _ => None,
     }
 }
