@@ -168,10 +168,10 @@ pub fn find(
     match converged::find(scene, system, until, store) {
         Ok(found) => Truth {
             kind: TruthKind::Converged,
-            method: Some(found.method),
-            reason: found.reason,
-            horizon: found.horizon,
-            error_bound: found.error_bound,
+            method: Some(found.known.method),
+            reason: found.known.reason,
+            horizon: found.known.horizon,
+            error_bound: found.known.error_bound,
             motion: Some(Box::new(found.motion)),
         },
         Err(not) => Truth::none(not.to_string()),
