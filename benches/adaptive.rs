@@ -6,7 +6,8 @@ use springcheck::integrators::adaptive::{self, Pair};
 use springcheck::integrators::{self, Method};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
-use springcheck::solvers::{Limits, Run, Setting, Solver, Unwatched};
+use springcheck::solvers::{Limits, Run, Setting, Solver};
+use springcheck::trajectory::Unwatched;
 use springcheck::truth::{self, Demand, NoStore};
 use std::fmt::Write;
 

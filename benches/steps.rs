@@ -6,8 +6,8 @@ use springcheck::integrators::{self, Settings};
 use springcheck::measure::{self, EnergySeries};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
-use springcheck::solvers::{Limits, Setting, Solver, Unwatched};
-use springcheck::trajectory::Recorder;
+use springcheck::solvers::{Limits, Setting, Solver};
+use springcheck::trajectory::{Recorder, Unwatched};
 use std::fmt::Write;
 use std::hint::black_box;
 

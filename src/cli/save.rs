@@ -3,8 +3,7 @@
 use super::output::{Place, temporary};
 use springcheck::crosscheck::{Label, Saver};
 use springcheck::physics::State;
-use springcheck::solvers::Observer;
-use springcheck::trajectory::{CsvWriter, NpzWriter, SaveError};
+use springcheck::trajectory::{CsvWriter, NpzWriter, Observer, SaveError};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::PathBuf;

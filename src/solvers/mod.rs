@@ -7,7 +7,7 @@ mod run;
 mod solver;
 
 pub use integrator::{AdaptiveEngine, IntegratorEngine, advance};
-pub use run::{Ended, Limits, Observer, Run, Tally, Unwatched};
+pub use run::{Ended, Limits, Run, Tally};
 pub use solver::{BuildIntegrator, Setting, Solver, catalogue, find};
 
 use crate::integrators::StepError;

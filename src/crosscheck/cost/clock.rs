@@ -3,7 +3,8 @@
 use super::sweep::{Ground, Sweep, Swept};
 use crate::crosscheck::execute::spread;
 use crate::outcome::{Status, WallTime};
-use crate::solvers::{Run, Setting, Solver, Unwatched};
+use crate::solvers::{Run, Setting, Solver};
+use crate::trajectory::Unwatched;
 use std::time::Instant;
 
 /// A sample takes at least this, s, by repeating a short run: a thousand grains of the clock.

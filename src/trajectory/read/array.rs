@@ -252,11 +252,9 @@ impl<'a> Parser<'a> {
             let digits = std::str::from_utf8(&self.rest[..end]).ok()?;
             self.rest = &self.rest[end..];
             // A size beyond any memory is as good as the largest; Python 2 writes 3L.
-            let too_long = !digits.is_empty() && digits.len() > 19;
-            sizes.push(if too_long {
-                usize::MAX
-            } else {
-                digits.parse().ok()?
+            sizes.push(match digits.parse() {
+                Err(_) if digits.len() > 19 => usize::MAX,
+                size => size.ok()?,
             });
             let _ = self.take(b'L');
             if self.take(b',').is_none() && self.next()? != b')' {

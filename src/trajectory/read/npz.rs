@@ -1,12 +1,11 @@
 //! Trajectories as NumPy arrays: `t`, `x` and `v` in an archive, or the positions alone.
 
 use super::array::Header;
-use super::digits::Written;
 use super::error::{HALF, Place, ReadError, Wrong};
 use super::expected::Expected;
 use super::shape::{Shape, tuple};
-use super::times::{Source, Times};
-use super::{Numbers, Table};
+use super::times::Times;
+use super::{Numbers, Precision, Table};
 use crate::scene::{shown::shorten, suggest};
 use std::io::{Cursor, Read};
 use zip::{ZipArchive, result::ZipError};
@@ -16,8 +15,8 @@ const NAMES: [&str; 3] = ["t", "x", "v"];
 const EXAMPLE: &str = "np.savez('mine.npz', t=t, x=x, v=v) writes what is read here";
 
 /// Reads an archive as `np.savez` and `np.savez_compressed` write it.
-pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Table, ReadError> {
-    let whole = |wrong: Wrong| wrong.at(file, Place::File);
+pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError> {
+    let whole = |wrong: Wrong| wrong.at(Place::File);
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| {
         whole(if bytes.starts_with(b"PK") {
             Wrong::new(format!("the archive cannot be read: {error}"), HALF)
@@ -33,11 +32,11 @@ pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Tabl
         return Err(whole(unknown(name)));
     }
     let mut find = |name| match archive.by_name(&format!("{name}.npy")) {
-        Ok(entry) => Array::read(name, entry, file, expected).map(Some),
+        Ok(entry) => Array::read(name, entry, expected).map(Some),
         Err(ZipError::FileNotFound) => Ok(None),
         Err(error) => {
             let message = format!("cannot be unpacked: {error}");
-            Err(Wrong::new(message, EXAMPLE).at(file, of(name)))
+            Err(Wrong::new(message, EXAMPLE).at(of(name)))
         }
     };
     let (Some(t), Some(x)) = (find("t")?, find("x")?) else {
@@ -53,7 +52,7 @@ pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Tabl
                 "expected the {instants} instants of t, found {}",
                 found.instants()
             );
-            return Err(Wrong::new(message, "").at(file, of(array.name)));
+            return Err(Wrong::new(message, "").at(of(array.name)));
         }
         if found != positions {
             let message = format!(
@@ -61,31 +60,32 @@ pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Tabl
                 tuple(&x.sizes),
                 tuple(&array.sizes)
             );
-            return Err(Wrong::new(message, "").at(file, of(array.name)));
+            return Err(Wrong::new(message, "").at(of(array.name)));
         }
     }
     Ok(Table {
         times: Times {
-            values: t.numbers.values,
-            written: t.numbers.written,
-            source: Source::Array,
+            numbers: t.numbers,
+            fields: None,
         },
-        x: x.states(expected.start()),
+        x: x.states(&expected.start),
         v: v.map(|v| v.states(&vec![0.0; 3 * expected.particles()])),
     })
 }
 
 /// Reads an array of positions; its times are n timesteps.
-pub(super) fn positions(bytes: &[u8], file: &str, expected: &Expected) -> Result<Table, ReadError> {
-    let x = Array::read("x", bytes, file, expected)?;
+pub(super) fn positions(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError> {
+    let x = Array::read("x", bytes, expected)?;
     let instants = 0..x.shape.instants();
     Ok(Table {
         times: Times {
-            values: instants.map(|n| n as f64 * expected.timestep()).collect(),
-            written: Written::Any,
-            source: Source::Array,
+            numbers: Numbers {
+                values: instants.map(|n| n as f64 * expected.timestep).collect(),
+                written: Precision::Double,
+            },
+            fields: None,
         },
-        x: x.states(expected.start()),
+        x: x.states(&expected.start),
         v: None,
     })
 }
@@ -102,10 +102,9 @@ impl Array {
     fn read(
         name: &'static str,
         mut from: impl Read,
-        file: &str,
         expected: &Expected,
     ) -> Result<Self, ReadError> {
-        let fail = |wrong: Wrong| wrong.at(file, of(name));
+        let fail = |wrong: Wrong| wrong.at(of(name));
         let header = Header::read(&mut from).map_err(fail)?;
         // The shape first: it says how much there is to read.
         let shape = match name {
@@ -121,11 +120,11 @@ impl Array {
             };
             let message = format!("expected a finite number, found {}", values[at]);
             let help = "end the arrays before the first number that is none";
-            return Err(Wrong::new(message, help).at(file, place));
+            return Err(Wrong::new(message, help).at(place));
         }
         let written = match header.is_single() {
-            true => Written::Single,
-            false => Written::Any,
+            true => Precision::Single,
+            false => Precision::Double,
         };
         Ok(Self {
             name,

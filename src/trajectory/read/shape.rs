@@ -25,7 +25,7 @@ impl Shape {
         let n = expected.particles();
         let all: Vec<usize> = (0..n).collect();
         let free = expected.free();
-        let found = match (shape, expected.only(), expected.free_axis()) {
+        let found = match (shape, expected.only(), expected.free_axis) {
             (&[t, k, 3], ..) if k == n => Some((t, of(&all))),
             (&[t, k, 3], ..) if k == free.len() => Some((t, of(&free))),
             (&[t, 3], Some(only), _) => Some((t, of(&[only]))),
