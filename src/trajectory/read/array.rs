@@ -2,7 +2,6 @@
 
 use super::error::{HALF, Wrong};
 use super::limits;
-use super::shape::tuple;
 use crate::scene::shown::shorten;
 use std::io::{ErrorKind, Read};
 
@@ -116,6 +115,17 @@ impl Header {
             numbers[stored]
         };
         (0..numbers.len()).map(stored).collect()
+    }
+}
+
+/// A shape as Python writes it.
+pub(super) fn tuple(shape: &[usize]) -> String {
+    match shape {
+        [one] => format!("({one},)"),
+        _ => {
+            let sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
+            format!("({})", sizes.join(", "))
+        }
     }
 }
 

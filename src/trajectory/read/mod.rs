@@ -27,7 +27,6 @@ mod digits;
 mod error;
 mod expected;
 mod npz;
-mod shape;
 mod times;
 
 pub use error::{Place, ReadError};

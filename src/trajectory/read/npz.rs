@@ -1,9 +1,8 @@
 //! Trajectories as NumPy arrays: `t`, `x` and `v` in an archive, or the positions alone.
 
-use super::array::Header;
+use super::array::{Header, tuple};
 use super::error::{HALF, Place, ReadError, Wrong};
 use super::expected::Expected;
-use super::shape::{Shape, tuple};
 use super::times::Times;
 use super::{Numbers, Precision, Table};
 use crate::scene::{shown::shorten, suggest};
@@ -46,15 +45,12 @@ pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError
     let v = find("v")?;
     let instants = t.numbers.values.len();
     for array in [Some(&x), v.as_ref()].into_iter().flatten() {
-        let (found, positions) = (&array.shape, &x.shape);
-        if found.instants() != instants {
-            let message = format!(
-                "expected the {instants} instants of t, found {}",
-                found.instants()
-            );
+        if array.sizes[0] != instants {
+            let found = array.sizes[0];
+            let message = format!("expected the {instants} instants of t, found {found}");
             return Err(Wrong::new(message, "").at(of(array.name)));
         }
-        if found != positions {
+        if array.coordinates != x.coordinates {
             let message = format!(
                 "expected x's shape {}, found {}",
                 tuple(&x.sizes),
@@ -76,7 +72,7 @@ pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError
 /// Reads an array of positions; its times are n timesteps.
 pub(super) fn positions(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError> {
     let x = Array::read("x", bytes, expected)?;
-    let instants = 0..x.shape.instants();
+    let instants = 0..x.sizes[0];
     Ok(Table {
         times: Times {
             numbers: Numbers {
@@ -93,8 +89,11 @@ pub(super) fn positions(bytes: &[u8], expected: &Expected) -> Result<Table, Read
 /// One array of a file.
 struct Array {
     name: &'static str,
+    /// Instants first, of which there are some.
     sizes: Vec<usize>,
-    shape: Shape,
+    /// What one instant of positions or velocities gives, in order: all coordinates, those of free
+    /// particles, or the one on the free axis.
+    coordinates: Vec<usize>,
     numbers: Numbers,
 }
 
@@ -107,11 +106,11 @@ impl Array {
         let fail = |wrong: Wrong| wrong.at(of(name));
         let header = Header::read(&mut from).map_err(fail)?;
         // The shape first: it says how much there is to read.
-        let shape = match name {
-            "t" => Shape::of_times(&header.shape),
-            _ => Shape::new(name, &header.shape, expected),
-        };
-        let shape = shape.map_err(fail)?;
+        let coordinates = coordinates(name, &header.shape, expected).map_err(fail)?;
+        if header.shape[0] == 0 {
+            let wrong = Wrong::new("expected at least one instant, found none", "");
+            return Err(fail(wrong));
+        }
         let values = header.numbers(&mut from).map_err(fail)?;
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
             let place = Place::Array {
@@ -129,16 +128,72 @@ impl Array {
         Ok(Self {
             name,
             sizes: header.shape,
-            shape,
+            coordinates,
             numbers: Numbers { values, written },
         })
     }
 
+    /// Whole states, with what is not given as `missing` has it.
     fn states(self, missing: &[f64]) -> Numbers {
-        Numbers {
-            values: self.shape.fill(self.numbers.values, missing),
-            written: self.numbers.written,
+        let Numbers { values, written } = self.numbers;
+        if self.coordinates.len() == missing.len() {
+            return Numbers { values, written };
         }
+        let mut whole = missing.repeat(self.sizes[0]);
+        let given = values.chunks_exact(self.coordinates.len());
+        for (state, given) in whole.chunks_exact_mut(missing.len()).zip(given) {
+            for (at, value) in self.coordinates.iter().zip(given) {
+                state[*at] = *value;
+            }
+        }
+        Numbers {
+            values: whole,
+            written,
+        }
+    }
+}
+
+/// The coordinates an array of this name and shape gives at one instant, if it can be one of this
+/// scene's; none of times.
+fn coordinates(name: &str, shape: &[usize], expected: &Expected) -> Result<Vec<usize>, Wrong> {
+    if name == "t" {
+        let help = "t.ravel() makes it so";
+        let wrong = || {
+            Wrong::new(
+                format!("expected the shape (T,), found {}", tuple(shape)),
+                help,
+            )
+        };
+        return (shape.len() == 1).then(Vec::new).ok_or_else(wrong);
+    }
+    let of = |particles: &[usize]| -> Vec<usize> {
+        let each = particles.iter();
+        each.flat_map(|id| [3 * id, 3 * id + 1, 3 * id + 2])
+            .collect()
+    };
+    let n = expected.particles();
+    let free = expected.free();
+    match (shape, &free[..], expected.free_axis) {
+        (&[_, k, 3], ..) if k == n => Ok((0..3 * n).collect()),
+        (&[_, k, 3], ..) if k == free.len() => Ok(of(&free)),
+        (&[_, 3], [_], _) => Ok(of(&free)),
+        (&[_], _, Some(free)) => Ok(vec![free.coordinate()]),
+        _ => Err(Wrong::new(
+            format!("expected the shape (T, {n}, 3), found {}", tuple(shape)),
+            remedy(name, shape, n),
+        )),
+    }
+}
+
+/// What the array probably is, in NumPy's words.
+fn remedy(x: &str, shape: &[usize], n: usize) -> String {
+    match *shape {
+        [_, k] if k == 3 * n => format!("{x}.reshape(-1, {n}, 3) makes it so"),
+        [a, 3, _] if a == n => format!("{x}.transpose(2, 0, 1) makes it so"),
+        [3, b, _] if b == n => format!("{x}.transpose(2, 1, 0) makes it so"),
+        [a, _, 3] if a == n => format!("{x}.transpose(1, 0, 2) makes it so"),
+        [_, 3, b] if b == n => format!("{x}.transpose(0, 2, 1) makes it so"),
+        _ => format!("instants, then the scene's {n} particles, then x, y, z"),
     }
 }
 

@@ -19,7 +19,8 @@ mod words;
 
 pub use pendulum::Pendulum;
 
-use super::{Motion, States};
+use super::{Motion, States, Truth};
+use crate::outcome::TruthKind;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use group::groups;
@@ -28,17 +29,9 @@ use part::Part;
 /// Ids of the effects the forms account for. Any other effect in a scene means no closed form.
 const KNOWN: &[&str] = &["gravity", "springs", "drag", "wind"];
 
-/// A closed form that applies.
-pub struct Found {
-    /// What it is, such as `parabola`.
-    pub method: String,
-    /// Why it applies to this scene.
-    pub reason: String,
-    pub motion: Box<dyn Motion>,
-}
-
-/// The form that holds for this scene up to `until` seconds, if one does.
-pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Found> {
+/// The form that holds for this scene up to `until` seconds, if one does: what it is, such as
+/// `parabola`, and why it applies.
+pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth> {
     let known = system
         .effects()
         .iter()
@@ -56,15 +49,20 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Found>
         methods.push("rest");
         reasons.push("nothing is free to move");
     }
-    Some(Found {
-        method: methods.join(" and "),
-        reason: reasons.join("; "),
-        motion: Box::new(Modal {
-            farthest: start.x.iter().fold(0.0, |m, x| m.max(x.abs())),
-            x: start.x,
-            v: start.v,
-            parts,
-        }),
+    let (method, reason) = (methods.join(" and "), reasons.join("; "));
+    let motion = Modal {
+        farthest: start.x.iter().fold(0.0, |m, x| m.max(x.abs())),
+        x: start.x,
+        v: start.v,
+        parts,
+    };
+    Some(Truth {
+        kind: TruthKind::ClosedForm,
+        method: Some(method),
+        reason,
+        horizon: until,
+        error_bound: motion.error_bar(until),
+        motion: Some(Box::new(motion)),
     })
 }
 
