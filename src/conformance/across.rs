@@ -5,7 +5,7 @@ use super::finding::Verdict;
 use super::stability::{PUBLISHED, W, unstable};
 use super::systems::Across;
 use crate::integrators::Stable;
-use crate::outcome::CheckStatus;
+use crate::measure::CheckStatus;
 
 pub(super) const LAW: Law = Law {
     id: "stability-across",

@@ -5,7 +5,7 @@ use super::finding::Verdict;
 use super::subject::advance;
 use super::systems::swinging_triangle;
 use crate::integrators::PerStep;
-use crate::outcome::CheckStatus;
+use crate::measure::CheckStatus;
 use crate::physics::{Counting, ParticleSystem};
 use crate::scene::DampingModel;
 

@@ -5,7 +5,7 @@ use super::subject::{Broken, Subject, advance};
 use super::systems::Oscillator;
 use super::{Law, SOLVED_TO};
 use crate::integrators::{EnergyLaw, Integrator, PerStep, Stable};
-use crate::outcome::CheckStatus;
+use crate::measure::CheckStatus;
 use crate::physics::State;
 
 pub(super) const LAW: Law = Law {

@@ -1,7 +1,7 @@
 //! What came of a law.
 
 use super::Law;
-use crate::outcome::{Check, CheckStatus};
+use crate::measure::{Check, CheckStatus};
 use std::cmp::Ordering;
 use std::fmt::Display;
 

@@ -5,10 +5,10 @@ use super::finding::Verdict;
 use super::reference::{Reference, largest};
 use super::subject::{Broken, Subject, advance, distance};
 use super::systems::{Driven, swinging_triangle};
+use crate::measure::CheckStatus;
 use crate::measure::order::{
     Observed, Point, RATIOS, TOLERANCE, Verdict as OrderVerdict, observed,
 };
-use crate::outcome::CheckStatus;
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{DampingModel, Scene};
 

@@ -5,7 +5,7 @@ use super::finding::Verdict;
 use super::subject::{Broken, Build, advance};
 use super::systems::Oscillator;
 use crate::integrators::Stable;
-use crate::outcome::CheckStatus;
+use crate::measure::CheckStatus;
 use crate::physics::{State, System};
 
 pub(super) const LAW: Law = Law {

@@ -8,8 +8,8 @@ use crate::testkit::{built, method, own};
 use springcheck::integrators::{
     DampingTreatment, Integrator, REGISTRY, Splitting, Stage, StepError,
 };
+use springcheck::measure::CheckStatus;
 use springcheck::measure::order::{Measured, RATIOS, Reason, Study, Verdict, check, observed};
-use springcheck::outcome::CheckStatus;
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::Scene;
 use springcheck::truth::Motion;

@@ -19,8 +19,7 @@ mod words;
 
 pub use pendulum::Pendulum;
 
-use super::{Motion, States, Truth};
-use crate::outcome::TruthKind;
+use super::{Motion, States, Truth, TruthKind};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use group::groups;

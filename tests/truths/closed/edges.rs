@@ -123,9 +123,11 @@ fn extremes_stay_numbers() {
             continue;
         };
         forms += 1;
-        let states = found
-            .motion
-            .states(&[0.0, 1e-9 * until, 0.3 * until, until]);
+        let states =
+            found
+                .motion()
+                .expect("a motion")
+                .states(&[0.0, 1e-9 * until, 0.3 * until, until]);
         let finite = states.x.iter().chain(&states.v).all(|c| c.is_finite());
         let bar = found.motion().expect("a motion").error_bar(until);
         assert!(finite && bar.is_finite() && bar >= 0.0, "{case}: {scene:?}");

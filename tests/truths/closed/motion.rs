@@ -209,7 +209,10 @@ fn a_wrong_clock_or_velocity_fails() {
 fn hanging_swings_by_m_g_over_k() {
     let scene = crate::testkit::scenes::shipped("pa1/scene01.yml");
     let found = form(&scene, 5.0).expect("a form");
-    assert_eq!(found.method, "oscillator in line, undamped");
+    assert_eq!(
+        found.method.as_deref(),
+        Some("oscillator in line, undamped")
+    );
     let amplitude = 0.2 * 9.81 / 20.0;
     let period = 2.0 * std::f64::consts::PI * (0.2_f64 / 20.0).sqrt();
     let times = [0.0, 0.25, 0.5, 0.75, 1.0].map(|turn| turn * period);
@@ -230,5 +233,5 @@ fn the_damping_model_counts() {
     let motion = truth.motion().expect("a motion");
     scene.damping_model = DampingModel::Axial;
     assert!(form(&scene, UNTIL).is_none());
-    assert!(obeys(&scene, motion.as_ref(), 4.0).is_err());
+    assert!(obeys(&scene, motion, 4.0).is_err());
 }
