@@ -1,9 +1,54 @@
 //! The one error this module gives: what is wrong, where, and what to do about it.
 
-use super::locate::Fault;
-use super::shown::printable;
+use super::words::printable;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use std::ops::Range;
+
+/// Why a value is refused, without its place.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct Refusal {
+    /// The key at fault: the whole path where the place is known, else what stands below the value being
+    /// read; empty for that value itself.
+    pub(super) key: String,
+    /// What was expected and what was found.
+    pub message: String,
+    /// What to do; empty where the message says it all.
+    pub help: String,
+}
+
+impl Refusal {
+    pub(super) fn new(message: impl Into<String>, help: impl Into<String>) -> Refusal {
+        Refusal {
+            key: String::new(),
+            message: message.into(),
+            help: help.into(),
+        }
+    }
+
+    /// The refusal as a result.
+    pub(super) fn because<T>(
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Result<T, Refusal> {
+        Err(Refusal::new(message, help))
+    }
+
+    pub(super) fn of(self, key: &str) -> Refusal {
+        Refusal {
+            key: key.to_owned(),
+            ..self
+        }
+    }
+}
+
+/// A refusal at a place in the text.
+#[derive(Debug)]
+pub(super) struct Fault {
+    /// Bytes from the start of the text.
+    pub(super) offset: usize,
+    pub(super) refusal: Refusal,
+}
 
 /// Why a scene cannot be used, for its author. Displays as a block whose first line begins with
 /// `file:line:column` and which shows the offending line.
@@ -65,10 +110,10 @@ impl SceneError {
         SceneError {
             line: u32::try_from(breaks + 1).ok(),
             column: u32::try_from(column + 1).ok(),
-            key: fault.key,
-            help: fault.help,
+            key: fault.refusal.key,
+            help: fault.refusal.help,
             excerpt: Some(Box::new(excerpt(&text[start..offset], &text[offset..end]))),
-            ..SceneError::of_file(file, fault.message)
+            ..SceneError::of_file(file, fault.refusal.message)
         }
     }
 

@@ -1,8 +1,8 @@
 //! What is refused before any YAML is read: bytes that are no text, and nesting so deep that the
 //! parser's time grows with its square.
 
+use super::error::{Fault, Refusal};
 use super::limits::NESTING;
-use super::locate::Fault;
 
 /// The text of a scene file, without BOM.
 pub(super) fn check(bytes: &[u8]) -> Result<&str, Fault> {
@@ -35,12 +35,8 @@ pub(super) fn check(bytes: &[u8]) -> Result<&str, Fault> {
 }
 
 fn fault(offset: usize, message: &str, help: &str) -> Fault {
-    Fault {
-        offset,
-        key: String::new(),
-        message: message.to_owned(),
-        help: help.to_owned(),
-    }
+    let refusal = Refusal::new(message, help);
+    Fault { offset, refusal }
 }
 
 /// YAML's non-printable characters; the parser refuses them too, but without a place.

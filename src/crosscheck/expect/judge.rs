@@ -12,7 +12,7 @@ pub(super) fn judge(
     value: &Value,
     report: &Report,
 ) -> Check {
-    let Expectation { whom, key, wanted } = expectation;
+    let Expectation { scope, key, wanted } = expectation;
     let engine = &outcome.engine;
     let check = |status, measured, bound, message| Check {
         id: ID.to_owned(),
@@ -20,7 +20,7 @@ pub(super) fn judge(
         status,
         measured,
         bound,
-        derivation: format!("the scene's `expect`, under `{whom}`"),
+        derivation: format!("the scene's `expect`, under `{scope}`"),
         message,
     };
     if let Some(reference) = absent_reference(key, outcome, report) {

@@ -1,7 +1,10 @@
 //! `springs.stiffness=1e2..1e8:24`: what a map varies, from where to where, in how many values.
 
-use crate::scene::limits::{self, Quantity};
-use crate::scene::{Scene, suggest};
+use crate::scene::Scene;
+use crate::scene::limits::Quantity;
+use crate::scene::parameters::{Kind, PARTICLES, PARTS, Part, Row, Value};
+use crate::scene::words::nearest;
+use std::fmt;
 use std::str::FromStr;
 
 /// Values where the text does not say how many.
@@ -9,75 +12,83 @@ pub const COUNT: usize = 24;
 /// More than this would be a picture nobody can read.
 const MOST: usize = 200;
 
-/// A quantity of particles or springs that a map can vary.
+/// A number of the scene that has a say in the motion, of one member of its part or of all.
+#[derive(Clone, Copy)]
 struct Key {
-    /// As the command line writes it; of one member `list[index].field`.
-    id: &'static str,
+    part: &'static Part,
+    row: &'static Row,
     quantity: Quantity,
-    /// Members there are.
-    count: fn(&Scene) -> usize,
-    /// Whether it means anything of this member.
-    free: fn(&Scene, usize) -> bool,
-    set: fn(&mut Scene, usize, f64),
+    member: Option<usize>,
 }
 
-const SPRING: Key = Key {
-    id: "",
-    quantity: limits::STIFFNESS,
-    count: |scene| scene.springs.len(),
-    free: |_, _| true,
-    set: |_, _, _| {},
-};
+/// Every key there is, of all members.
+fn keys() -> impl Iterator<Item = Key> {
+    let of = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
+    PARTS
+        .into_iter()
+        .flat_map(of)
+        .filter_map(|(part, row)| match row.kind {
+            Kind::Number(quantity) if row.flat.is_some() => Some(Key {
+                part,
+                row,
+                quantity,
+                member: None,
+            }),
+            _ => None,
+        })
+}
 
-const PARTICLE: Key = Key {
-    quantity: limits::MASS,
-    count: |scene| scene.particles.len(),
-    free: |scene, at| scene.particles.get(at).is_some_and(|p| !p.fixed),
-    ..SPRING
-};
-
-/// Sets a field of one member of a list.
-macro_rules! set {
-    ($list:ident, $field:ident) => {
-        |scene, at, value| {
-            if let Some(member) = scene.$list.get_mut(at) {
-                member.$field = value;
+impl Key {
+    /// The key `list[index].field` names; of one member only where there is a list.
+    fn find(id: &str) -> Result<Key, VaryError> {
+        let of_all = keys().find(|key| key.to_string() == id);
+        let of_one = || {
+            let (list, rest) = id.split_once('[')?;
+            let (index, field) = rest.split_once(']')?;
+            let field = field.strip_prefix('.')?;
+            let member = Some(index.parse().ok()?);
+            let mut lists = keys().filter(|key| key.part.list);
+            let key = lists.find(|key| key.part.key == list && key.row.key == field)?;
+            Some(Key { member, ..key })
+        };
+        of_all.or_else(of_one).ok_or_else(|| {
+            let known: Vec<String> = keys().map(|key| key.to_string()).collect();
+            let words: Vec<&str> = known.iter().map(String::as_str).collect();
+            let plain = match id.split_once('[').zip(id.split_once(']')) {
+                Some(((list, _), (_, field))) => format!("{list}{field}"),
+                None => id.to_owned(),
+            };
+            let hint = nearest(&plain, &words).map(|near| format!(" (did you mean `{near}`?)"));
+            VaryError::Unknown {
+                key: id.to_owned(),
+                hint: hint.unwrap_or_default(),
+                known: known.join(", "),
+                example: "springs[3].stiffness or particles[1].mass",
             }
-        }
-    };
+        })
+    }
+
+    /// Members there are.
+    fn count(&self, scene: &Scene) -> usize {
+        (self.part.count)(scene)
+    }
+
+    /// Whether it means anything of this member: what is fixed neither has inertia nor drags.
+    fn free(&self, scene: &Scene, at: usize) -> bool {
+        self.part.key != PARTICLES.key || scene.particles.get(at).is_some_and(|p| !p.fixed)
+    }
 }
 
-/// Everything that can be varied. A field of the scene becomes one more row.
-static KEYS: &[Key] = &[
-    Key {
-        id: "springs.stiffness",
-        set: set!(springs, stiffness),
-        ..SPRING
-    },
-    Key {
-        id: "springs.damping",
-        quantity: limits::DAMPING,
-        set: set!(springs, damping),
-        ..SPRING
-    },
-    Key {
-        id: "springs.rest_length",
-        quantity: limits::REST_LENGTH,
-        set: set!(springs, rest_length),
-        ..SPRING
-    },
-    Key {
-        id: "particles.mass",
-        set: set!(particles, mass),
-        ..PARTICLE
-    },
-    Key {
-        id: "particles.drag",
-        quantity: limits::DRAG,
-        set: set!(particles, drag),
-        ..PARTICLE
-    },
-];
+impl fmt::Display for Key {
+    /// As the command line writes it: `springs.stiffness`, `particles[1].mass`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.part.key)?;
+        if let Some(at) = self.member {
+            write!(f, "[{at}]")?;
+        }
+        write!(f, ".{}", self.row.key)
+    }
+}
 
 /// Why a text varies nothing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -180,15 +191,13 @@ impl Range {
 /// One quantity of a scene and the values it takes.
 #[derive(Clone)]
 pub struct Vary {
-    key: &'static Key,
-    /// One member; None for all that are free.
-    member: Option<usize>,
+    key: Key,
     /// Ascending.
     pub values: Vec<f64>,
 }
 
-impl std::fmt::Debug for Vary {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Debug for Vary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Vary").field("id", &self.id()).finish()
     }
 }
@@ -203,19 +212,19 @@ impl Vary {
         let (id, range) = text
             .split_once('=')
             .ok_or_else(|| VaryError::NoRange(text.to_owned()))?;
-        let (key, member) = find(id)?;
+        let key = Key::find(id)?;
         let refuse = |message: String| {
             Err(VaryError::Member {
                 key: id.to_owned(),
                 message,
             })
         };
-        let count = (key.count)(scene);
-        match member {
+        let count = key.count(scene);
+        match key.member {
             Some(at) if at >= count => {
                 return refuse(format!("the scene has {count} of these, from 0"));
             }
-            Some(at) if !(key.free)(scene, at) => {
+            Some(at) if !key.free(scene, at) => {
                 return refuse(format!("particle {at} is fixed: it changes nothing"));
             }
             None if count == 0 => return refuse("the scene has none".to_owned()),
@@ -226,10 +235,8 @@ impl Vary {
             why,
         })?;
         let Quantity { low, high, unit } = key.quantity;
-        if let Some(&found) = [range.low, range.high]
-            .iter()
-            .find(|end| !(low..=high).contains(*end))
-        {
+        let outside = |end: &f64| !(low..=high).contains(end);
+        if let Some(found) = [range.low, range.high].into_iter().find(outside) {
             return Err(VaryError::Bounds {
                 key: id.to_owned(),
                 low,
@@ -240,17 +247,13 @@ impl Vary {
         }
         Ok(Self {
             key,
-            member,
             values: range.values(),
         })
     }
 
     /// As the command line writes it: `springs.stiffness`, `particles[1].mass`.
     pub fn id(&self) -> String {
-        match (self.member, self.key.id.split_once('.')) {
-            (Some(at), Some((list, field))) => format!("{list}[{at}].{field}"),
-            _ => self.key.id.to_owned(),
-        }
+        self.key.to_string()
     }
 
     /// Of the values.
@@ -261,39 +264,13 @@ impl Vary {
     /// The scene with this value, in the one member or in all that are free.
     pub fn apply(&self, scene: &Scene, value: f64) -> Scene {
         let mut varied = scene.clone();
-        match self.member {
-            Some(at) => (self.key.set)(&mut varied, at, value),
-            None => {
-                for at in (0..(self.key.count)(scene)).filter(|at| (self.key.free)(scene, *at)) {
-                    (self.key.set)(&mut varied, at, value);
-                }
-            }
+        let members = self
+            .key
+            .member
+            .map_or(0..self.key.count(scene), |at| at..at + 1);
+        for at in members.filter(|at| self.key.free(scene, *at)) {
+            (self.key.row.set)(&mut varied, at, Value::Numbers(&[value]));
         }
         varied
     }
-}
-
-/// The key and the member `list[index].field` names.
-fn find(id: &str) -> Result<(&'static Key, Option<usize>), VaryError> {
-    let (plain, member) = match id
-        .split_once('[')
-        .map(|(list, rest)| (list, rest.split_once(']')))
-    {
-        Some((list, Some((index, field)))) => match index.parse() {
-            Ok(index) => (format!("{list}{field}"), Some(index)),
-            Err(_) => (id.to_owned(), None),
-        },
-        _ => (id.to_owned(), None),
-    };
-    let known: Vec<&str> = KEYS.iter().map(|key| key.id).collect();
-    let key = KEYS.iter().find(|key| key.id == plain);
-    key.map(|key| (key, member)).ok_or_else(|| {
-        let near = suggest::nearest(&plain, &known);
-        VaryError::Unknown {
-            key: id.to_owned(),
-            hint: near.map_or(String::new(), |near| format!(" (did you mean `{near}`?)")),
-            known: known.join(", "),
-            example: "springs[3].stiffness or particles[1].mass",
-        }
-    })
 }

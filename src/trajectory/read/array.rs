@@ -3,7 +3,7 @@
 use super::error::{HALF, Wrong};
 use super::limits;
 use super::shape::tuple;
-use crate::scene::shown::shorten;
+use crate::scene::words::shorten;
 use std::io::{ErrorKind, Read};
 
 /// What an array's header says.

@@ -1,89 +1,26 @@
 //! What a scene's motion depends on, as one number.
 
 use super::{BUDGET, VERSION};
-use crate::scene::{Axis, DampingModel, GravitationalPair, Particle, Scene, Solver, Spring, Wind};
+use crate::scene::Scene;
+use crate::scene::parameters::{PARTS, Value};
 use sha2::{Digest, Sha256};
 
 /// The SHA-256 of everything that decides the motion and its reference up to `until`, s, as lower-case
 /// hexadecimal digits: equal for equal motions whatever they are called and however they are stepped.
+/// What decides the motion is said by the [`PARTS`] of a scene.
 ///
 /// Numbers count by their bits, so -0 is not 0: a motion computed twice, never a wrong one.
 pub fn key(scene: &Scene, until: f64) -> String {
-    // Every field is named, here and below, so that none can be forgotten.
-    let Scene {
-        name: _,
-        description: _,
-        file: _,
-        solver,
-        duration: _,
-        up,
-        damping_model,
-        plot: _,
-        particles,
-        springs,
-        gravitational,
-        wind,
-        expect: _,
-    } = scene;
-    let Solver {
-        method: _,
-        timestep: _,
-        gravity,
-        tolerance: _,
-    } = solver;
     let mut content = Content(Sha256::new());
-    content.integers([u64::from(VERSION), BUDGET]);
-    content.numbers([until, *gravity]);
-    content.integers([match up {
-        Axis::X => 0,
-        Axis::Y => 1,
-        Axis::Z => 2,
-    }]);
-    content.integers([match damping_model {
-        DampingModel::Axial => 0,
-        DampingModel::Isotropic => 1,
-    }]);
-    content.length(particles.len());
-    for particle in particles {
-        let Particle {
-            position,
-            velocity,
-            fixed,
-            mass,
-            radius: _,
-            drag,
-        } = particle;
-        content.numbers(*position);
-        content.numbers(*velocity);
-        content.integers([u64::from(*fixed)]);
-        content.numbers([*mass, *drag]);
-    }
-    content.length(springs.len());
-    for spring in springs {
-        let Spring {
-            ends,
-            stiffness,
-            cubic,
-            damping,
-            rest_length,
-        } = spring;
-        content.integers(ends.map(|end| end as u64));
-        content.numbers([*stiffness, *cubic, *damping, *rest_length]);
-    }
-    content.length(gravitational.len());
-    for pair in gravitational {
-        let GravitationalPair { ends, g } = pair;
-        content.integers(ends.map(|end| end as u64));
-        content.numbers([*g]);
-    }
-    content.length(wind.iter().len());
-    if let Some(Wind {
-        direction,
-        strength,
-    }) = wind
-    {
-        content.numbers(*direction);
-        content.numbers([*strength]);
+    content.integers([u64::from(VERSION), BUDGET, until.to_bits()]);
+    for part in PARTS {
+        let count = (part.count)(scene);
+        for row in part.rows.iter().filter(|row| row.flat.is_some()) {
+            content.length(count);
+            for at in 0..count {
+                content.value((row.get)(scene, at));
+            }
+        }
     }
     hexadecimal(&content.0.finalize())
 }
@@ -95,21 +32,36 @@ fn hexadecimal(bytes: &[u8]) -> String {
     digits.map(digit).collect()
 }
 
-/// A hash fed with numbers of eight bytes each; lists are preceded by their length.
+/// A hash fed with numbers of eight bytes each, and text; whatever may be of any length is preceded by it.
 struct Content(Sha256);
 
 impl Content {
-    fn integers<const N: usize>(&mut self, values: [u64; N]) {
+    fn integers(&mut self, values: impl IntoIterator<Item = u64>) {
         for value in values {
             self.0.update(value.to_le_bytes());
         }
     }
 
-    fn numbers<const N: usize>(&mut self, values: [f64; N]) {
-        self.integers(values.map(f64::to_bits));
-    }
-
     fn length(&mut self, items: usize) {
         self.integers([items as u64]);
+    }
+
+    fn value(&mut self, value: Option<Value>) {
+        match value {
+            None => self.length(0),
+            Some(Value::Numbers(numbers)) => {
+                self.length(numbers.len());
+                self.integers(numbers.iter().map(|x| x.to_bits()));
+            }
+            Some(Value::Ids(ids)) => {
+                self.length(ids.len());
+                self.integers(ids.iter().map(|id| *id as u64));
+            }
+            Some(Value::Flag(flag)) => self.integers([u64::from(flag)]),
+            Some(Value::Text(text)) => {
+                self.length(text.len());
+                self.0.update(text);
+            }
+        }
     }
 }

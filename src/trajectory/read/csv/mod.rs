@@ -10,7 +10,7 @@ use super::error::{HALF, ReadError, Wrong};
 use super::expected::Expected;
 use super::times::{self, Source, Times};
 use super::{Numbers, Place, Table, limits};
-use crate::scene::shown::shorten;
+use crate::scene::words::shorten;
 use ::csv::{ByteRecord, ReaderBuilder};
 use header::Columns;
 
