@@ -2,11 +2,11 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use springcheck::crosscheck;
-use springcheck::engines::{AdaptiveEngine, Engine, IntegratorEngine};
 use springcheck::integrators::adaptive::{self, Pair};
-use springcheck::integrators::{self, Method, Settings};
+use springcheck::integrators::{self, Method};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
-use springcheck::system::ParticleSystem;
+use springcheck::solvers::{Limits, Run, Setting, Solver, Unwatched};
 use springcheck::truth::{self, Demand, NoStore};
 use std::fmt::Write;
 
@@ -48,22 +48,26 @@ fn oscillator() -> Scene {
     )
 }
 
-fn by_pair(scene: &Scene, system: &ParticleSystem, pair: &Pair, tolerance: f64) -> AdaptiveEngine {
-    let mut engine = AdaptiveEngine::new(scene, system.clone(), pair, tolerance, scene.duration);
-    while !engine.done() && engine.step().is_ok() {}
-    engine
+fn finished(solver: &Solver, scene: &Scene, system: &ParticleSystem, setting: Setting) -> Run {
+    let mut run = solver.start(scene, system, &setting).expect("a run");
+    let limits = Limits::new(system.clone(), None).now_and_then();
+    run.finish(&limits, &mut Unwatched, &|_| {});
+    run
 }
 
-fn by_steps(scene: &Scene, system: &ParticleSystem, method: &Method, n: u64) -> IntegratorEngine {
-    let h = scene.duration / n as f64;
-    let settings = Settings::default();
-    let mut engine = IntegratorEngine::new(scene, system.clone(), method, &settings, h);
-    for _ in 0..n {
-        if engine.step().is_err() {
-            break;
-        }
-    }
-    engine
+fn by_pair(scene: &Scene, system: &ParticleSystem, pair: &'static Pair, tolerance: f64) -> Run {
+    let setting = Setting::Tolerance {
+        tolerance,
+        duration: scene.duration,
+        steps: 1,
+        most: u64::MAX,
+    };
+    finished(&Solver::pair(pair), scene, system, setting)
+}
+
+fn by_steps(scene: &Scene, system: &ParticleSystem, method: &'static Method, n: u64) -> Run {
+    let setting = Setting::divided(scene.duration, n);
+    finished(&Solver::method(method), scene, system, setting)
 }
 
 /// The first setting from which on three in a row reach the target.
@@ -83,7 +87,7 @@ fn to_the_target(c: &mut Criterion, name: &str, scene: &Scene) {
     let truth = truth::find(scene, &system, Demand::Auto, scene.duration, &NoStore);
     let motion = truth.motion().expect("a truth");
     let end = motion.states(&[scene.duration]);
-    let error = |engine: &dyn Engine| {
+    let error = |engine: &Run| {
         let pairs = engine.state().x.chunks(3).zip(end.x.chunks(3));
         let squares = pairs.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum());
         let largest: f64 = squares.fold(0.0, f64::max);
@@ -98,11 +102,10 @@ fn to_the_target(c: &mut Criterion, name: &str, scene: &Scene) {
         let engine = by_pair(scene, &system, pair, at);
         let evaluations = engine.counts().force_evaluations;
         println!(
-            "{}: tolerance {at:.1e}, error {:.1e} m, {} steps and {} rejected, {evaluations:?}",
+            "{}: tolerance {at:.1e}, error {:.1e} m, {} steps, {evaluations:?}",
             pair.id,
             error(&engine),
-            engine.steps(),
-            engine.steps_rejected()
+            engine.taken()
         );
         group.bench_function(pair.id, |b| b.iter(|| by_pair(scene, &system, pair, at)));
     }

@@ -2,8 +2,8 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use springcheck::integrators::{self, Settings};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
-use springcheck::system::ParticleSystem;
 use std::fmt::Write;
 use std::hint::black_box;
 
@@ -44,7 +44,7 @@ fn a_step(c: &mut Criterion) {
         let scene = cloth(100, stiffness);
         let system = ParticleSystem::new(&scene);
         let method = integrators::find("implicit_euler").expect("a method");
-        let mut integrator = (method.build)(&Settings { tolerance });
+        let mut integrator = method.build(&Settings { tolerance });
         let mut state = ParticleSystem::initial_state(&scene);
         group.bench_function(format!("k = {stiffness}, to {tolerance:e}"), |b| {
             b.iter(|| integrator.step(black_box(&system), STEP, &mut state));

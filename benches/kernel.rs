@@ -1,18 +1,18 @@
 //! What a step costs per spring: one thread, several, and effects nobody calls for. Compare
 //! figures of one run only.
 
-#[path = "../tests/common/cloth.rs"]
-mod cloth;
+#[path = "../tests/testkit/mod.rs"]
+mod testkit;
 
-use cloth::{cloth, shuffled};
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use rayon::ThreadPoolBuilder;
-use springcheck::effects::{Effect, Gravity, Springs};
 use springcheck::integrators::{self, Settings};
+use springcheck::physics::effects::{Effect, Gravity, Springs};
+use springcheck::physics::{ForceKinds, ParticleSystem, Power, System};
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::{ParticleSystem, Power, System};
 use std::hint::black_box;
+use testkit::cloth::{cloth, shuffled};
 
 /// Steps of one method on a scene, on so many threads. Criterion's elements are springs.
 fn steps(
@@ -26,7 +26,7 @@ fn steps(
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.expect("threads");
     let method = integrators::find(method).expect("a method");
-    let mut integrator = (method.build)(&Settings::default());
+    let mut integrator = method.build(&Settings::default());
     let mut state = ParticleSystem::initial_state(scene);
     group.throughput(Throughput::Elements(scene.springs.len() as u64));
     group.bench_function(format!("{name}/{threads} threads"), |b| {
@@ -94,6 +94,9 @@ impl System for ByHand {
     }
     fn inverse_mass(&self) -> &[f64] {
         &self.inverse_mass
+    }
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NONE
     }
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
         a.fill(0.0);

@@ -2,11 +2,11 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use springcheck::crosscheck;
-use springcheck::engines::{IntegratorEngine, Limits, Observer, simulate};
 use springcheck::integrators::{self, Settings};
 use springcheck::measure::{self, EnergySeries};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
-use springcheck::system::{ParticleSystem, State};
+use springcheck::solvers::{Limits, Setting, Solver, Unwatched};
 use springcheck::trajectory::Recorder;
 use std::fmt::Write;
 use std::hint::black_box;
@@ -50,23 +50,14 @@ fn a_step(c: &mut Criterion) {
     let scene = one_spring();
     let system = ParticleSystem::new(&scene);
     let mut group = c.benchmark_group("one spring, two effects, a step");
-    for method in integrators::REGISTRY {
-        let mut integrator = (method.build)(&Settings::default());
+    for method in integrators::REGISTRY.iter() {
+        let mut integrator = method.build(&Settings::default());
         let mut state = ParticleSystem::initial_state(&scene);
         group.bench_function(method.id, |b| {
             b.iter(|| integrator.step(black_box(&system), 0.0005, &mut state));
         });
     }
     group.finish();
-}
-
-struct Nobody;
-
-impl Observer for Nobody {
-    fn next(&self, _from: u64) -> Option<u64> {
-        None
-    }
-    fn observe(&mut self, _step: u64, _state: &State) {}
 }
 
 /// 1,000,000 steps of the chain: stepping alone, watched for divergence, recorded, and measured too.
@@ -81,13 +72,15 @@ fn recording(c: &mut Criterion) {
     group.sample_size(10);
     for id in ["symplectic_euler", "rk4"] {
         let method = integrators::find(id).expect("a method");
-        let engine = || {
-            let settings = Settings::default();
-            IntegratorEngine::new(&scene, system.clone(), method, &settings, 0.0005)
+        let solver = Solver::method(method);
+        let setting = Setting::Steps {
+            timestep: 0.0005,
+            steps,
         };
+        let run = || solver.start(&scene, &system, &setting).expect("a run");
         group.bench_function(format!("{id}, stepping"), |b| {
             b.iter(|| {
-                let mut integrator = (method.build)(&Settings::default());
+                let mut integrator = method.build(&Settings::default());
                 let mut state = ParticleSystem::initial_state(&scene);
                 for _ in 0..steps {
                     let _ = integrator.step(black_box(&system), 0.0005, &mut state);
@@ -96,12 +89,12 @@ fn recording(c: &mut Criterion) {
             });
         });
         group.bench_function(format!("{id}, watched"), |b| {
-            b.iter(|| simulate(&mut engine(), steps, &limits, &mut Nobody, &|_| {}));
+            b.iter(|| run().finish(&limits, &mut Unwatched, &|_| {}));
         });
         group.bench_function(format!("{id}, recorded and measured"), |b| {
             b.iter(|| {
                 let mut recorder = Recorder::new(steps, 63, 0.0005);
-                let _ = simulate(&mut engine(), steps, &limits, &mut recorder, &|_| {});
+                let _ = run().finish(&limits, &mut recorder, &|_| {});
                 let run = recorder.finish();
                 let series = EnergySeries::new(&system, &run);
                 series.map(|series| measure::judge(&series, scale, false))

@@ -8,8 +8,9 @@ use springcheck::conformance::{Claims, check};
 use springcheck::crosscheck::{self, Choice, Plan, Quiet};
 use springcheck::integrators::{Integrator, PerStep, StepError};
 use springcheck::outcome::CheckStatus;
+use springcheck::physics::{State, System};
 use springcheck::scene;
-use springcheck::system::{State, System};
+use springcheck::solvers::Solver;
 use std::process::ExitCode;
 
 /// Kicks and drifts with these coefficients, in turn.
@@ -70,17 +71,17 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     }
 
     let scene = scene::read("scenes/oscillator/circle.yml".as_ref(), crosscheck::names())?;
-    let mut plan = Plan::new(&scene, &Choice::default_for(&scene));
+    let mut choice = Choice::default_for(&scene);
     for (name, coefficients, _) in rows {
-        let build = move || -> Box<dyn Integrator> { Box::new(KickDrift(coefficients)) };
-        plan = plan.with_integrator(name, scene.solver.timestep, build);
+        choice = choice.with(Solver::own(name, move || Box::new(KickDrift(coefficients))));
     }
+    let plan = Plan::new(&scene, &choice);
     println!(
         "\n{:<17} {:>12} {:>15}",
         scene.name, "m from truth", "m from rapier"
     );
-    for outcome in plan.execute(&Quiet)?.outcomes {
-        let off = outcome.position_error_m.map(|error| error.max);
+    for outcome in plan.execute(&Quiet)?.outcomes() {
+        let off = outcome.position_error_m.as_ref().map(|e| e.max);
         let apart = outcome.deviation_m.get("rapier").map(|d| d.max);
         let shown = |metres: Option<f64>| metres.map_or("-".into(), |m| format!("{m:.1e}"));
         println!(

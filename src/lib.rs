@@ -4,15 +4,16 @@
 //! Data flows one way, and the modules are its stages in order:
 //!
 //! ```text
-//! scene file -> Scene -> System (flat vectors, effects) -> Engine (integrator | rapier | external)
+//! scene file -> Scene -> System (flat vectors, forces) -> Solver (integrator | pair | rapier | program)
 //!            -> Trajectory -> measures (truth, laws) -> Report -> terminal, Markdown, JSON, SVG
 //! ```
 //!
-//! - [`scene`] reads a YAML file, strictly; [`effects`] builds only the forces it calls for;
-//! - [`system`] is what an integrator sees: vectors, accelerations, Jacobians, no particles;
+//! - [`scene`] reads a YAML file, strictly;
+//! - [`physics`] is what acts: a [`System`](physics::System) of flat vectors, accelerations and Jacobians, from the
+//!   [`effects`](physics::effects) the scene calls for and no others;
 //! - [`integrators`] are rows of facts over three steppers: tableau, splitting, Newton; beside them are
 //!   [`adaptive`](integrators::adaptive) pairs, which choose their own steps;
-//! - [`engines`] run an integrator, rapier worlds built from the same scene, or other programs;
+//! - [`solvers`] run an integrator, rapier worlds built from the same scene, or other programs;
 //! - [`truth`] is what really happens: a closed form or a converged reference, with an error bar;
 //! - [`trajectory`] keeps a bounded record of a run, or all of it in a file, and reads other people's;
 //! - [`measure`] turns records into errors, energy verdicts, deviations, orders, the scheme they
@@ -34,21 +35,21 @@
 //! let scene = scene::parse(yaml, "oscillator.yml", crosscheck::names())?;
 //! let plan = Plan::new(&scene, &Choice::default_for(&scene));
 //! let report = plan.execute(&Quiet)?;
-//! let energy = report.outcomes[0].energy.as_ref().expect("it ran");
+//! let energy = report.outcomes()[0].energy.as_ref().expect("it ran");
 //! assert_eq!(energy.class, Some(EnergyClass::Growing));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 pub mod conformance;
 pub mod crosscheck;
-pub mod effects;
-pub mod engines;
 pub mod integrators;
+mod krylov;
 pub mod measure;
 pub mod outcome;
+pub mod physics;
 pub mod report;
 pub mod scene;
-pub mod system;
+pub mod solvers;
 pub mod trajectory;
 pub mod truth;
 mod vector;

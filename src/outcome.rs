@@ -1,48 +1,96 @@
-//! What a run found, as data: the JSON contract (`docs/contract.md`) as types, and beside it the
-//! curves that plots are drawn from. Reports read this and nothing else.
+//! What a verb found, as data: the JSON contract (`docs/contract.md`) as types, and beside it the
+//! series that figures are drawn from. Everything that is printed or drawn is a function of this.
 //!
 //! Every number that could be missing is an `Option`; no field ever holds NaN or infinity.
 
 mod cost;
+mod series;
 mod stability;
 
-pub use cost::{
-    Cost, CostCurve, CostLine, CostPanel, CostPanels, CostPoint, CostRank, CostReached, CostTarget,
+pub use cost::{Cost, CostCurve, CostPoint, CostRank, CostReached, CostTarget};
+pub use series::{
+    Beside, CostLine, CostPanel, CostPanels, Curves, Figures, PlotAxis, Series, TruthCurves,
 };
 pub use stability::{
     Admissible, AdmissiblePanel, Cell, MapPanel, Stability, StabilityMap, StabilityRow,
     TightestLimit,
 };
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Version of the JSON layout.
-pub const SCHEMA_VERSION: u32 = 1;
-
-/// Everything one scene's run found.
-#[derive(Debug, Clone, Serialize)]
+/// Everything one verb found of one scene: complete when it is made, and equal after it was written
+/// as JSON and read again.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Report {
-    pub schema_version: u32,
-    pub scene: SceneFacts,
-    pub truth: Truth,
-    pub outcomes: Vec<Outcome>,
-    pub checks: Vec<Check>,
-    /// `compare` alone: the first step that leaves the scheme, null where none does.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub fault: Option<Option<Fault>>,
-    /// `stability` alone.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stability: Option<Stability>,
-    /// `cost` alone.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cost: Option<Cost>,
-    /// What plots need and the JSON does not carry.
-    #[serde(skip)]
-    pub figures: Figures,
+    #[serde(flatten)]
+    pub header: Header,
+    #[serde(flatten)]
+    pub body: Body,
+    /// What only figures need. The JSON says whether there is any; it lies in a file beside it.
+    #[serde(rename = "series", default)]
+    pub beside: Beside,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// What the reports of all verbs have.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Header {
+    pub scene: SceneFacts,
+    pub truth: Truth,
+    pub checks: Vec<Check>,
+}
+
+/// What one verb found. The JSON's key `verb` says which it is.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(tag = "verb", rename_all = "snake_case")]
+pub enum Body {
+    Run {
+        outcomes: Vec<Outcome>,
+    },
+    Compare {
+        outcomes: Vec<Outcome>,
+        /// The first step that leaves the scheme; null where none does.
+        fault: Option<Fault>,
+    },
+    Stability {
+        /// There for readers that look for outcomes in every report.
+        outcomes: [(); 0],
+        stability: Stability,
+    },
+    Cost {
+        /// As in `Stability`.
+        outcomes: [(); 0],
+        cost: Cost,
+    },
+}
+
+impl Report {
+    /// One for each engine and timestep; none where the verb has other answers.
+    pub fn outcomes(&self) -> &[Outcome] {
+        match &self.body {
+            Body::Run { outcomes } | Body::Compare { outcomes, .. } => outcomes,
+            Body::Stability { .. } | Body::Cost { .. } => &[],
+        }
+    }
+
+    /// Of `stability` alone.
+    pub fn stability(&self) -> Option<&Stability> {
+        match &self.body {
+            Body::Stability { stability, .. } => Some(stability),
+            _ => None,
+        }
+    }
+
+    /// Of `cost` alone.
+    pub fn cost(&self) -> Option<&Cost> {
+        match &self.body {
+            Body::Cost { cost, .. } => Some(cost),
+            _ => None,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct SceneFacts {
     pub name: String,
     pub file: String,
@@ -57,27 +105,24 @@ pub struct SceneFacts {
     /// The scale S that energy errors are relative to, joules; null where the scene has none.
     pub energy_scale_j: Option<f64>,
     /// Free text from the file, for headings.
-    #[serde(skip)]
     pub description: Option<String>,
-    /// The integrator the file names.
-    #[serde(skip)]
-    pub own_method: String,
+    /// The id of the integrator the file names.
+    pub own_integrator: String,
 }
 
 /// One line of the effect ledger.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct EffectUse {
-    pub id: &'static str,
+    pub id: String,
     /// Particles, springs or pairs it acts on.
     pub members: usize,
     /// Times its force was evaluated, summed over the hand-written integrators of this run.
     pub evaluations: u64,
-    /// Nanoseconds one evaluation takes, measured; shown, never part of the JSON.
-    #[serde(skip)]
-    pub nanoseconds: Option<f64>,
+    /// Nanoseconds one evaluation takes, measured.
+    pub wall_ns: Option<f64>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Truth {
     pub kind: TruthKind,
     /// The form, or the reference's methods and steps.
@@ -90,7 +135,7 @@ pub struct Truth {
     pub reason: Option<String>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TruthKind {
     ClosedForm,
@@ -98,7 +143,7 @@ pub enum TruthKind {
     None,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     Integrator,
@@ -106,7 +151,7 @@ pub enum Kind {
     External,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     Completed,
@@ -116,7 +161,7 @@ pub enum Status {
 }
 
 /// One engine at one timestep.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Outcome {
     pub engine: String,
     pub kind: Kind,
@@ -140,14 +185,13 @@ pub struct Outcome {
     pub work: Work,
     /// Null where there is nothing to replay.
     pub identified: Option<Identified>,
-    /// Plain sentences for the table's foot; not part of the JSON.
-    #[serde(skip)]
+    /// Plain sentences for the table's foot.
     pub remarks: Vec<String>,
 }
 
 /// Largest distance of a particle from where it truly is (m) or from its true velocity (m/s), over
 /// the recorded instants up to the truth's horizon.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Spread {
     /// At the last of these instants.
     #[serde(rename = "final")]
@@ -157,7 +201,7 @@ pub struct Spread {
 }
 
 /// Largest distance over the particles, metres, over the instants both engines recorded.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Deviation {
     #[serde(rename = "final")]
     pub last: f64,
@@ -167,7 +211,7 @@ pub struct Deviation {
 }
 
 /// The energy balance B = E + dissipated - injected.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Energy {
     pub initial_j: Option<f64>,
     pub final_j: Option<f64>,
@@ -180,17 +224,12 @@ pub struct Energy {
     /// Half the peak-to-peak of what the trend leaves, in units of S.
     pub fluctuation: Option<f64>,
     pub class: Option<EnergyClass>,
-    /// Kinetic energy at the end, joules; shown, not part of the JSON.
-    #[serde(skip)]
+    /// Kinetic energy at the end.
     pub kinetic_final_j: Option<f64>,
-    /// Potential energy by effect at the end, joules; shown, not part of the JSON.
-    #[serde(skip)]
-    pub potential_final_j: BTreeMap<&'static str, f64>,
-    /// Dissipated and injected over the run, joules; 0 where the scene has neither; shown, not part
-    /// of the JSON.
-    #[serde(skip)]
+    /// Potential energy at the end, by the id of the effect that holds it.
+    pub potential_final_j: BTreeMap<String, f64>,
+    /// Taken out and put in by effects over the run; 0 where the scene has neither.
     pub dissipated_j: Option<f64>,
-    #[serde(skip)]
     pub injected_j: Option<f64>,
 }
 
@@ -202,7 +241,7 @@ impl Energy {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EnergyClass {
     Bounded,
@@ -212,7 +251,7 @@ pub enum EnergyClass {
 }
 
 /// Largest departure from the initial value; null where the scene does not conserve it.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Momentum {
     #[serde(rename = "linear_error_max_kg_m_s")]
     pub linear_error_max: Option<f64>,
@@ -221,7 +260,7 @@ pub struct Momentum {
     pub angular_error_max: Option<f64>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Work {
     pub steps: u64,
     /// Evaluations of all forces; null where the engine does not tell (rapier's joints).
@@ -230,7 +269,7 @@ pub struct Work {
     pub wall_s: Option<WallTime>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct WallTime {
     pub min: f64,
     pub median: f64,
@@ -239,7 +278,7 @@ pub struct WallTime {
 }
 
 /// The scheme a trajectory follows, by one-step replay.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Identified {
     /// A method's id, or a common mistake's.
     pub method: String,
@@ -260,7 +299,7 @@ pub struct Identified {
 }
 
 /// Why a trajectory has not one scheme.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Undecided {
     /// The equivalent ones are the same map where this trajectory goes: no data could tell.
@@ -272,7 +311,7 @@ pub enum Undecided {
 }
 
 /// The first step of a trajectory that does not follow its scheme.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fault {
     /// Step n leads from t_n to t_n+1, zero-based; of rows several steps apart, the first of the
     /// steps between them.
@@ -292,7 +331,7 @@ pub struct Fault {
 }
 
 /// What a fault shows in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
     #[serde(rename = "position_m")]
     Position,
@@ -300,7 +339,7 @@ pub enum Quantity {
     Velocity,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Check {
     pub id: String,
     pub subject: String,
@@ -311,59 +350,11 @@ pub struct Check {
     pub message: String,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CheckStatus {
     Pass,
     Fail,
     Skip,
     Inconclusive,
-}
-
-/// What the figures are drawn from.
-#[derive(Debug, Clone, Default)]
-pub struct Figures {
-    /// One per outcome that recorded anything, in the outcomes' order.
-    pub curves: Vec<Curves>,
-    /// What really happens, up to the truth's horizon.
-    pub truth: Option<TruthCurves>,
-    /// The curve the scene asks for: its axis label and range.
-    pub plot: Option<PlotAxis>,
-    /// The two coordinates (0, 1, 2) trajectories are projected on: the widest, `up` vertical.
-    pub plane: [usize; 2],
-    /// Fixed particles on that plane, drawn as squares.
-    pub fixed: Vec<[f64; 2]>,
-}
-
-#[derive(Debug, Clone)]
-pub struct PlotAxis {
-    /// Such as `particle 1, z (m)`.
-    pub label: String,
-    pub y_range: Option<[f64; 2]>,
-}
-
-/// Series over the recorded instants of one outcome; all finite, equally long where not empty.
-#[derive(Debug, Clone)]
-pub struct Curves {
-    /// Index into the report's outcomes.
-    pub outcome: usize,
-    /// Seconds.
-    pub t: Vec<f64>,
-    /// (B - B(0)) / S, or joules where the scene has no scale; empty where no velocities are known.
-    pub energy: Vec<f64>,
-    /// The coordinate `plot` names; empty without one.
-    pub plot: Vec<f64>,
-    /// A few particles' paths projected on `Figures::plane`: one polyline each.
-    pub paths: Vec<Vec<[f64; 2]>>,
-}
-
-/// The truth over some instants; all finite, equally long.
-#[derive(Debug, Clone)]
-pub struct TruthCurves {
-    /// Seconds.
-    pub t: Vec<f64>,
-    /// As in [`Curves`].
-    pub plot: Vec<f64>,
-    /// As in [`Curves`].
-    pub paths: Vec<Vec<[f64; 2]>>,
 }

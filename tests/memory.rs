@@ -1,11 +1,11 @@
 //! What a running simulation keeps: bytes per spring of a large cloth.
 
-#[path = "common/cloth.rs"]
-mod cloth;
+#[path = "testkit/mod.rs"]
+mod testkit;
 
 use springcheck::integrators::{self, Settings};
+use springcheck::physics::ParticleSystem;
 use springcheck::scene::{DampingModel, Scene};
-use springcheck::system::ParticleSystem;
 
 #[global_allocator]
 static ALLOCATOR: dhat::Alloc = dhat::Alloc;
@@ -18,7 +18,7 @@ fn bytes_per_spring(method: &str, scene: Scene, keep_scene: bool) -> [f64; 2] {
     let system = ParticleSystem::new(&scene);
     let mut state = ParticleSystem::initial_state(&scene);
     let kept = keep_scene.then_some(scene);
-    let mut integrator = (method.build)(&Settings::default());
+    let mut integrator = method.build(&Settings::default());
     let mut worst = 0;
     for _ in 0..2 {
         let done = integrator.step(&system, 1e-4, &mut state);
@@ -36,7 +36,7 @@ fn a_running_simulation_takes_under_100_bytes_per_spring() {
     // 595,978 springs with dampers between 99,856 particles. A spring takes 32 bytes, and one in
     // twenty has a copy; each has a sixth of a particle, which takes 16 bytes of weight and 24 for
     // each vector: inverse mass, x, v, then a with symplectic Euler, nine vectors with rk4.
-    let cloth = || cloth::cloth(316, 0.01, DampingModel::Axial);
+    let cloth = || testkit::cloth::cloth(316, 0.01, DampingModel::Axial);
     for (method, vectors) in [("symplectic_euler", 4.0), ("rk4", 12.0)] {
         let [worst, running] = bytes_per_spring(method, cloth(), false);
         let derived = 32.0 * 1.05 + (24.0 * vectors + 16.0) / 5.97;

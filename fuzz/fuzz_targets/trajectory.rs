@@ -1,6 +1,6 @@
 //! Any bytes: whole finite states at increasing steps, or an error; never a panic.
 //!
-//! `mkdir -p fuzz/corpus/trajectory && cp tests/trajectories/samples/*.[cn]* fuzz/corpus/trajectory/`,
+//! `mkdir -p fuzz/corpus/trajectory && cp tests/inputs/trajectories/samples/*.[cn]* fuzz/corpus/trajectory/`,
 //! then `cargo +nightly fuzz run trajectory -- -dict=fuzz/trajectory.dict`.
 
 #![no_main]

@@ -1,59 +1,87 @@
 //! The integrators and engines a command line names.
 
 use super::rapier::Custom;
-use anyhow::Context;
-use springcheck::crosscheck::{Choice, ChosenEngine};
-use springcheck::engines;
-use springcheck::integrators::{self, Method};
+use anyhow::{Context, bail};
+use springcheck::crosscheck::Choice;
+use springcheck::integrators::{self, adaptive};
+use springcheck::outcome::Kind;
 use springcheck::scene::Scene;
+use springcheck::solvers::{self, Solver};
 
-/// The methods of these ids in this order, all of them for `all`, and `usual` for none.
-pub fn methods(
-    ids: &[String],
-    scene: &Scene,
-    usual: Vec<&'static Method>,
-) -> anyhow::Result<Vec<&'static Method>> {
+/// The integrators of these ids in this order, all of them for `all`, and the `usual` ones for none.
+pub fn integrators(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
+    let known = || format!("integrators: {}, or all", integrators::ids().join(", "));
+    let find = |id: &str| integrators::find(id).map(Solver::method);
     match ids {
-        [] => Ok(usual),
+        [] => Ok(of_kind(usual, Kind::Integrator)),
         [all] if all == "all" => Ok(Choice::all_methods(scene)),
-        ids => each(ids, integrators::find, || {
-            format!("integrators: {}, or all", integrators::ids().join(", "))
-        }),
+        ids => each(ids, find, known),
     }
 }
 
-/// The engines of these ids, none for `none`, and `usual` without ids; after them the rapier rows with
-/// settings of the user's own, the same settings once.
-pub fn engines(
-    ids: &[String],
-    rapier: &[Custom],
-    usual: Vec<ChosenEngine>,
-) -> anyhow::Result<Vec<ChosenEngine>> {
+/// The same where adaptive pairs stand beside the others: `all` takes them in.
+pub fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
+    let (pairs, others): (Vec<String>, Vec<String>) = ids
+        .iter()
+        .cloned()
+        .partition(|id| adaptive::find(id).is_some());
+    let find = |id: &str| adaptive::find(id).map(Solver::pair);
+    let pairs = each(&pairs, find, String::new)?;
+    if others.is_empty() && !pairs.is_empty() {
+        return Ok(pairs);
+    }
+    let known = || format!("--integrators (adaptive: {})", adaptive::ids().join(", "));
+    let all = others.first().is_some_and(|id| id == "all");
+    let mut chosen = integrators(&others, scene, usual).with_context(known)?;
+    chosen.extend(if all && pairs.is_empty() {
+        usual
+            .iter()
+            .filter(|s| s.as_pair().is_some())
+            .cloned()
+            .collect()
+    } else {
+        pairs
+    });
+    Ok(chosen)
+}
+
+/// The engines of these ids, none for `none`, and the `usual` ones without ids; after them the rapier rows
+/// with settings of the user's own, the same settings once.
+pub fn engines(ids: &[String], rapier: &[Custom], usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
+    let known = || format!("engines: {}, or none", solvers::rapier::IDS.join(", "));
+    let find = |id: &str| solvers::find(id).filter(|solver| solver.kind == Kind::Rapier);
     let mut chosen = match ids {
-        [] => usual,
+        [] => of_kind(usual, Kind::Rapier),
         [none] if none == "none" => Vec::new(),
-        ids => {
-            let rows = each(ids, engines::find, || {
-                format!("engines: {}, or none", engines::ids().join(", "))
-            })?;
-            rows.into_iter().map(ChosenEngine::from).collect()
-        }
+        ids => each(ids, find, known)?,
     };
-    for custom in rapier.iter().map(Custom::chosen) {
-        let known = |e: &ChosenEngine| e.row.id == custom.row.id;
-        if !chosen.iter().any(known) {
+    for custom in rapier.iter().map(Custom::solver) {
+        if !chosen.iter().any(|known| known.id == custom.id) {
             chosen.push(custom);
         }
     }
     Ok(chosen)
 }
 
+fn of_kind(solvers: &[Solver], kind: Kind) -> Vec<Solver> {
+    let of = |solver: &&Solver| solver.kind == kind;
+    solvers.iter().filter(of).cloned().collect()
+}
+
+/// Refuses a timestep of its own where steps are what is looked for.
+pub fn without_timestep(rapier: &[Custom], what: &str) -> anyhow::Result<()> {
+    if rapier.iter().any(|custom| custom.timestep.is_some()) {
+        bail!("--rapier dt=...: here the step is what is {what}");
+    }
+    Ok(())
+}
+
 /// Looks each id up, once; an unknown one is an error that lists what there is.
-fn each<T>(
+fn each(
     ids: &[String],
-    find: impl Fn(&str) -> Option<&'static T>,
+    find: impl Fn(&str) -> Option<Solver>,
     known: impl Fn() -> String,
-) -> anyhow::Result<Vec<&'static T>> {
+) -> anyhow::Result<Vec<Solver>> {
     let mut rows = Vec::new();
     for (at, id) in ids.iter().enumerate() {
         if ids[..at].contains(id) {

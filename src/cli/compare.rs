@@ -8,7 +8,8 @@ use super::run::Truth;
 use super::shown::{self, HUMAN, formats};
 use anyhow::{Context, bail};
 use springcheck::crosscheck::{self, Comparison};
-use springcheck::outcome::{Figures, Report, Undecided};
+use springcheck::outcome::{Body, Report, Undecided};
+use springcheck::report::json::Tool;
 use springcheck::scene;
 use springcheck::trajectory::{self, Expected, limits};
 use std::fs::File;
@@ -74,23 +75,15 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     };
     let steps = comparison.rows.steps.last().copied().unwrap_or(0);
     let progress = Progress::new(steps, 0.0, quiet);
-    let mut report = comparison.execute(&host(&progress, None, &Cache::new()))?;
+    let report = comparison.execute(&host(&progress, None, &Cache::new()))?;
     progress.finish();
-    let place = args
-        .output
-        .as_ref()
-        .map(|output| Place::new(output, &args.file));
-    if let Some(place) = &place {
-        place.create()?;
-        place.write(&report)?;
-    } else {
-        // No files, so no links to them.
-        report.figures = Figures::default();
-    }
+    let output = args.output.as_ref();
+    let place = output.map(|output| Place::new(output, &args.file));
+    let report = shown::written(report, place.as_ref())?;
     if args.format == HUMAN {
         super::print(&shown::table(&report, place.as_ref()))?;
     } else {
-        shown::print(&args.format, std::slice::from_ref(&report))?;
+        shown::print(&args.format, &Tool::this(), std::slice::from_ref(&report))?;
     }
     Ok(ExitCode::from(code(&report)))
 }
@@ -105,10 +98,13 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
 
 /// 0: it follows a scheme throughout; 1: it has a fault; 3: which scheme it follows is open.
 fn code(report: &Report) -> u8 {
-    if report.fault.as_ref().is_some_and(Option::is_some) {
+    if let Body::Compare { fault: Some(_), .. } = report.body {
         return 1;
     }
-    let found = report.outcomes.first().and_then(|o| o.identified.as_ref());
+    let found = report
+        .outcomes()
+        .first()
+        .and_then(|o| o.identified.as_ref());
     match found.map(|found| found.undecided) {
         // Which of several names one map has is no question the data could answer.
         Some(None | Some(Undecided::SameMap)) => 0,

@@ -12,10 +12,9 @@ use super::time::Time;
 use anyhow::{Context, bail};
 use springcheck::crosscheck;
 use springcheck::crosscheck::cost::{self, CostChoice, CostPlan};
-use springcheck::integrators::Method;
-use springcheck::integrators::adaptive::{self, Pair};
 use springcheck::outcome::Report;
 use springcheck::scene::{self, Scene};
+use springcheck::solvers::Solver;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -101,17 +100,10 @@ pub fn cost(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let progress = Progress::new(plan.work(), expected, quiet);
     let report = plan.execute(&host(&progress, None, &Cache::new()));
     progress.finish();
-    if let Some(place) = &place {
-        place.create()?;
-        place.write(&report)?;
-    }
-    if args.format == HUMAN {
-        let next = next(args, &scene, &report);
-        let otherwise = "springcheck cost --help";
-        super::print(&shown::human(&report, place.as_ref(), next, otherwise))?;
-    } else {
-        shown::print(&args.format, std::slice::from_ref(&report))?;
-    }
+    let report = shown::written(report, place.as_ref())?;
+    let next = next(args, &scene, &report);
+    let otherwise = "springcheck cost --help";
+    shown::print_one(&args.format, &report, place.as_ref(), next, otherwise)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -136,9 +128,7 @@ fn read(args: &Args) -> anyhow::Result<Scene> {
 }
 
 fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
-    if args.rapier.iter().any(|custom| custom.timestep.is_some()) {
-        bail!("--rapier dt=...: here the step is what is swept; leave dt out, or give --timestep");
-    }
+    chosen::without_timestep(&args.rapier, "swept; leave dt out, or give --timestep")?;
     if args.targets.len() > MOST || args.timestep.len() > MOST {
         bail!("at most {MOST} targets and {MOST} timesteps");
     }
@@ -146,57 +136,28 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
     let mut targets = args.targets.clone();
     targets.sort_by(|a, b| b.total_cmp(a));
     targets.dedup();
-    let (methods, pairs) = integrators(args, scene, &usual)?;
+    let mut solvers = chosen::with_pairs(&args.integrators, scene, &usual.solvers)?;
+    solvers.extend(chosen::engines(
+        &args.engines,
+        &args.rapier,
+        &usual.solvers,
+    )?);
     let choice = CostChoice {
-        methods,
-        pairs,
-        engines: chosen::engines(&args.engines, &args.rapier, usual.engines)?,
+        solvers,
         targets,
         settings: args.steps as usize,
         budget_s: args.budget.0.as_secs_f64(),
         timesteps: (!args.timestep.is_empty()).then(|| args.timestep.clone()),
         truth: args.truth.demand(),
-        ..usual
     };
-    if choice.methods.is_empty() && choice.pairs.is_empty() && choice.engines.is_empty() {
+    if choice.solvers.is_empty() {
         bail!("nothing to sweep: no integrators and no engines");
     }
-    if choice.timesteps.is_some() && choice.methods.is_empty() && choice.engines.is_empty() {
+    let swept = |solver: &Solver| solver.as_pair().is_none();
+    if choice.timesteps.is_some() && !choice.solvers.iter().any(swept) {
         bail!("nothing to sweep: adaptive pairs choose their own steps; leave --timestep out");
     }
     Ok(choice)
-}
-
-/// Methods and adaptive pairs, which stand under one flag.
-fn integrators(
-    args: &Args,
-    scene: &Scene,
-    usual: &CostChoice,
-) -> anyhow::Result<(Vec<&'static Method>, Vec<&'static Pair>)> {
-    let known = || format!("--integrators (adaptive: {})", adaptive::ids().join(", "));
-    let (pairs, others): (Vec<String>, Vec<String>) = args
-        .integrators
-        .iter()
-        .cloned()
-        .partition(|id| adaptive::find(id).is_some());
-    if pairs.is_empty() {
-        let methods = chosen::methods(&others, scene, usual.methods.clone()).with_context(known)?;
-        let all = others.is_empty() || others.iter().any(|id| id == "all");
-        let pairs = if all { usual.pairs.clone() } else { Vec::new() };
-        return Ok((methods, pairs));
-    }
-    let methods = if others.is_empty() {
-        Vec::new()
-    } else {
-        chosen::methods(&others, scene, Vec::new()).with_context(known)?
-    };
-    let mut chosen: Vec<&'static Pair> = Vec::new();
-    for pair in pairs.iter().filter_map(|id| adaptive::find(id)) {
-        if !chosen.iter().any(|known| known.id == pair.id) {
-            chosen.push(pair);
-        }
-    }
-    Ok((methods, chosen))
 }
 
 /// The classic picture, or after it the cheapest integrator in a cross-check.
@@ -214,7 +175,7 @@ fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
             "springcheck cost {path}{duration} --timestep {steps}"
         ));
     }
-    let targets = &report.cost.as_ref()?.targets;
+    let targets = &report.cost()?.targets;
     let cheapest = targets.iter().rev().find_map(|t| t.cheapest.as_ref())?;
     Some(format!(
         "springcheck run {path}{duration} --integrators {} --timestep {}",

@@ -2,10 +2,13 @@
 
 use clap::ValueEnum;
 use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
+use springcheck::integrators;
 use springcheck::integrators::adaptive::{self, Estimate};
 use springcheck::integrators::{EnergyLaw, Method, PerStep, Stable};
 use springcheck::measure::identify::{MISTAKES, Mistake, Wrong};
-use springcheck::{effects, engines, integrators};
+use springcheck::outcome::Kind;
+use springcheck::physics::effects;
+use springcheck::solvers::catalogue;
 use std::process::ExitCode;
 
 #[derive(Debug, clap::Args)]
@@ -39,7 +42,7 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
             .to_string()
         }
         What::Engines => {
-            let rows = engines::REGISTRY.iter();
+            let rows = catalogue().filter(|solver| solver.kind == Kind::Rapier);
             table(
                 &["engine", "what"],
                 rows.map(|row| vec![row.id.to_string(), row.summary.into()]),

@@ -13,6 +13,7 @@ mod progress;
 mod rapier;
 mod run;
 mod save;
+mod show;
 mod shown;
 mod stability;
 mod time;
@@ -51,6 +52,8 @@ enum Verb {
     Stability(stability::Args),
     /// What accuracy costs: errors over time and evaluations, and the cheapest way to a target.
     Cost(cost::Args),
+    /// A stored report once more: printed and drawn as by the verb that made it.
+    Show(show::Args),
     /// What there is: integrators, effects, engines, mistakes, with their facts.
     List(list::Args),
 }
@@ -86,6 +89,7 @@ pub fn main() -> ExitCode {
         Verb::Compare(args) => compare::compare(&args, cli.quiet),
         Verb::Stability(args) => stability::stability(&args, cli.quiet),
         Verb::Cost(args) => cost::cost(&args, cli.quiet),
+        Verb::Show(args) => show::show(&args, cli.quiet),
         Verb::List(args) => list::list(&args),
     };
     match done {

@@ -2,7 +2,8 @@
 
 use anyhow::Context;
 use springcheck::outcome::Report;
-use springcheck::report;
+use springcheck::report::json::Tool;
+use springcheck::report::{self, series};
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
@@ -47,16 +48,22 @@ impl Place {
         self.folder.join(format!("{}.md", report::stem(report)))
     }
 
+    /// Makes the folder where it is not there.
     pub fn create(&self) -> anyhow::Result<()> {
         std::fs::create_dir_all(&self.folder)
             .with_context(|| format!("cannot make {}", self.folder.display()))
     }
 
-    /// Writes the report in every file format, and its figures.
-    pub fn write(&self, report: &Report) -> anyhow::Result<()> {
+    /// Writes the report in every file format, its figures, and what these are drawn from. `tool` made it.
+    pub fn write(&self, tool: &Tool, report: &Report) -> anyhow::Result<()> {
+        let reports = std::slice::from_ref(report);
+        let stem = report::stem(report);
+        if let Some(bytes) = series::pack(reports) {
+            self.put(&format!("{stem}.{}", series::EXTENSION), &bytes)?;
+        }
         for format in report::FORMATS.iter().filter(|format| format.file) {
-            let name = format!("{}.{}", report::stem(report), format.extension);
-            let text = (format.render)(std::slice::from_ref(report));
+            let name = format!("{stem}.{}", format.extension);
+            let text = (format.render)(tool, reports);
             self.put(&name, text.as_bytes())?;
         }
         for (name, svg) in report::svg::figures(report) {

@@ -1,7 +1,7 @@
 //! `--rapier dt=0.001,iterations=8,pgs=4`: one more rapier row.
 
-use springcheck::crosscheck::ChosenEngine;
-use springcheck::engines::{self, rapier::Settings};
+use springcheck::solvers::Solver;
+use springcheck::solvers::rapier::Settings;
 use std::str::FromStr;
 
 /// rapier's settings as the flag states them; what it leaves out keeps rapier's default.
@@ -58,16 +58,14 @@ impl FromStr for Custom {
 
 impl Custom {
     /// The engine, named after its settings. Others are not compared with it.
-    pub fn chosen(&self) -> ChosenEngine {
-        let mut row = engines::rapier_with(self.settings);
-        row.reference = false;
+    pub fn solver(&self) -> Solver {
+        let mut solver = Solver::rapier(self.settings);
+        solver.reference = false;
+        solver.timestep = self.timestep;
         if let Some(dt) = self.timestep {
             let changes = self.settings.changes();
-            row.id = format!("rapier(dt={dt},{changes})").into();
+            solver.id = format!("rapier(dt={dt},{changes})").into();
         }
-        ChosenEngine {
-            row,
-            timestep: self.timestep,
-        }
+        solver
     }
 }

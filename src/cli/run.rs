@@ -11,8 +11,9 @@ use super::save::{FileKind, Files};
 use super::shown::{self, HUMAN, formats};
 use super::time::Time;
 use anyhow::{Context, bail};
-use springcheck::crosscheck::{self, Choice, Orders, Plan, expect};
-use springcheck::outcome::{Check, CheckStatus, Figures, Report};
+use springcheck::crosscheck::{self, Choice, Expectations, Orders, Plan};
+use springcheck::outcome::{CheckStatus, Report};
+use springcheck::report::json::Tool;
 use springcheck::scene::{self, Scene};
 use springcheck::truth::Demand;
 use std::path::{Path, PathBuf};
@@ -124,15 +125,15 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         reports.push(report);
     }
     if args.format != HUMAN {
-        if args.output.is_none() {
-            // No files, so no links to them.
-            for report in &mut reports {
-                report.figures = Figures::default();
-            }
-        }
-        shown::print(&args.format, &reports)?;
+        shown::print(&args.format, &Tool::this(), &reports)?;
     }
-    let failed = |report: &Report| report.checks.iter().any(|c| c.status == CheckStatus::Fail);
+    let failed = |report: &Report| {
+        report
+            .header
+            .checks
+            .iter()
+            .any(|c| c.status == CheckStatus::Fail)
+    };
     Ok(ExitCode::from(u8::from(reports.iter().any(failed))))
 }
 
@@ -173,7 +174,9 @@ fn one(args: &Args, quiet: bool, read: &Read, path: &Path) -> anyhow::Result<Rep
         (Some(_), None) => bail!("--save needs --output when --format is not human"),
     };
     let mut choice = choice(args, scene)?;
-    choice.programs = external::chosen(&args.external, path, args.external_timeout);
+    choice.expectations = expectations(args, read);
+    let programs = external::chosen(&args.external, path, args.external_timeout);
+    choice.solvers.extend(programs);
     let plan = Plan::new(scene, &choice);
     let estimates = plan.estimate();
     let expected = announce::expected(&estimates);
@@ -189,28 +192,21 @@ fn one(args: &Args, quiet: bool, read: &Read, path: &Path) -> anyhow::Result<Rep
     }
     let steps = plan.cases.iter().map(|case| case.label.steps).sum();
     let progress = Progress::new(steps, expected, quiet);
-    let mut report = plan.execute(&host(&progress, files.as_ref(), &Cache::new()))?;
-    report.checks.extend(expectations(args, read, &report));
+    let report = plan.execute(&host(&progress, files.as_ref(), &Cache::new()))?;
     progress.finish();
-    if let Some(place) = &place {
-        place.write(&report)?;
-    }
-    Ok(report)
+    shown::written(report, place.as_ref())
 }
 
 /// What the scene expects of what ran, unless flags changed what it is about.
-fn expectations(args: &Args, read: &Read, report: &Report) -> Vec<Check> {
-    let changed = if read.scene.duration != read.stated {
-        format!("they are about {:?} s", read.stated)
+fn expectations(args: &Args, read: &Read) -> Expectations {
+    if read.scene.duration != read.stated {
+        Expectations::Skipped(format!("they are about {:?} s", read.stated))
     } else if args.truth.demand() != Demand::Auto {
-        "they are about errors and energies against the truth, and --truth changed it".to_owned()
+        let why = "they are about errors and energies against the truth, and --truth changed it";
+        Expectations::Skipped(why.to_owned())
     } else {
-        return expect::check(&read.scene, report);
-    };
-    let any = !read.scene.expect.is_empty();
-    any.then(|| expect::not_judged(&changed))
-        .into_iter()
-        .collect()
+        Expectations::Judged
+    }
 }
 
 /// Two scenes must not write into one folder.
@@ -255,12 +251,12 @@ fn next(args: &Args, path: &Path, report: &Report) -> Option<String> {
         .timestep
         .first()
         .copied()
-        .unwrap_or(report.scene.timestep);
+        .unwrap_or(report.header.scene.timestep);
     // Six digits are enough for a suggestion.
     let steps: Vec<String> = [2.0 * h, h, 0.5 * h]
         .iter()
         .filter_map(|h| format!("{h:.5e}").parse::<f64>().ok())
-        .filter(|h| *h <= report.scene.duration)
+        .filter(|h| *h <= report.header.scene.duration)
         .map(|h| h.to_string())
         .collect();
     Some(format!(
@@ -275,8 +271,9 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
     if args.order {
         choice.order = Orders::Always;
     }
-    choice.methods = chosen::methods(&args.integrators, scene, choice.methods)?;
-    choice.engines = chosen::engines(&args.engines, &args.rapier, choice.engines)?;
+    let engines = chosen::engines(&args.engines, &args.rapier, &choice.solvers)?;
+    choice.solvers = chosen::integrators(&args.integrators, scene, &choice.solvers)?;
+    choice.solvers.extend(engines);
     if !args.timestep.is_empty() {
         choice.timesteps.clear();
         for &timestep in &args.timestep {

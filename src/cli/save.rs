@@ -2,8 +2,8 @@
 
 use super::output::{Place, temporary};
 use springcheck::crosscheck::{Label, Saver};
-use springcheck::engines::Observer;
-use springcheck::system::State;
+use springcheck::physics::State;
+use springcheck::solvers::Observer;
 use springcheck::trajectory::{CsvWriter, NpzWriter, SaveError};
 use std::fs::File;
 use std::io::BufWriter;

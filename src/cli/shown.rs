@@ -5,6 +5,7 @@ use anyhow::Context;
 use clap::builder::PossibleValuesParser;
 use springcheck::outcome::Report;
 use springcheck::report;
+use springcheck::report::json::Tool;
 use std::path::Path;
 
 /// The format whose texts are tables for people, with files beside them.
@@ -23,10 +24,36 @@ pub fn place(output: Option<&Path>, format: &str, scene: &Path) -> Option<Place>
     }
 }
 
+/// The report after it is written to its place. Without one there are no figures, so nothing links to
+/// them.
+pub fn written(report: Report, place: Option<&Place>) -> anyhow::Result<Report> {
+    let Some(place) = place else {
+        return Ok(report.without_series());
+    };
+    place.create()?;
+    place.write(&Tool::this(), &report)?;
+    Ok(report)
+}
+
 /// The reports on stdout.
-pub fn print(format: &str, reports: &[Report]) -> anyhow::Result<()> {
+pub fn print(format: &str, tool: &Tool, reports: &[Report]) -> anyhow::Result<()> {
     let format = report::format(format).context("a format without a row")?;
-    super::print(&(format.render)(reports))
+    super::print(&(format.render)(tool, reports))
+}
+
+/// One report on stdout; for people with a command to try next, as in [`human`].
+pub fn print_one(
+    format: &str,
+    report: &Report,
+    place: Option<&Place>,
+    next: Option<String>,
+    otherwise: &str,
+) -> anyhow::Result<()> {
+    if format == HUMAN {
+        super::print(&human(report, place, next, otherwise))
+    } else {
+        print(format, &Tool::this(), std::slice::from_ref(report))
+    }
 }
 
 /// The table and its verdict, then the report's path if there is one.

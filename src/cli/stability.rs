@@ -9,10 +9,10 @@ use super::rapier::Custom;
 use super::shown::{self, HUMAN, formats};
 use anyhow::{Context, bail};
 use springcheck::crosscheck::stability::{MapPlan, Range, StabilityPlan, Vary};
-use springcheck::crosscheck::{Choice, ChosenEngine, Estimate, Plan};
-use springcheck::engines;
+use springcheck::crosscheck::{Choice, Estimate, Plan};
 use springcheck::outcome::{Report, StabilityRow};
 use springcheck::scene::{self, Scene, limits};
+use springcheck::solvers;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -91,18 +91,11 @@ pub fn stability(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let progress = Progress::new(plan.steps()?, expected, quiet);
     let report = plan.execute(&host(&progress, None, &Cache::new()))?;
     progress.finish();
-    if let Some(place) = &place {
-        place.create()?;
-        place.write(&report)?;
-    }
-    if args.format == HUMAN {
-        let next = next(args, &scene, &report);
-        let otherwise = "springcheck stability --help";
-        super::print(&shown::human(&report, place.as_ref(), next, otherwise))?;
-    } else {
-        shown::print(&args.format, std::slice::from_ref(&report))?;
-    }
-    let rows = report.stability.iter().flat_map(|s| &s.rows);
+    let report = shown::written(report, place.as_ref())?;
+    let next = next(args, &scene, &report);
+    let otherwise = "springcheck stability --help";
+    shown::print_one(&args.format, &report, place.as_ref(), next, otherwise)?;
+    let rows = report.stability().into_iter().flat_map(|s| &s.rows);
     let unanswered = rows.filter(|row| !answered(row)).count();
     Ok(ExitCode::from(if unanswered > 0 { UNANSWERED } else { 0 }))
 }
@@ -124,10 +117,9 @@ fn read(args: &Args) -> anyhow::Result<Scene> {
 }
 
 fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> {
-    if args.rapier.iter().any(|custom| custom.timestep.is_some()) {
-        bail!("--rapier dt=...: here the step is what is searched; leave dt out");
-    }
-    let usual = engines::find("rapier").map(ChosenEngine::from);
+    chosen::without_timestep(&args.rapier, "searched; leave dt out")?;
+    let mut usual = Choice::all_methods(scene);
+    usual.extend(solvers::find("rapier"));
     let map = match &args.vary {
         None => None,
         Some(text) => Some(MapPlan {
@@ -141,15 +133,16 @@ fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> 
     }
     let timestep = args.timestep.unwrap_or(scene.solver.timestep);
     within(timestep, limits::TIMESTEP).context("--timestep")?;
+    let mut solvers = chosen::integrators(&args.integrators, scene, &usual)?;
+    solvers.extend(chosen::engines(&args.engines, &args.rapier, &usual)?);
     let plan = StabilityPlan {
         scene,
-        methods: chosen::methods(&args.integrators, scene, Choice::all_methods(scene))?,
-        engines: chosen::engines(&args.engines, &args.rapier, usual.into_iter().collect())?,
+        solvers,
         timestep,
         map,
         admissible: args.admissible.clone(),
     };
-    if plan.methods.is_empty() && plan.engines.is_empty() {
+    if plan.solvers.is_empty() {
         bail!("nothing to look at: no integrators and no engines");
     }
     Ok(plan)
@@ -186,16 +179,14 @@ fn estimates(plan: &StabilityPlan) -> anyhow::Result<Vec<Estimate>> {
     let rows = by_row.len().max(1) as u64;
     let of_map = plan.steps()?.saturating_sub(by_row.iter().sum()) / rows;
     let choice = Choice {
-        methods: plan.methods.clone(),
-        engines: plan.engines.clone(),
+        solvers: plan.solvers.clone(),
         ..Choice::default_for(plan.scene)
     };
     let estimates = Plan::new(plan.scene, &choice).estimate();
     // Engines that cannot run the scene have no estimate, but keep their place: rows and estimates
     // are in the same order otherwise.
-    let ids = plan.methods.iter().map(|m| m.id.to_owned());
-    let ids = ids.chain(plan.engines.iter().map(|e| e.row.id.to_string()));
-    let by_id: Vec<(String, u64)> = ids.zip(by_row).collect();
+    let ids = plan.solvers.iter().map(|solver| solver.id.clone());
+    let by_id: Vec<_> = ids.zip(by_row).collect();
     let scaled = estimates.into_iter().map(|mut estimate| {
         let row = by_id.iter().find(|(id, _)| *id == estimate.label.engine);
         let each = row.map_or(0, |(_, steps)| *steps) + of_map;
@@ -221,8 +212,8 @@ fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
             format!("springcheck stability {path} --vary particles.drag=0.01..100")
         });
     }
-    let own = report.stability.iter().flat_map(|s| &s.rows);
-    let own = own.filter(|row| row.engine == report.scene.own_method);
+    let own = report.stability().into_iter().flat_map(|s| &s.rows);
+    let own = own.filter(|row| row.engine == report.header.scene.own_integrator);
     let limit = own.filter_map(StabilityRow::limit).next()?;
     let h = if limit > 0.0 && limit.is_finite() {
         shown::rounded(0.9 * limit).min(scene.duration)

@@ -5,8 +5,8 @@ use super::finding::Verdict;
 use super::order::{HORIZON, INSTANTS, climb, judge_at_least, rounding};
 use super::subject::advance;
 use super::systems::swinging_triangle;
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{DampingModel, Scene, Wind};
-use crate::system::{ParticleSystem, State, System};
 
 pub(super) const LAW: Law = Law {
     id: "balance",

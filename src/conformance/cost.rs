@@ -6,8 +6,8 @@ use super::subject::advance;
 use super::systems::swinging_triangle;
 use crate::integrators::PerStep;
 use crate::outcome::CheckStatus;
+use crate::physics::{Counting, ParticleSystem};
 use crate::scene::DampingModel;
-use crate::system::{Counting, ParticleSystem};
 
 const STEPS: u32 = 100;
 /// s.

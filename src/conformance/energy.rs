@@ -6,7 +6,7 @@ use super::systems::Oscillator;
 use super::{Law, SOLVED_TO};
 use crate::integrators::{EnergyLaw, Integrator, PerStep, Stable};
 use crate::outcome::CheckStatus;
-use crate::system::State;
+use crate::physics::State;
 
 pub(super) const LAW: Law = Law {
     id: "energy",

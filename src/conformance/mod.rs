@@ -6,7 +6,7 @@
 //! use springcheck::outcome::CheckStatus;
 //!
 //! let verlet = integrators::find("velocity_verlet").ok_or("no such method")?;
-//! let build = || (verlet.build)(&Default::default());
+//! let build = || verlet.build(&Default::default());
 //! let findings = check(&build, &Claims::from(verlet));
 //! assert!(findings.iter().all(|finding| finding.status == CheckStatus::Pass));
 //!

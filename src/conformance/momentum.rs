@@ -4,8 +4,8 @@ use super::finding::Verdict;
 use super::subject::{Broken, Subject, advance};
 use super::systems::free_triangle;
 use super::{Law, SOLVED_TO};
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::DampingModel;
-use crate::system::{ParticleSystem, State, System};
 
 const STEPS: usize = 200;
 

@@ -9,8 +9,8 @@ use crate::measure::order::{
     Observed, Point, RATIOS, TOLERANCE, Verdict as OrderVerdict, observed,
 };
 use crate::outcome::CheckStatus;
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{DampingModel, Scene};
-use crate::system::{ParticleSystem, State, System};
 
 const DERIVATION: &str = "the observed order is an extrapolation of at least four slopes that agree \
                           within 0.05 among themselves; these systems have no symmetry that could \

@@ -1,6 +1,6 @@
 //! Where a system really is: a high-order method that shares nothing with those under test.
 
-use crate::system::{State, System};
+use crate::physics::{State, System};
 use crate::truth::converged::{Gragg, Precise, Stepper};
 
 /// States at equidistant instants, and how far they may be off.
@@ -61,8 +61,8 @@ mod tests {
     use super::super::subject::distance;
     use super::super::systems::{Driven, swinging_triangle};
     use super::*;
+    use crate::physics::ParticleSystem;
     use crate::scene::DampingModel;
-    use crate::system::ParticleSystem;
 
     fn apart(a: &[State], b: &[State]) -> f64 {
         let distances = a.iter().zip(b).map(|(a, b)| distance(a, b));

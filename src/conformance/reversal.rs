@@ -5,8 +5,8 @@ use super::subject::{advance, distance};
 use super::symplecticity::LARGE_STEP;
 use super::systems::swinging_triangle;
 use super::{Law, SOLVED_TO};
+use crate::physics::ParticleSystem;
 use crate::scene::DampingModel;
-use crate::system::ParticleSystem;
 
 /// Steps each way.
 const STEPS: usize = 10;

@@ -6,7 +6,7 @@ use super::subject::{Broken, Build, advance};
 use super::systems::Oscillator;
 use crate::integrators::Stable;
 use crate::outcome::CheckStatus;
-use crate::system::{State, System};
+use crate::physics::{State, System};
 
 pub(super) const LAW: Law = Law {
     id: "stability",

@@ -2,7 +2,7 @@
 
 use super::Claims;
 use crate::integrators::{Integrator, StepError};
-use crate::system::{State, System};
+use crate::physics::{State, System};
 
 /// How to make the integrator: a fresh one each time.
 pub type Build<'a> = &'a dyn Fn() -> Box<dyn Integrator>;

@@ -4,8 +4,8 @@ use super::finding::Verdict;
 use super::subject::{Broken, Subject, advance};
 use super::systems::swinging_triangle;
 use super::{Law, SOLVED_TO};
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::DampingModel;
-use crate::system::{ParticleSystem, State, System};
 use nalgebra::DMatrix;
 
 /// s: w h is 0.57 for the stiffest mode of the network, far from where an error of high order would look
@@ -84,7 +84,7 @@ fn free<'a>(system: &'a ParticleSystem, state: &'a mut State) -> impl Iterator<I
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::{Jacobian, Linearization};
+    use crate::physics::{Jacobian, Linearization};
 
     #[test]
     fn the_step_is_large_for_the_stiffest_mode() {

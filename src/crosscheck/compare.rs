@@ -1,10 +1,11 @@
 //! One trajectory that somebody else computed, against the truth and the laws.
 
-use super::plan::{Choice, ChosenProgram, Orders, Plan};
-use super::{Host, identity};
-use crate::engines::external::{Failure, Program, Recording, Task};
-use crate::outcome::Report;
+use super::plan::{Choice, Expectations, Orders, Plan};
+use super::{Host, Measured, identity};
+use crate::outcome::{Beside, Body, Outcome, Report, Series};
 use crate::scene::Scene;
+use crate::solvers::Solver;
+use crate::solvers::external::{Failure, Program, Recording, Task};
 use crate::trajectory::{Rows, SaveError};
 use crate::truth::Demand;
 use std::sync::Arc;
@@ -39,26 +40,36 @@ impl Comparison<'_> {
     /// Only when the host cannot write a trajectory it wants saved.
     pub fn execute(&self, host: &dyn Host) -> Result<Report, SaveError> {
         let choice = Choice {
-            methods: Vec::new(),
-            engines: Vec::new(),
-            programs: vec![ChosenProgram {
-                name: self.name.clone(),
-                program: Arc::new(Recorded(Arc::clone(&self.rows))),
-            }],
+            solvers: vec![Solver::program(
+                &self.name,
+                Arc::new(Recorded(Arc::clone(&self.rows))),
+            )],
             timesteps: vec![self.rows.timestep],
             truth: self.demand,
             order: Orders::Never,
             // Every step of the rows is replayed below, not some of those recorded.
             identify: false,
             prove: false,
+            expectations: Expectations::Ignored,
         };
         let plan = Plan::new(self.scene, &choice);
-        let mut report = plan.execute(host)?;
+        let Measured {
+            header,
+            outcomes,
+            figures,
+        } = plan.measured(host)?;
         let (identified, fault) = identity::of_rows(&plan, &self.rows);
-        for outcome in &mut report.outcomes {
-            outcome.identified.clone_from(&identified);
-        }
-        report.fault = Some(fault);
-        Ok(report)
+        let named = outcomes.into_iter().map(|outcome| Outcome {
+            identified: identified.clone(),
+            ..outcome
+        });
+        Ok(Report {
+            header,
+            body: Body::Compare {
+                outcomes: named.collect(),
+                fault,
+            },
+            beside: Beside::Here(Series::Curves(figures)),
+        })
     }
 }

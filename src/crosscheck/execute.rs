@@ -1,11 +1,10 @@
 //! Runs the cases in parallel.
 
-use super::plan::{Build, Case, Label, Plan, Source};
+use super::plan::{Case, Label, Plan};
 use super::program;
-use crate::engines::external::Program;
-use crate::engines::{Counts, Ended, Limits, Observer, Unsupported, simulate};
 use crate::outcome::{Status, WallTime};
-use crate::system::State;
+use crate::solvers::external::Program;
+use crate::solvers::{Counts, Ended, Limits, Observer, Unsupported, Unwatched};
 use crate::trajectory::{Recorder, SaveError, Trajectory};
 use crate::truth::{NoStore, Store};
 use rayon::prelude::*;
@@ -75,20 +74,19 @@ pub(super) struct Ran {
 /// All engines in parallel and, beside them, the programs one after the other: they may print and
 /// use as many threads as they like.
 pub(super) fn all(plan: &Plan, limits: &Limits, host: &dyn Host) -> Result<Vec<Run>, SaveError> {
-    let dim = 3 * plan.scene.particles.len();
-    let mut engines: Vec<(usize, &Case, &Build)> = Vec::new();
+    let mut engines: Vec<(usize, &Case)> = Vec::new();
     let mut programs: Vec<(usize, &Case, &dyn Program)> = Vec::new();
     for (at, case) in plan.cases.iter().enumerate() {
-        match &case.source {
-            Source::Engine(build) => engines.push((at, case, build)),
-            Source::Program(program) => programs.push((at, case, program.as_ref())),
+        match case.solver.as_program() {
+            None => engines.push((at, case)),
+            Some(program) => programs.push((at, case, program)),
         }
     }
     let (ours, theirs) = rayon::join(
         || -> Result<Vec<(usize, Run)>, SaveError> {
             let engines = engines.par_iter();
             engines
-                .map(|(at, case, build)| Ok((*at, one(case, build, dim, limits, host)?)))
+                .map(|(at, case)| Ok((*at, one(plan, case, limits, host)?)))
                 .collect()
         },
         || -> Vec<(usize, Run)> {
@@ -105,53 +103,51 @@ pub(super) fn all(plan: &Plan, limits: &Limits, host: &dyn Host) -> Result<Vec<R
 }
 
 /// Times short runs again, one after the other, when nothing else runs.
-pub(super) fn time_again(cases: &[Case], runs: &mut [Run], limits: &Limits) {
-    for (case, run) in cases.iter().zip(runs) {
-        if let (Some(build), Run::Ran(ran)) = (case.source.engine(), run)
+pub(super) fn time_again(plan: &Plan, runs: &mut [Run], limits: &Limits) {
+    for (case, run) in plan.cases.iter().zip(runs) {
+        if let Run::Ran(ran) = run
             && let Some(wall) = &mut ran.wall
         {
-            time(case, build, limits, wall);
+            time(plan, case, limits, wall);
         }
     }
 }
 
-fn one(
-    case: &Case,
-    build: &Build,
-    dim: usize,
-    limits: &Limits,
-    host: &dyn Host,
-) -> Result<Run, SaveError> {
-    let mut engine = match build() {
-        Ok(engine) => engine,
-        Err(unsupported) => {
-            host.progress(case.label.steps);
-            return Ok(Run::Unsupported(unsupported));
-        }
-    };
+fn one(plan: &Plan, case: &Case, limits: &Limits, host: &dyn Host) -> Result<Run, SaveError> {
     let Label {
         steps, timestep, ..
     } = case.label;
-    let tick = |taken| host.progress(taken);
+    let mut run = match case.start(plan) {
+        Ok(run) => run,
+        Err(unsupported) => {
+            host.progress(steps);
+            return Ok(Run::Unsupported(unsupported));
+        }
+    };
+    let dim = 3 * plan.scene.particles.len();
     let mut recorder = Recorder::new(steps, dim, timestep);
     let start = Instant::now();
     let coarse = limits.now_and_then();
-    let mut ended = simulate(engine.as_mut(), steps, &coarse, &mut recorder, &tick);
+    let mut ended = run.finish(&coarse, &mut recorder, &|taken| host.progress(taken));
     let first = start.elapsed().as_secs_f64();
     if ended != Ended::Completed
-        && let Ok(again) = build()
+        && let Ok(again) = case.start(plan)
     {
         // It ended about here; the same bits once more, looked at in every step, say where.
-        engine = again;
+        run = again;
         recorder = Recorder::new(steps, dim, timestep);
-        ended = simulate(engine.as_mut(), steps, limits, &mut recorder, &|_| {});
+        ended = run.finish(limits, &mut recorder, &|_| {});
     }
     if let Some(mut saver) = host.saver(&case.label)? {
-        save(case, build, limits, saver.as_mut());
+        // The same run once more, to the file: bits are the same, and the timed run writes nothing.
+        if let Ok(mut again) = case.start(plan) {
+            again.finish(limits, saver.as_mut(), &|_| {});
+        }
         saver.finish()?;
     }
     let (status, reason, taken) = match ended {
-        Ended::Completed => (Status::Completed, None, steps),
+        // No pair runs here, so none is exhausted.
+        Ended::Completed | Ended::Exhausted => (Status::Completed, None, steps),
         Ended::Diverged { step, reason } => {
             let reason = format!("in step {}: {reason}", step - 1);
             (Status::Diverged, Some(reason), step)
@@ -168,7 +164,7 @@ fn one(
         reason,
         steps: taken,
         trajectory: recorder.finish(),
-        counts: engine.counts(),
+        counts: run.counts(),
         wall: Some(WallTime {
             min: first,
             median: first,
@@ -178,60 +174,42 @@ fn one(
     })))
 }
 
-/// The same run once more, to the file: bits are the same, and the timed run writes nothing.
-fn save(case: &Case, build: &Build, limits: &Limits, saver: &mut dyn Saver) {
-    if let Ok(mut engine) = build() {
-        simulate(engine.as_mut(), case.label.steps, limits, saver, &|_| {});
-    }
-}
-
 /// Repeated at most this often, within this many seconds in all.
 const REPEATS: usize = 5;
 const PATIENCE: f64 = 0.02;
 
 /// Times a case that takes less than the patience; the run that was recorded, beside others, was its
 /// warm-up. A longer one keeps the time of that run.
-fn time(case: &Case, build: &Build, limits: &Limits, wall: &mut WallTime) {
+fn time(plan: &Plan, case: &Case, limits: &Limits, wall: &mut WallTime) {
     let mut times = Vec::new();
     let coarse = limits.now_and_then();
     while times.len() < REPEATS && times.iter().sum::<f64>() + wall.min < PATIENCE {
-        let Ok(mut engine) = build() else {
+        let Ok(mut run) = case.start(plan) else {
             return;
         };
         let start = Instant::now();
-        simulate(
-            engine.as_mut(),
-            case.label.steps,
-            &coarse,
-            &mut Nobody,
-            &|_| {},
-        );
+        run.finish(&coarse, &mut Unwatched, &|_| {});
         times.push(start.elapsed().as_secs_f64());
     }
     if times.is_empty() {
         return;
     }
+    *wall = spread(times);
+}
+
+/// Wall times of equal runs; at least one.
+pub(super) fn spread(mut times: Vec<f64>) -> WallTime {
     let median = median(&mut times);
     let mut off: Vec<f64> = times.iter().map(|t| (t - median).abs()).collect();
-    *wall = WallTime {
+    WallTime {
         min: times[0],
         median,
         mad: (off.len() > 1).then(|| self::median(&mut off)),
-    };
-}
-
-/// Looks at nothing.
-struct Nobody;
-
-impl Observer for Nobody {
-    fn next(&self, _from: u64) -> Option<u64> {
-        None
     }
-    fn observe(&mut self, _step: u64, _state: &State) {}
 }
 
 /// Sorts; not empty.
-pub(super) fn median(values: &mut [f64]) -> f64 {
+fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     let half = values.len() / 2;
     if values.len() % 2 == 1 {

@@ -5,7 +5,7 @@ use super::plan::{Case, Plan};
 use crate::integrators::Settings;
 use crate::measure::identify::{Question, first_fault, identify, moved_anchor};
 use crate::outcome::{Fault, Identified, Kind};
-use crate::system::ParticleSystem;
+use crate::physics::ParticleSystem;
 use crate::trajectory::Rows;
 use std::borrow::Cow;
 
@@ -14,20 +14,22 @@ const TRANSITIONS: usize = 16;
 
 /// The scheme of a run, by some of its steps.
 pub(super) fn of_run(plan: &Plan, case: &Case, run: &Ran) -> Option<Identified> {
-    let rows = Rows::from(&run.trajectory);
     let question = Question {
         transitions: Some(TRANSITIONS),
         hint: expected(plan, case),
-        ..question(plan, &rows)
+        ..question(plan, run.trajectory.rows())
     };
     identify(&question)?.report()
 }
 
 /// What a run should turn out to be.
 fn expected(plan: &Plan, case: &Case) -> Option<(&'static str, u32)> {
-    let joints = case.kind == Kind::Rapier && plan.scene.springs.len() > 1;
-    let rapier = joints.then_some(("linearized_implicit_material", case.substeps));
-    case.method.map(|method| (method.id, 1)).or(rapier)
+    let joints = case.solver.kind == Kind::Rapier && plan.scene.springs.len() > 1;
+    let rapier = joints.then_some(("linearized_implicit_material", case.solver.substeps));
+    case.solver
+        .as_method()
+        .map(|method| (method.id, 1))
+        .or(rapier)
 }
 
 /// The scheme of rows, by all of their steps, and the first of these that leaves it.

@@ -2,18 +2,18 @@
 
 use super::execute::Run;
 use super::plan::Plan;
-use crate::effects::Effect;
 use crate::measure::twin;
 use crate::outcome::{Check, CheckStatus, EffectUse, Kind, SceneFacts};
+use crate::physics::ParticleSystem;
+use crate::physics::effects::Effect;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
 use std::time::{Duration, Instant};
 
 pub(super) fn scene_facts(plan: &Plan, runs: &[Run], scale: Option<f64>) -> SceneFacts {
     let scene = plan.scene;
     let (mut forces, mut damping) = (0, 0);
     for (case, run) in plan.cases.iter().zip(runs) {
-        if let (Kind::Integrator, Run::Ran(ran)) = (case.kind, run) {
+        if let (Kind::Integrator, Run::Ran(ran)) = (case.solver.kind, run) {
             forces += ran.counts.force_evaluations.unwrap_or(0);
             damping += ran.counts.damping_evaluations.unwrap_or(0);
         }
@@ -31,10 +31,15 @@ pub(super) fn effects(
     let start = ParticleSystem::initial_state(scene);
     let rows = system.effects().iter();
     rows.map(|(row, effect)| EffectUse {
-        id: row.id,
+        id: row.id.to_owned(),
         members: effect.members(),
-        evaluations: forces + if effect.is_damped() { damping } else { 0 },
-        nanoseconds: Some(cost(effect.as_ref(), &start.x, &start.v)),
+        evaluations: forces
+            + if effect.kinds().depends_on_velocity() {
+                damping
+            } else {
+                0
+            },
+        wall_ns: Some(cost(effect.as_ref(), &start.x, &start.v)),
     })
     .collect()
 }
@@ -51,7 +56,7 @@ pub(super) fn facts(scene: &Scene, effects: Vec<EffectUse>, scale: Option<f64>) 
         duration: scene.duration,
         energy_scale_j: scale,
         description: scene.description.clone(),
-        own_method: scene.solver.method.clone(),
+        own_integrator: scene.solver.method.clone(),
     }
 }
 

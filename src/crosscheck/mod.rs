@@ -1,8 +1,8 @@
 //! The main job: every chosen engine on one scene, side by side, and what came of it.
 //!
-//! [`Plan`] says what will run, [`Plan::execute`] runs it in parallel and measures it, and
-//! [`expect::check`] says whether that is what the scene expects. Results do not depend on the
-//! number of threads; only wall times do.
+//! [`Plan`] says what will run, and [`Plan::execute`] runs it in parallel, measures it, and says whether
+//! that is what the scene expects ([`Expectations`]). Results do not depend on the number of threads;
+//! only wall times do.
 
 mod compare;
 pub mod cost;
@@ -23,16 +23,21 @@ mod truths;
 pub use compare::Comparison;
 pub use execute::{Host, Quiet, Saver};
 pub use expect::names;
-pub use plan::{
-    Build, Case, Choice, ChosenEngine, ChosenProgram, Estimate, Label, Orders, Plan, Source,
-};
+pub use plan::{Case, Choice, Estimate, Expectations, Label, Orders, Plan};
 
-use crate::engines::Limits;
 use crate::measure;
-use crate::outcome::{Check, Kind, Report, SCHEMA_VERSION};
+use crate::outcome::{Beside, Body, Check, Figures, Header, Outcome, Report, Series};
+use crate::solvers::Limits;
 use crate::trajectory::SaveError;
 use crate::truth;
 use truths::Truths;
+
+/// What the runs of a plan left.
+struct Measured {
+    header: Header,
+    outcomes: Vec<Outcome>,
+    figures: Figures,
+}
 
 impl Plan<'_> {
     /// Runs every case, the truth and the twin proof, and measures what they left.
@@ -40,6 +45,20 @@ impl Plan<'_> {
     /// # Errors
     /// Only when a trajectory file could not be written; whatever an engine does is an outcome.
     pub fn execute(&self, host: &dyn Host) -> Result<Report, SaveError> {
+        let Measured {
+            header,
+            outcomes,
+            figures,
+        } = self.measured(host)?;
+        Ok(Report {
+            header,
+            body: Body::Run { outcomes },
+            beside: Beside::Here(Series::Curves(figures)),
+        })
+    }
+
+    /// What a report is made of.
+    fn measured(&self, host: &dyn Host) -> Result<Measured, SaveError> {
         // When a run stops must not depend on whether a truth was asked for.
         let before = measure::energy_scale(self.scene, &self.system, None);
         let limit = measure::divergence_limit(self.scene, before);
@@ -54,30 +73,36 @@ impl Plan<'_> {
         let mut runs = runs?;
         let truths = Truths::new(self, &runs, truth);
         let orders = order::checks(self, truths.truth());
-        execute::time_again(&self.cases, &mut runs, &limits);
+        execute::time_again(self, &mut runs, &limits);
         let scale = measure::energy_scale(self.scene, &self.system, truths.peak());
         let (outcomes, series) = outcome::all(self, &runs, &truths, scale);
-        Ok(Report {
-            schema_version: SCHEMA_VERSION,
-            scene: ledger::scene_facts(self, &runs, scale),
-            truth: truths.facts(),
+        let facts = ledger::scene_facts(self, &runs, scale);
+        let stated = truths.facts();
+        let found = expect::Found {
+            truth: &stated,
+            scene: &facts,
+            outcomes: &outcomes,
+        };
+        let expected = self.expectations.checks(self.scene, &found);
+        Ok(Measured {
             figures: figures::figures(self, &runs, &series, &truths, scale),
+            header: Header {
+                checks: proofs
+                    .into_iter()
+                    .chain(orders)
+                    .chain(ledger::no_scale(scale))
+                    .chain(expected)
+                    .collect(),
+                scene: facts,
+                truth: stated,
+            },
             outcomes,
-            fault: None,
-            stability: None,
-            cost: None,
-            checks: proofs
-                .into_iter()
-                .chain(orders)
-                .chain(ledger::no_scale(scale))
-                .collect(),
         })
     }
 
     /// That rapier's world and ours are the same scene, unless nobody asks or nothing here was computed.
     fn proofs(&self) -> Vec<Check> {
-        let recorded = |case: &Case| case.kind == Kind::External;
-        if !self.prove || self.cases.iter().all(recorded) {
+        if !self.prove || self.only_records() {
             Vec::new()
         } else {
             ledger::twin_proof(self.scene)

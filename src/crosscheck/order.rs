@@ -2,9 +2,9 @@
 
 use super::plan::{Orders, Plan};
 use crate::integrators::Method;
-use crate::measure::order::{Ladder, check};
+use crate::measure::order::{Study, check};
 use crate::outcome::{Check, CheckStatus};
-use crate::system::System;
+use crate::physics::System;
 use crate::truth::Truth;
 use rayon::prelude::*;
 
@@ -22,7 +22,7 @@ pub(super) fn checks(plan: &Plan, truth: &Truth) -> Vec<Check> {
         return Vec::new();
     };
     let mut methods: Vec<&Method> = Vec::new();
-    for method in plan.cases.iter().filter_map(|case| case.method) {
+    for method in plan.cases.iter().filter_map(|case| case.solver.as_method()) {
         if !methods.iter().any(|known| known.id == method.id) {
             methods.push(method);
         }
@@ -37,8 +37,8 @@ pub(super) fn checks(plan: &Plan, truth: &Truth) -> Vec<Check> {
     }
     let until = truth.horizon.min(scene.duration);
     let budget = RUNS.saturating_mul(cost).max(LEAST);
-    let ladder = Ladder::of_scene(scene, &plan.system, motion, until).budget(budget);
-    let measure = |method: &&Method| check(method.id, &ladder.method(method));
+    let study = Study::of_scene(scene, &plan.system, motion, until).budget(budget);
+    let measure = |method: &&Method| check(method.id, &study.method(method));
     methods.par_iter().map(measure).collect()
 }
 

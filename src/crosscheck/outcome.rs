@@ -82,9 +82,9 @@ fn one(
 fn empty(case: &Case) -> Outcome {
     Outcome {
         engine: case.label.engine.clone(),
-        kind: case.kind,
+        kind: case.solver.kind,
         timestep: case.label.timestep,
-        substep: case.label.timestep / f64::from(case.substeps),
+        substep: case.label.timestep / f64::from(case.solver.substeps),
         status: Status::Completed,
         stopped_at_s: None,
         reason: None,
@@ -120,7 +120,7 @@ fn deviations(
         .zip(runs)
         .enumerate()
         .filter(|(at, (case, _))| {
-            *at != index && case.reference && case.label.timestep == own.timestep
+            *at != index && case.solver.reference && case.label.timestep == own.timestep
         })
         .filter_map(|(_, (case, run))| {
             let Run::Ran(reference) = run else {

@@ -1,24 +1,19 @@
-//! What will run: each chosen engine at each timestep.
+//! What will run: each chosen solver at each timestep.
 
-use crate::engines::external::Program;
-use crate::engines::{self, Engine, EngineRow, IntegratorEngine, Unsupported};
-use crate::integrators::{self, Integrator, Method, Settings};
+use crate::integrators;
 use crate::outcome::Kind;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::{self, Setting, Solver, Unsupported};
 use crate::truth::Demand;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What the caller wants run; [`Choice::default_for`] is what a run without flags does.
 #[derive(Debug, Clone)]
 pub struct Choice {
-    /// In the order outcomes are listed.
-    pub methods: Vec<&'static Method>,
-    pub engines: Vec<ChosenEngine>,
-    /// Other people's programs, after all others.
-    pub programs: Vec<ChosenProgram>,
-    /// Seconds; every method and program runs at each, and every engine without a timestep of its own.
+    /// In the order outcomes are listed. Not adaptive pairs, which take steps of their own.
+    pub solvers: Vec<Solver>,
+    /// Seconds; every solver without a timestep of its own runs at each.
     pub timesteps: Vec<f64>,
     /// What errors are measured against.
     pub truth: Demand,
@@ -28,6 +23,20 @@ pub struct Choice {
     pub identify: bool,
     /// Whether the twin proof is made.
     pub prove: bool,
+    /// What becomes of the scene's `expect`.
+    pub expectations: Expectations,
+}
+
+/// What becomes of what a scene expects of its engines.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub enum Expectations {
+    /// They are not asked for: no check.
+    #[default]
+    Ignored,
+    /// A check for each, as [`expect::check`](super::expect::check) makes them.
+    Judged,
+    /// One check that is skipped, and why: the caller changed what they are about.
+    Skipped(String),
 }
 
 /// When orders are measured, which costs about two more runs of each method.
@@ -41,36 +50,6 @@ pub enum Orders {
     Always,
 }
 
-/// A reference engine, or one more rapier row with settings of the user's own.
-#[derive(Debug, Clone)]
-pub struct ChosenEngine {
-    pub row: EngineRow,
-    /// Seconds, where it differs from everybody's.
-    pub timestep: Option<f64>,
-}
-
-impl From<&EngineRow> for ChosenEngine {
-    fn from(row: &EngineRow) -> Self {
-        Self {
-            row: row.clone(),
-            timestep: None,
-        }
-    }
-}
-
-/// Another program, and what reports call it: a name no integrator and no engine has.
-#[derive(Clone)]
-pub struct ChosenProgram {
-    pub name: String,
-    pub program: Arc<dyn Program>,
-}
-
-impl std::fmt::Debug for ChosenProgram {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("ChosenProgram").field(&self.name).finish()
-    }
-}
-
 /// Beside the scene's own integrator.
 const DEFAULT_METHODS: &[&str] = &[
     "explicit_euler",
@@ -81,79 +60,88 @@ const DEFAULT_METHODS: &[&str] = &[
     "implicit_euler",
 ];
 
+/// Reference engines beside the integrators.
+const DEFAULT_ENGINES: &[&str] = &["rapier", "rapier-forces"];
+
 impl Choice {
     /// The scene's own integrator, the usual ones, and the default engines, at the scene's timestep.
     pub fn default_for(scene: &Scene) -> Self {
+        let usual = DEFAULT_METHODS
+            .iter()
+            .filter_map(|id| integrators::find(id));
+        let mut solvers = with_own_first(scene, usual.map(Solver::method));
+        solvers.extend(DEFAULT_ENGINES.iter().filter_map(|id| solvers::find(id)));
         Self {
-            methods: with_own_first(
-                scene,
-                DEFAULT_METHODS
-                    .iter()
-                    .filter_map(|id| integrators::find(id)),
-            ),
-            engines: engines::REGISTRY
-                .iter()
-                .filter(|row| row.default)
-                .map(ChosenEngine::from)
-                .collect(),
-            programs: Vec::new(),
+            solvers,
             timesteps: vec![scene.solver.timestep],
             truth: Demand::Auto,
             order: Orders::WhereCheap,
             identify: true,
             prove: true,
+            expectations: Expectations::Ignored,
         }
     }
 
+    /// One more solver, after the others of its kind, such as an integrator of the caller's own.
+    #[must_use]
+    pub fn with(mut self, solver: Solver) -> Self {
+        let last = self.solvers.iter().rposition(|s| s.kind == solver.kind);
+        let none = if solver.kind == Kind::Integrator {
+            0
+        } else {
+            self.solvers.len()
+        };
+        self.solvers.insert(last.map_or(none, |at| at + 1), solver);
+        self
+    }
+
     /// Every method of the registry, the scene's own first.
-    pub fn all_methods(scene: &Scene) -> Vec<&'static Method> {
-        with_own_first(scene, integrators::REGISTRY.iter())
+    pub fn all_methods(scene: &Scene) -> Vec<Solver> {
+        with_own_first(scene, integrators::REGISTRY.iter().map(Solver::method))
     }
 }
 
-fn with_own_first(
-    scene: &Scene,
-    methods: impl Iterator<Item = &'static Method>,
-) -> Vec<&'static Method> {
-    let own = integrators::find(&scene.solver.method);
+fn with_own_first(scene: &Scene, methods: impl Iterator<Item = Solver>) -> Vec<Solver> {
+    let own = integrators::find(&scene.solver.method).map(Solver::method);
     own.into_iter()
         .chain(methods.filter(|method| method.id != scene.solver.method))
         .collect()
 }
 
-/// One engine at one timestep.
-pub struct Case<'a> {
+/// One solver at one timestep.
+#[derive(Debug, Clone)]
+pub struct Case {
+    pub solver: Solver,
     pub label: Label,
-    pub kind: Kind,
-    /// Scheme steps per timestep: rapier's iterations, else 1.
-    pub substeps: u32,
-    /// The row, for one of our integrators.
-    pub method: Option<&'static Method>,
-    /// Why it loses energy by design, if it does.
-    pub dissipates: Option<String>,
-    /// Others report their distance from it.
-    pub reference: bool,
-    pub source: Source<'a>,
 }
 
-/// Where a case's trajectory comes from.
-pub enum Source<'a> {
-    /// A fresh engine at the scene's start, advanced here step by step, as often as wanted.
-    Engine(Build<'a>),
-    /// Everything at once, from a program that runs once.
-    Program(Arc<dyn Program>),
-}
-
-/// Makes an engine, or says why there can be none.
-pub type Build<'a> = Box<dyn Fn() -> Result<Box<dyn Engine>, Unsupported> + Send + Sync + 'a>;
-
-impl<'a> Source<'a> {
-    /// What makes the engine, where there is one.
-    pub fn engine(&self) -> Option<&Build<'a>> {
-        match self {
-            Self::Engine(build) => Some(build),
-            Self::Program(_) => None,
+impl Case {
+    fn new(scene: &Scene, solver: &Solver, timestep: f64) -> Self {
+        Self {
+            label: Label {
+                engine: solver.id.to_string(),
+                timestep,
+                steps: scene.steps(timestep),
+                particles: scene.particles.len(),
+            },
+            solver: solver.clone(),
         }
+    }
+
+    /// What it runs at.
+    pub fn setting(&self) -> Setting {
+        Setting::Steps {
+            timestep: self.label.timestep,
+            steps: self.label.steps,
+        }
+    }
+
+    /// A fresh run from the plan's start.
+    ///
+    /// # Errors
+    /// [`Unsupported`] as [`Solver::start`] has it.
+    pub fn start(&self, plan: &Plan) -> Result<solvers::Run, Unsupported> {
+        self.solver.start(plan.scene, &plan.system, &self.setting())
     }
 }
 
@@ -178,7 +166,7 @@ impl Label {
 pub struct Plan<'a> {
     pub scene: &'a Scene,
     pub system: ParticleSystem,
-    pub cases: Vec<Case<'a>>,
+    pub cases: Vec<Case>,
     pub demand: Demand,
     /// As [`Choice::order`].
     pub order: Orders,
@@ -186,37 +174,28 @@ pub struct Plan<'a> {
     pub identify: bool,
     /// As [`Choice::prove`].
     pub prove: bool,
+    /// As [`Choice::expectations`].
+    pub expectations: Expectations,
 }
 
 impl<'a> Plan<'a> {
     pub fn new(scene: &'a Scene, choice: &Choice) -> Self {
-        let system = ParticleSystem::new(scene);
         let mut cases = Vec::new();
-        for &method in &choice.methods {
-            for &timestep in &choice.timesteps {
-                cases.push(integrator_case(scene, &system, method, timestep));
-            }
-        }
-        for chosen in &choice.engines {
-            let own = chosen.timestep.as_ref().map(std::slice::from_ref);
-            let timesteps = own.unwrap_or(&choice.timesteps);
-            for &timestep in timesteps {
-                cases.push(engine_case(scene, &system, &chosen.row, timestep));
-            }
-        }
-        for chosen in &choice.programs {
-            for &timestep in &choice.timesteps {
-                cases.push(program_case(scene, chosen, timestep));
+        for solver in &choice.solvers {
+            let own = solver.timestep.as_ref().map(std::slice::from_ref);
+            for &timestep in own.unwrap_or(&choice.timesteps) {
+                cases.push(Case::new(scene, solver, timestep));
             }
         }
         Self {
             scene,
-            system,
+            system: ParticleSystem::new(scene),
             cases,
             demand: choice.truth,
             order: choice.order,
             identify: choice.identify,
             prove: choice.prove,
+            expectations: choice.expectations.clone(),
         }
     }
 
@@ -226,102 +205,17 @@ impl<'a> Plan<'a> {
         ends.fold(0.0, f64::max)
     }
 
-    /// One more row after the other integrators: one of the caller's own, under this name, at this
-    /// timestep, s. `build` makes a fresh one for each run.
-    ///
-    /// Nothing is claimed of it here; `conformance::check` is for that.
-    #[must_use]
-    pub fn with_integrator(
-        mut self,
-        name: &str,
-        timestep: f64,
-        build: impl Fn() -> Box<dyn Integrator> + Send + Sync + 'a,
-    ) -> Self {
-        let (scene, system) = (self.scene, self.system.clone());
-        let case = Case {
-            label: label(scene, name, timestep),
-            kind: Kind::Integrator,
-            substeps: 1,
-            method: None,
-            dissipates: None,
-            reference: false,
-            source: Source::Engine(Box::new(move || {
-                let engine = IntegratorEngine::with(scene, system.clone(), build(), timestep);
-                Ok(Box::new(engine))
-            })),
-        };
-        let integrators = self.cases.iter().rposition(|c| c.kind == Kind::Integrator);
-        self.cases.insert(integrators.map_or(0, |at| at + 1), case);
-        self
-    }
-
     /// How long each case will take, from its first few steps. Nobody knows it of a program.
     pub fn estimate(&self) -> Vec<Estimate> {
         // One after the other: neighbours on the machine would make every case look slow.
+        let estimate = |case| estimate(self, case);
         self.cases.iter().filter_map(estimate).collect()
     }
-}
 
-fn label(scene: &Scene, engine: &str, timestep: f64) -> Label {
-    Label {
-        engine: engine.to_owned(),
-        timestep,
-        steps: scene.steps(timestep),
-        particles: scene.particles.len(),
-    }
-}
-
-fn integrator_case<'a>(
-    scene: &'a Scene,
-    system: &ParticleSystem,
-    method: &'static Method,
-    timestep: f64,
-) -> Case<'a> {
-    let system = system.clone();
-    let settings = Settings::stated(scene.solver.tolerance);
-    Case {
-        label: label(scene, method.id, timestep),
-        kind: Kind::Integrator,
-        substeps: 1,
-        method: Some(method),
-        dissipates: None,
-        reference: false,
-        source: Source::Engine(Box::new(move || {
-            let engine = IntegratorEngine::new(scene, system.clone(), method, &settings, timestep);
-            Ok(Box::new(engine))
-        })),
-    }
-}
-
-fn engine_case<'a>(
-    scene: &'a Scene,
-    system: &ParticleSystem,
-    row: &EngineRow,
-    timestep: f64,
-) -> Case<'a> {
-    let (row, system) = (row.clone(), system.clone());
-    Case {
-        label: label(scene, &row.id, timestep),
-        kind: row.kind,
-        substeps: row.substeps(),
-        method: None,
-        dissipates: row
-            .dissipates
-            .map(|why| why.replace("{n}", &row.substeps().to_string())),
-        reference: row.reference,
-        source: Source::Engine(Box::new(move || row.build(scene, system.clone(), timestep))),
-    }
-}
-
-fn program_case<'a>(scene: &Scene, chosen: &ChosenProgram, timestep: f64) -> Case<'a> {
-    Case {
-        label: label(scene, &chosen.name, timestep),
-        kind: Kind::External,
-        substeps: 1,
-        method: None,
-        dissipates: None,
-        reference: false,
-        source: Source::Program(Arc::clone(&chosen.program)),
+    /// Whether every case is another program's: nothing is computed here.
+    pub(super) fn only_records(&self) -> bool {
+        let mut kinds = self.cases.iter().map(|case| case.solver.kind);
+        kinds.all(|kind| kind == Kind::External)
     }
 }
 
@@ -336,15 +230,15 @@ pub struct Estimate {
 const SAMPLE: Duration = Duration::from_millis(1);
 const SAMPLES: usize = 2;
 
-fn estimate(case: &Case) -> Option<Estimate> {
-    let mut engine = case.source.engine()?().ok()?;
+fn estimate(plan: &Plan, case: &Case) -> Option<Estimate> {
+    let mut run = case.start(plan).ok()?;
     // The first step allocates and orders matrices; it stands for no other.
-    engine.step().ok()?;
+    run.advance(1).ok()?;
     let mut sample = || {
         let start = Instant::now();
         let mut steps = 0;
         while steps < case.label.steps && start.elapsed() < SAMPLE {
-            if engine.step().is_err() {
+            if run.advance(1).is_err() {
                 break;
             }
             steps += 1;

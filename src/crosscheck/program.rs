@@ -2,10 +2,10 @@
 
 use super::execute::{Host, Ran, Run};
 use super::plan::{Case, Plan};
-use crate::engines::external::{Program, Recording, Task};
-use crate::engines::{Counts, Limits};
 use crate::outcome::{Status, WallTime};
-use crate::system::{ParticleSystem, Power, State, System};
+use crate::physics::{ParticleSystem, Power, State, System};
+use crate::solvers::external::{Program, Recording, Task};
+use crate::solvers::{Counts, Limits};
 use crate::trajectory::{Precision, RowRecorder, Rows};
 
 /// One case of a program, from its start to what came of it.
@@ -203,7 +203,7 @@ impl Replay<'_> {
     }
 
     fn power(&self, state: &State) -> Power {
-        if self.system.is_damped() || self.system.is_driven() {
+        if self.system.kinds().does_work() {
             let mut forces = vec![0.0; state.x.len()];
             self.system.forces(state.t, &state.x, &state.v, &mut forces)
         } else {

@@ -4,7 +4,7 @@ use super::plan::{Case, Plan};
 use super::step_limit::StepLimits;
 use crate::integrators::{EnergyLaw, Method, PerStep, Settings, Stable};
 use crate::outcome::{Energy, EnergyClass, Outcome, Status};
-use crate::system::System;
+use crate::physics::System;
 
 pub(super) fn remarks(
     plan: &Plan,
@@ -22,9 +22,9 @@ pub(super) fn remarks(
         Status::Diverged => {
             let cause = outcome.reason.as_deref().unwrap_or_default();
             let time = outcome.stopped_at_s.unwrap_or(0.0);
-            let damped = plan.system.is_damped();
+            let damped = plan.system.kinds().depends_on_velocity();
             // The limit of this very scene says it better than a method's facts.
-            let why = match (&warning, case.method) {
+            let why = match (&warning, case.solver.as_method()) {
                 (None, Some(method)) => why_unstable(method, damped),
                 _ => String::new(),
             };
@@ -43,7 +43,7 @@ pub(super) fn remarks(
 /// Where the scene asks its implicit steps to be solved to less than the default.
 fn loosely_solved(plan: &Plan, case: &Case) -> Option<String> {
     let stated = plan.scene.solver.tolerance?;
-    let method = case.method?;
+    let method = case.solver.as_method()?;
     let iterates = matches!(method.evaluations, PerStep::PerIteration { .. });
     (iterates && stated > Settings::default().tolerance).then(|| {
         format!(
@@ -85,16 +85,16 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<S
     }
     let effects = plan.system.effects();
     let has_springs = effects.iter().any(|(row, _)| row.elastic);
-    match case.method {
+    match case.solver.as_method() {
         Some(method) if effects.iter().all(|(row, _)| row.constant) => {
             under_constant_force(method, class)
         }
         Some(method) => {
-            let damped = plan.system.is_damped();
+            let damped = plan.system.kinds().depends_on_velocity();
             let law = by_law(method, class, damped).filter(|_| has_springs);
             law.or_else(|| damped.then(|| by_balance(method, class, lost)))
         }
-        None if class != EnergyClass::Growing && has_springs => case.dissipates.clone(),
+        None if class != EnergyClass::Growing && has_springs => case.solver.dissipates(),
         None => None,
     }
 }

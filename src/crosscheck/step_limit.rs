@@ -2,7 +2,7 @@
 
 use super::plan::{Case, Plan};
 use crate::measure::stability::{Limit, Linearised, Prediction};
-use crate::system::ParticleSystem;
+use crate::physics::ParticleSystem;
 
 /// The scene linearised about its start, if anybody here has a limit.
 pub(super) struct StepLimits(Option<Linearised>);
@@ -12,7 +12,10 @@ const VISIBLE: f64 = 0.01;
 
 impl StepLimits {
     pub(super) fn new(plan: &Plan) -> Self {
-        let wanted = plan.cases.iter().any(|case| case.method.is_some());
+        let wanted = plan
+            .cases
+            .iter()
+            .any(|case| case.solver.as_method().is_some());
         Self(wanted.then(|| {
             let start = ParticleSystem::initial_state(plan.scene);
             Linearised::brief(&plan.system, start.t, &start.x, &start.v)
@@ -21,7 +24,7 @@ impl StepLimits {
 
     /// What there is to say of a case's timestep; None where it is stable or nobody knows.
     pub(super) fn warning(&self, case: &Case) -> Option<String> {
-        let (linearised, method) = (self.0.as_ref()?, case.method?);
+        let (linearised, method) = (self.0.as_ref()?, case.solver.as_method()?);
         let h = case.label.timestep;
         let prediction = linearised.predict(method, h);
         match prediction.limit {

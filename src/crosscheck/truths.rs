@@ -4,7 +4,7 @@ use super::execute::Run;
 use super::plan::Plan;
 use crate::measure::{self, Errors, Known};
 use crate::outcome::{self, TruthKind};
-use crate::system::{ParticleSystem, System};
+use crate::physics::{ParticleSystem, System};
 use crate::trajectory::Trajectory;
 use crate::truth::Truth;
 use rayon::prelude::*;

@@ -1,14 +1,10 @@
-//! Implicit methods: one stage equation, solved by one Newton iteration.
-//!
-//! Every method here finds u with M (u - b) = γ f(t + τ, y + γ u, u); they differ in b, y, γ and
-//! in what they make of u.
+//! Implicit methods: stage equations M (u - b) = γ f(t + τ, y + γ u, u), solved by one Newton
+//! iteration. The methods differ in b, y, γ and in what they make of the stage velocity u.
 
 use super::newton::Newton;
-use super::{
-    Amplification, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable,
-    StepError, axpy, fit,
-};
-use crate::system::{Linearization, State, System};
+use super::{Coefficients, Integrator, Row, Settings, StepError, Tableau, axpy, fit, refuse};
+use crate::physics::{ForceKinds, Linearization, Power, State, System};
+use std::f64::consts::SQRT_2;
 
 /// Which member of the family a stepper is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,102 +15,112 @@ pub enum Scheme {
     LinearizedEuler(Linearization),
     Midpoint,
     Trapezoidal,
+    /// Over [t, t + g h] the trapezoidal rule, then the second-order backward difference through start
+    /// and stage to t + h. L-stable: what is fast against h dies out, what is slow keeps its energy to
+    /// z⁴ a step. g = 2 - √2 gives both stages the same γ = g h/2.
+    TrBdf2,
 }
 
-const fn implicit(id: &'static str, name: &'static str, order: u32, energy: EnergyLaw) -> Method {
-    Method {
-        id,
-        name,
-        order,
-        order_damped: order,
-        symplectic: false,
-        reversible: order > 1,
-        evaluations: PerStep::PerIteration { plus: 1 },
-        oscillator: Oscillator {
-            stable: Stable::Always,
-            energy,
-        },
-        amplification: Amplification::BACKWARD_EULER,
-        exact: Exact::of_order(order),
-        source: "",
-        not: "",
-        build: |settings: &Settings| Box::new(Implicit::new(Scheme::Euler, settings)),
+impl Scheme {
+    /// One Newton step is of first order whatever the force. The line search of Newton's iteration takes
+    /// D to be symmetric.
+    pub(super) const fn takes(self) -> ForceKinds {
+        match self {
+            Self::LinearizedEuler(_) => ForceKinds::ANY,
+            _ => ForceKinds::SYMMETRIC,
+        }
+    }
+
+    /// The Runge-Kutta method it is, the linearised ones on linear forces.
+    pub(super) fn tableau(self) -> Tableau {
+        match self {
+            Self::Euler | Self::LinearizedEuler(_) => Tableau {
+                a: &[&[1.0]],
+                b: &[1.0],
+                c: &[1.0],
+            },
+            Self::Midpoint => Tableau {
+                a: &[&[0.5]],
+                b: &[1.0],
+                c: &[0.5],
+            },
+            Self::Trapezoidal => Tableau {
+                a: &[&[], &[0.5, 0.5]],
+                b: &[0.5, 0.5],
+                c: &[0.0, 1.0],
+            },
+            Self::TrBdf2 => Tableau {
+                a: &[&[], &[IMPLICIT, IMPLICIT], &[WEIGHT, WEIGHT, IMPLICIT]],
+                b: &[WEIGHT, WEIGHT, IMPLICIT],
+                c: &[0.0, STAGE, 1.0],
+            },
+        }
     }
 }
 
-const DISSIPATES: EnergyLaw = EnergyLaw::Factor {
-    factor: |z| 1.0 / (1.0 + z * z),
-    formula: "1/(1 + z²)",
-};
-const KEEPS: EnergyLaw = EnergyLaw::Factor {
-    factor: |_| 1.0,
-    formula: "1",
-};
+// TR-BDF2, in steps.
 
-pub(super) const IMPLICIT_EULER: Method = Method {
+/// Where the trapezoidal stage ends: g = 2 - √2.
+const STAGE: f64 = 2.0 - SQRT_2;
+/// The implicit coefficient of both stages, g/2.
+const IMPLICIT: f64 = 0.5 * STAGE;
+/// How far the difference formula goes beyond the stage: 1/(g (2 - g)) = (1 + √2)/2.
+const BEYOND: f64 = 0.5 * (1.0 + SQRT_2);
+/// What start and stage weigh in the step as a whole: √2/4.
+const WEIGHT: f64 = 0.25 * SQRT_2;
+pub(super) const IMPLICIT_EULER: Row = Row {
+    id: "implicit_euler",
+    name: "implicit Euler",
+    coefficients: Coefficients::Implicit(Scheme::Euler),
+    energy: Some("1/(1 + z²)"),
     source: "Hairer, Wanner, Solving ODEs II, IV.3",
     not: "linearized_implicit, which stops after one Newton step",
-    ..implicit("implicit_euler", "implicit Euler", 1, DISSIPATES)
 };
 
-pub(super) const LINEARIZED_IMPLICIT: Method = Method {
+pub(super) const LINEARIZED_IMPLICIT: Row = Row {
+    id: "linearized_implicit",
+    name: "linearly implicit Euler",
+    coefficients: Coefficients::Implicit(Scheme::LinearizedEuler(Linearization::Exact)),
+    energy: Some("1/(1 + z²)"),
     source: "Baraff & Witkin 1998, Large Steps in Cloth Simulation, with the exact Jacobian",
     not: "implicit_euler: non-linear forces are met only to first order",
-    evaluations: PerStep::Exactly(1),
-    build: |settings| {
-        Box::new(Implicit::new(
-            Scheme::LinearizedEuler(Linearization::Exact),
-            settings,
-        ))
-    },
-    ..implicit(
-        "linearized_implicit",
-        "linearly implicit Euler",
-        1,
-        DISSIPATES,
-    )
 };
 
-pub(super) const LINEARIZED_IMPLICIT_MATERIAL: Method = Method {
+pub(super) const LINEARIZED_IMPLICIT_MATERIAL: Row = Row {
+    id: "linearized_implicit_material",
+    name: "linearly implicit Euler, K = k n nᵀ",
+    coefficients: Coefficients::Implicit(Scheme::LinearizedEuler(Linearization::Material)),
+    energy: Some("1/(1 + z²)"),
     source: "Baraff & Witkin 1998 with K = k n nᵀ; what rapier's spring joint converges to",
     not: "linearized_implicit: the stiffness of a spring's turning is left out, so transverse \
           motion is only as stable as symplectic Euler's",
-    evaluations: PerStep::Exactly(1),
-    oscillator: Oscillator {
-        stable: Stable::AlwaysAlong { across: 2.0 },
-        energy: DISSIPATES,
-    },
-    amplification: Amplification::MaterialImplicit,
-    build: |settings| {
-        Box::new(Implicit::new(
-            Scheme::LinearizedEuler(Linearization::Material),
-            settings,
-        ))
-    },
-    ..implicit(
-        "linearized_implicit_material",
-        "linearly implicit Euler, K = k n nᵀ",
-        1,
-        DISSIPATES,
-    )
 };
 
-pub(super) const IMPLICIT_MIDPOINT: Method = Method {
-    symplectic: true,
+pub(super) const IMPLICIT_MIDPOINT: Row = Row {
+    id: "implicit_midpoint",
+    name: "implicit midpoint",
+    coefficients: Coefficients::Implicit(Scheme::Midpoint),
+    energy: Some("1"),
     source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1 (Gauss, s = 1)",
     not: "midpoint, its explicit namesake, or trapezoidal, its conjugate",
-    amplification: Amplification::CAYLEY,
-    build: |settings| Box::new(Implicit::new(Scheme::Midpoint, settings)),
-    ..implicit("implicit_midpoint", "implicit midpoint", 2, KEEPS)
 };
 
-pub(super) const TRAPEZOIDAL: Method = Method {
-    evaluations: PerStep::PerIteration { plus: 2 },
+pub(super) const TRAPEZOIDAL: Row = Row {
+    id: "trapezoidal",
+    name: "trapezoidal rule",
+    coefficients: Coefficients::Implicit(Scheme::Trapezoidal),
+    energy: Some("1"),
     source: "Crank & Nicolson 1947; Newmark 1959 with β = 1/4, γ = 1/2",
     not: "heun, its explicit namesake; conjugate to a symplectic method, not one itself",
-    amplification: Amplification::CAYLEY,
-    build: |settings| Box::new(Implicit::new(Scheme::Trapezoidal, settings)),
-    ..implicit("trapezoidal", "trapezoidal rule", 2, KEEPS)
+};
+
+pub(super) const TR_BDF2: Row = Row {
+    id: "tr_bdf2",
+    name: "TR-BDF2",
+    coefficients: Coefficients::Implicit(Scheme::TrBdf2),
+    energy: Some("1 - (z²/(z² + (2 + √2)²))²"),
+    source: "Bank et al. 1985, IEEE Trans. CAD 4; Hosea & Shampine 1996, Appl. Numer. Math. 20",
+    not: "trapezoidal, which lets stiff modes ring; BDF2, which needs two steps of the past",
 };
 
 /// The stepper all implicit methods share.
@@ -125,10 +131,9 @@ pub struct Implicit {
     u: Vec<f64>,
     /// The velocity u departs from.
     b: Vec<f64>,
-    /// The position γ u is added to.
+    /// The position γ u is added to; the stage's position once it is solved.
     y: Vec<f64>,
     a: Vec<f64>,
-    x: Vec<f64>,
 }
 
 impl Implicit {
@@ -140,76 +145,93 @@ impl Implicit {
             b: Vec::new(),
             y: Vec::new(),
             a: Vec::new(),
-            x: Vec::new(),
         }
     }
 
-    /// Solves for `u` and leaves the stage's position in `self.x`.
-    fn solve(&mut self, system: &dyn System, t: f64, gamma: f64) -> Result<(), StepError> {
-        self.newton
+    /// Solves for `u` and moves `y` to the stage's position; returns the powers there.
+    fn solve(&mut self, system: &dyn System, t: f64, gamma: f64) -> Result<Power, StepError> {
+        let power = self
+            .newton
             .solve(system, t, gamma, &self.b, &self.y, &mut self.u)?;
-        self.x.copy_from_slice(&self.y);
-        axpy(&mut self.x, gamma, &self.u);
-        Ok(())
+        axpy(&mut self.y, gamma, &self.u);
+        Ok(power)
+    }
+
+    /// The trapezoidal rule over 2 γ from the state on; returns the powers at its start and its end.
+    fn trapezoid(
+        &mut self,
+        system: &dyn System,
+        gamma: f64,
+        end: f64,
+        state: &State,
+    ) -> Result<[Power; 2], StepError> {
+        let start = system.acceleration(state.t, &state.x, &state.v, &mut self.a);
+        axpy(&mut self.b, gamma, &self.a);
+        axpy(&mut self.y, gamma, &state.v);
+        Ok([start, self.solve(system, end, gamma)?])
     }
 }
 
 impl Integrator for Implicit {
     fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
+        refuse(self, system)?;
         let n = state.x.len();
-        for buffer in [
-            &mut self.u,
-            &mut self.b,
-            &mut self.y,
-            &mut self.a,
-            &mut self.x,
-        ] {
+        for buffer in [&mut self.u, &mut self.b, &mut self.y, &mut self.a] {
             fit(buffer, n);
         }
         self.u.copy_from_slice(&state.v);
         self.b.copy_from_slice(&state.v);
         self.y.copy_from_slice(&state.x);
-        let t = state.t;
+        let (t, end) = (state.t, state.t + h);
         let mut work = state.work;
         match self.scheme {
-            Scheme::Euler => {
-                self.solve(system, t + h, h)?;
-                state.x.copy_from_slice(&self.x);
-                state.v.copy_from_slice(&self.u);
-                let end = self.newton.last_power();
-                work.advance(end, h);
-            }
+            Scheme::Euler => work.advance(self.solve(system, end, h)?, h),
             Scheme::LinearizedEuler(linearization) => {
                 let power = self
                     .newton
                     .single(system, t, h, linearization, state, &mut self.u)?;
-                state.v.copy_from_slice(&self.u);
-                axpy(&mut state.x, h, &self.u);
+                axpy(&mut self.y, h, &self.u);
                 work.advance(power, h);
             }
             Scheme::Midpoint => {
-                self.solve(system, t + 0.5 * h, 0.5 * h)?;
-                work.advance(self.newton.last_power(), h);
-                axpy(&mut state.x, h, &self.u);
+                let power = self.solve(system, t + 0.5 * h, 0.5 * h)?;
+                work.advance(power, h);
+                self.y.copy_from_slice(&state.x);
+                axpy(&mut self.y, h, &self.u);
                 // v1 = v0 + 2 (u - v0), so that what does not accelerate keeps its bits.
-                for (v, u) in state.v.iter_mut().zip(&self.u) {
-                    *v += 2.0 * (u - *v);
+                for (u, v) in self.u.iter_mut().zip(&state.v) {
+                    *u = v + 2.0 * (*u - v);
                 }
             }
             Scheme::Trapezoidal => {
-                let start = system.acceleration(t, &state.x, &state.v, &mut self.a);
-                axpy(&mut self.b, 0.5 * h, &self.a);
-                axpy(&mut self.y, 0.5 * h, &state.v);
-                self.solve(system, t + h, 0.5 * h)?;
-                work.advance(start, 0.5 * h);
-                work.advance(self.newton.last_power(), 0.5 * h);
-                state.x.copy_from_slice(&self.x);
-                state.v.copy_from_slice(&self.u);
+                for power in self.trapezoid(system, 0.5 * h, end, state)? {
+                    work.advance(power, 0.5 * h);
+                }
+            }
+            Scheme::TrBdf2 => {
+                let gamma = IMPLICIT * h;
+                for power in self.trapezoid(system, gamma, t + STAGE * h, state)? {
+                    work.advance(power, WEIGHT * h);
+                }
+                // Differences from the start, so that what does not accelerate keeps its bits.
+                for (y, x) in self.y.iter_mut().zip(&state.x) {
+                    *y = x + BEYOND * (*y - x);
+                }
+                for ((b, u), v) in self.b.iter_mut().zip(&self.u).zip(&state.v) {
+                    *b = v + BEYOND * (u - v);
+                }
+                work.advance(self.solve(system, end, gamma)?, gamma);
             }
         }
+        state.x.copy_from_slice(&self.y);
+        state.v.copy_from_slice(&self.u);
         state.work = work;
-        state.t = t + h;
+        state.t = end;
         Ok(())
+    }
+
+    fn takes(&self) -> ForceKinds {
+        self.scheme.takes()
     }
 
     fn linear_solves(&self) -> u64 {

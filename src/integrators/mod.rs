@@ -2,22 +2,24 @@
 
 pub mod adaptive;
 mod amplification;
+mod facts;
 mod implicit;
 mod newton;
 pub(crate) mod nystrom;
 mod runge_kutta;
 mod splitting;
-mod tr_bdf2;
 mod velocity_flow;
 
-pub use amplification::Amplification;
+pub use amplification::{Amplification, Rational};
+pub(crate) use amplification::{bisect, map, phi1};
+pub use facts::Row;
 pub use implicit::{Implicit, Scheme};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
-pub use tr_bdf2::TrBdf2;
 
-use crate::system::{State, System};
+use crate::physics::{ForceKinds, Refused, State, System};
 use crate::vector::axpy;
+use std::sync::LazyLock;
 
 /// Advances a state by one step.
 ///
@@ -28,8 +30,15 @@ pub trait Integrator: Send {
     /// left as it was.
     ///
     /// # Errors
-    /// [`StepError`] when an implicit step cannot be solved.
+    /// [`StepError`] when an implicit step cannot be solved, or when the integrator does not
+    /// [take](Self::takes) the system's forces.
     fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError>;
+
+    /// The kinds of forces it is right for, to its order. What it does not take is refused before a
+    /// run starts ([`ParticleSystem::admits`](crate::physics::ParticleSystem::admits)).
+    fn takes(&self) -> ForceKinds {
+        ForceKinds::ANY
+    }
 
     /// Linear systems solved so far; 0 for explicit methods.
     fn linear_solves(&self) -> u64 {
@@ -46,6 +55,8 @@ pub trait Integrator: Send {
 /// Why a step could not be taken.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StepError {
+    #[error(transparent)]
+    Refused(#[from] Refused),
     #[error(
         "Newton's iteration stopped at a relative residual of {residual:.1e} after {iterations} \
          iterations (wanted {tolerance:.0e}), largest at particle {particle}: a smaller timestep \
@@ -92,7 +103,7 @@ pub enum StepError {
 }
 
 /// One method's facts. Everything a report says of a method, and every law it is tested by,
-/// stands here.
+/// stands here. [`Method::new`] works them out from the coefficients.
 #[derive(Clone, Copy)]
 pub struct Method {
     /// The id scenes, reports and the command line use.
@@ -109,6 +120,8 @@ pub struct Method {
     pub evaluations: PerStep,
     /// On x'' = -w² x, with z = h w.
     pub oscillator: Oscillator,
+    /// What it computes with.
+    pub coefficients: Coefficients,
     /// On any linear system; `oscillator` is its summary.
     pub amplification: Amplification,
     pub exact: Exact,
@@ -116,8 +129,37 @@ pub struct Method {
     pub source: &'static str,
     /// What it must not be confused with.
     pub not: &'static str,
+}
+
+/// What a method computes with, and by that which stepper runs it.
+#[derive(Debug, Clone, Copy)]
+pub enum Coefficients {
+    /// An explicit Runge-Kutta method.
+    Tableau(Tableau),
+    /// A product of kicks and drifts, the first one first.
+    Composition(&'static [Stage], DampingTreatment),
+    /// A scheme of implicit stage equations.
+    Implicit(Scheme),
+}
+
+impl Method {
+    /// The kinds of forces it takes: as [`Integrator::takes`].
+    pub const fn takes(&self) -> ForceKinds {
+        match self.coefficients {
+            Coefficients::Tableau(_) => ForceKinds::ANY,
+            Coefficients::Composition(_, damping) => damping.takes(),
+            Coefficients::Implicit(scheme) => scheme.takes(),
+        }
+    }
+
     /// A fresh integrator.
-    pub build: fn(&Settings) -> Box<dyn Integrator>,
+    pub fn build(&self, settings: &Settings) -> Box<dyn Integrator> {
+        match self.coefficients {
+            Coefficients::Tableau(tableau) => Box::new(RungeKutta::new(tableau)),
+            Coefficients::Composition(stages, damping) => Box::new(Splitting::new(stages, damping)),
+            Coefficients::Implicit(scheme) => Box::new(Implicit::new(scheme, settings)),
+        }
+    }
 }
 
 impl std::fmt::Debug for Method {
@@ -178,21 +220,33 @@ impl Exact {
     }
 }
 
-/// What happens to the oscillator's energy, as a function of z = h w.
-#[derive(Debug, Clone, Copy)]
+/// A function of z = h w.
+pub type OfZ<T> = &'static (dyn Fn(f64) -> T + Send + Sync);
+
+/// What happens to the oscillator's energy, as a function of z = h w. Formulas are for people.
+#[derive(Clone, Copy)]
 pub enum EnergyLaw {
     /// Multiplied by this factor every step.
     Factor {
-        factor: fn(f64) -> f64,
+        factor: OfZ<f64>,
         formula: &'static str,
     },
     /// From rest, stays within these multiples of its initial value for ever.
     Band {
-        band: fn(f64) -> (f64, f64),
+        band: OfZ<(f64, f64)>,
         formula: &'static str,
     },
     /// Bounded for ever; the band has no short formula.
     Bounded,
+}
+
+impl std::fmt::Debug for EnergyLaw {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Factor { formula, .. } | Self::Band { formula, .. } => formula,
+            Self::Bounded => "bounded",
+        })
+    }
 }
 
 /// What a build may be told.
@@ -216,25 +270,28 @@ impl Default for Settings {
 }
 
 /// Every method, in the order reports list them.
-pub static REGISTRY: &[Method] = &[
-    runge_kutta::EXPLICIT_EULER,
-    splitting::SYMPLECTIC_EULER,
-    splitting::SYMPLECTIC_EULER_DRIFT_FIRST,
-    runge_kutta::MIDPOINT,
-    runge_kutta::HEUN,
-    runge_kutta::RALSTON,
-    splitting::VELOCITY_VERLET,
-    splitting::POSITION_VERLET,
-    runge_kutta::RK4,
-    splitting::YOSHIDA4,
-    splitting::PEFRL,
-    implicit::IMPLICIT_EULER,
-    implicit::LINEARIZED_IMPLICIT,
-    implicit::LINEARIZED_IMPLICIT_MATERIAL,
-    implicit::IMPLICIT_MIDPOINT,
-    implicit::TRAPEZOIDAL,
-    tr_bdf2::TR_BDF2,
-];
+pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
+    let rows = [
+        runge_kutta::EXPLICIT_EULER,
+        splitting::SYMPLECTIC_EULER,
+        splitting::SYMPLECTIC_EULER_DRIFT_FIRST,
+        runge_kutta::MIDPOINT,
+        runge_kutta::HEUN,
+        runge_kutta::RALSTON,
+        splitting::VELOCITY_VERLET,
+        splitting::POSITION_VERLET,
+        runge_kutta::RK4,
+        splitting::YOSHIDA4,
+        splitting::PEFRL,
+        implicit::IMPLICIT_EULER,
+        implicit::LINEARIZED_IMPLICIT,
+        implicit::LINEARIZED_IMPLICIT_MATERIAL,
+        implicit::IMPLICIT_MIDPOINT,
+        implicit::TRAPEZOIDAL,
+        implicit::TR_BDF2,
+    ];
+    rows.map(Method::new).to_vec()
+});
 
 /// The method of this id.
 pub fn find(id: &str) -> Option<&'static Method> {
@@ -244,6 +301,19 @@ pub fn find(id: &str) -> Option<&'static Method> {
 /// All ids, in registry order.
 pub fn ids() -> Vec<&'static str> {
     REGISTRY.iter().map(|method| method.id).collect()
+}
+
+/// Refuses forces that an integrator would silently get wrong.
+fn refuse(integrator: &dyn Integrator, system: &dyn System) -> Result<(), Refused> {
+    let kinds = system.kinds().without(integrator.takes());
+    if kinds == ForceKinds::NONE {
+        return Ok(());
+    }
+    Err(Refused {
+        who: "this integrator".to_owned(),
+        kinds,
+        effects: Vec::new(),
+    })
 }
 
 /// Resizes scratch memory on first use or when the system's size changed.

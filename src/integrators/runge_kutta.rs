@@ -1,16 +1,13 @@
 //! Explicit Runge-Kutta methods: one stepper, a tableau a method.
 
-use super::{
-    Amplification, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable,
-    StepError, axpy, fit,
-};
-use crate::system::{Power, State, System};
+use super::{Coefficients, Integrator, Row, StepError, axpy, fit};
+use crate::physics::{Power, State, System};
 use crate::vector;
 
-/// An explicit tableau for the first-order system (x, v)' = (v, a), s stages.
+/// A tableau for the first-order system (x, v)' = (v, a), s stages.
 #[derive(Debug, Clone, Copy)]
 pub struct Tableau {
-    /// Row i holds a_i0 .. a_i,i-1; s rows, the first empty.
+    /// Row i holds a_i0 .. a_i,i-1; s rows, the first empty. Of an implicit scheme a_ii too.
     pub a: &'static [&'static [f64]],
     /// s weights, summing to 1.
     pub b: &'static [f64],
@@ -18,146 +15,69 @@ pub struct Tableau {
     pub c: &'static [f64],
 }
 
-const EULER: Tableau = Tableau {
-    a: &[&[]],
-    b: &[1.0],
-    c: &[0.0],
-};
-const MIDPOINT_TABLEAU: Tableau = Tableau {
-    a: &[&[], &[0.5]],
-    b: &[0.0, 1.0],
-    c: &[0.0, 0.5],
-};
-const HEUN_TABLEAU: Tableau = Tableau {
-    a: &[&[], &[1.0]],
-    b: &[0.5, 0.5],
-    c: &[0.0, 1.0],
-};
-const RALSTON_TABLEAU: Tableau = Tableau {
-    a: &[&[], &[2.0 / 3.0]],
-    b: &[0.25, 0.75],
-    c: &[0.0, 2.0 / 3.0],
-};
-const RK4_TABLEAU: Tableau = Tableau {
-    a: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
-    b: &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
-    c: &[0.0, 0.5, 0.5, 1.0],
-};
-
-const fn explicit(
-    id: &'static str,
-    name: &'static str,
-    order: u32,
-    stages: u32,
-    oscillator: Oscillator,
-    amplification: Amplification,
-) -> Method {
-    Method {
-        id,
-        name,
-        order,
-        order_damped: order,
-        symplectic: false,
-        reversible: false,
-        evaluations: PerStep::Exactly(stages),
-        oscillator,
-        amplification,
-        exact: Exact::of_order(order),
-        source: "",
-        not: "",
-        build: |_: &Settings| Box::new(RungeKutta::new(EULER)),
-    }
-}
-
-/// All second-order two-stage methods share R(z) on linear problems.
-const SECOND_ORDER: Oscillator = Oscillator {
-    stable: Stable::Never,
-    energy: EnergyLaw::Factor {
-        factor: |z| 1.0 + z.powi(4) / 4.0,
-        formula: "1 + z⁴/4",
-    },
-};
-
-pub(super) const EXPLICIT_EULER: Method = Method {
+pub(super) const EXPLICIT_EULER: Row = Row {
+    id: "explicit_euler",
+    name: "explicit Euler",
+    coefficients: Coefficients::Tableau(Tableau {
+        a: &[&[]],
+        b: &[1.0],
+        c: &[0.0],
+    }),
+    energy: Some("1 + z²"),
     source: "Euler 1768; Hairer, Nørsett, Wanner, Solving ODEs I, II.1",
     not: "symplectic_euler, which drifts with the new velocity",
-    ..explicit(
-        "explicit_euler",
-        "explicit Euler",
-        1,
-        1,
-        Oscillator {
-            stable: Stable::Never,
-            energy: EnergyLaw::Factor {
-                factor: |z| 1.0 + z * z,
-                formula: "1 + z²",
-            },
-        },
-        Amplification::EXPLICIT_1,
-    )
 };
 
-pub(super) const MIDPOINT: Method = Method {
+pub(super) const MIDPOINT: Row = Row {
+    id: "midpoint",
+    name: "explicit midpoint",
+    coefficients: Coefficients::Tableau(Tableau {
+        a: &[&[], &[0.5]],
+        b: &[0.0, 1.0],
+        c: &[0.0, 0.5],
+    }),
+    energy: Some("1 + z⁴/4"),
     source: "Runge 1895; Hairer, Nørsett, Wanner, Solving ODEs I, II.1",
     not: "implicit_midpoint; nor the common mistake that drifts with the end velocity",
-    build: |_| Box::new(RungeKutta::new(MIDPOINT_TABLEAU)),
-    ..explicit(
-        "midpoint",
-        "explicit midpoint",
-        2,
-        2,
-        SECOND_ORDER,
-        Amplification::EXPLICIT_2,
-    )
 };
 
-pub(super) const HEUN: Method = Method {
+pub(super) const HEUN: Row = Row {
+    id: "heun",
+    name: "Heun (explicit trapezoid)",
+    coefficients: Coefficients::Tableau(Tableau {
+        a: &[&[], &[1.0]],
+        b: &[0.5, 0.5],
+        c: &[0.0, 1.0],
+    }),
+    energy: Some("1 + z⁴/4"),
     source: "Heun 1900; the explicit trapezoidal rule",
     not: "trapezoidal, its implicit namesake",
-    build: |_| Box::new(RungeKutta::new(HEUN_TABLEAU)),
-    ..explicit(
-        "heun",
-        "Heun (explicit trapezoid)",
-        2,
-        2,
-        SECOND_ORDER,
-        Amplification::EXPLICIT_2,
-    )
 };
 
-pub(super) const RALSTON: Method = Method {
+pub(super) const RALSTON: Row = Row {
+    id: "ralston",
+    name: "Ralston",
+    coefficients: Coefficients::Tableau(Tableau {
+        a: &[&[], &[2.0 / 3.0]],
+        b: &[0.25, 0.75],
+        c: &[0.0, 2.0 / 3.0],
+    }),
+    energy: Some("1 + z⁴/4"),
     source: "Ralston 1962, Math. Comp. 16: the two-stage method of least error bound",
     not: "Ralston's third-order method",
-    build: |_| Box::new(RungeKutta::new(RALSTON_TABLEAU)),
-    ..explicit(
-        "ralston",
-        "Ralston",
-        2,
-        2,
-        SECOND_ORDER,
-        Amplification::EXPLICIT_2,
-    )
 };
 
-pub(super) const RK4: Method = Method {
+pub(super) const RK4: Row = Row {
+    id: "rk4",
+    name: "classical Runge-Kutta",
+    coefficients: Coefficients::Tableau(Tableau {
+        a: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
+        b: &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
+        c: &[0.0, 0.5, 0.5, 1.0],
+    }),
+    energy: Some("1 - z⁶/72 + z⁸/576"),
     source: "Kutta 1901; Hairer, Nørsett, Wanner, Solving ODEs I, II.1",
     not: "the 3/8 rule",
-    build: |_| Box::new(RungeKutta::new(RK4_TABLEAU)),
-    ..explicit(
-        "rk4",
-        "classical Runge-Kutta",
-        4,
-        4,
-        Oscillator {
-            // 2 sqrt(2).
-            stable: Stable::Below(2.0 * std::f64::consts::SQRT_2),
-            energy: EnergyLaw::Factor {
-                factor: |z| 1.0 - z.powi(6) / 72.0 + z.powi(8) / 576.0,
-                formula: "1 - z⁶/72 + z⁸/576",
-            },
-        },
-        Amplification::EXPLICIT_4,
-    )
 };
 
 /// The stepper all explicit tableaux share.

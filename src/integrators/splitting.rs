@@ -1,11 +1,8 @@
 //! Splitting methods: one stepper, a list of kicks and drifts a method.
 
 use super::velocity_flow::VelocityFlow;
-use super::{
-    Amplification, EnergyLaw, Exact, Integrator, Method, Oscillator, PerStep, Settings, Stable,
-    StepError, axpy, fit,
-};
-use crate::system::{State, System};
+use super::{Coefficients, Integrator, Row, StepError, axpy, fit, refuse};
+use crate::physics::{ForceKinds, State, System};
 use crate::vector;
 
 /// One factor of the composition; its coefficient multiplies the step.
@@ -75,147 +72,73 @@ pub enum DampingTreatment {
     ExactFlow,
 }
 
-/// A symplectic method, undamped evaluations and all: what the rows below share.
-const fn symplectic(
-    id: &'static str,
-    name: &'static str,
-    order: u32,
-    evaluations: u32,
-    limit: f64,
-    energy: EnergyLaw,
-) -> Method {
-    Method {
-        id,
-        name,
-        order,
-        order_damped: order,
-        symplectic: true,
-        reversible: order > 1,
-        evaluations: PerStep::Exactly(evaluations),
-        oscillator: Oscillator {
-            stable: Stable::Below(limit),
-            energy,
-        },
-        amplification: Amplification::Composition(&[], DampingTreatment::Explicit),
-        exact: Exact::of_order(order),
-        source: "",
-        not: "",
-        build: |_: &Settings| Box::new(Splitting::new(&[], DampingTreatment::Explicit)),
+impl DampingTreatment {
+    /// An explicit kick is of first order whatever the force. The exact flow takes the force at rest and
+    /// D apart, and D to be symmetric.
+    pub(super) const fn takes(self) -> ForceKinds {
+        match self {
+            Self::Explicit => ForceKinds::ANY,
+            Self::ExactFlow => ForceKinds::SYMMETRIC,
+        }
     }
 }
 
-/// |w x v| <= E turns the invariant E ∓ (h/2) w² x v into a band around E0.
-const EULER_BAND: EnergyLaw = EnergyLaw::Band {
-    band: |z| (1.0 / (1.0 + z / 2.0), 1.0 / (1.0 - z / 2.0)),
-    formula: "[1/(1 + z/2), 1/(1 - z/2)]",
-};
-
-pub(super) const SYMPLECTIC_EULER: Method = Method {
+pub(super) const SYMPLECTIC_EULER: Row = Row {
+    id: "symplectic_euler",
+    name: "symplectic Euler (kick, drift)",
+    coefficients: Coefficients::Composition(Stage::SYMPLECTIC_EULER, DampingTreatment::Explicit),
+    energy: Some("[1/(1 + z/2), 1/(1 - z/2)]"),
     source: "de Vogelaere 1956; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
     not: "explicit_euler, which drifts with the old velocity; leapfrog without its first half kick \
           is this method",
-    amplification: Amplification::Composition(Stage::SYMPLECTIC_EULER, DampingTreatment::Explicit),
-    build: |_| {
-        Box::new(Splitting::new(
-            Stage::SYMPLECTIC_EULER,
-            DampingTreatment::Explicit,
-        ))
-    },
-    ..symplectic(
-        "symplectic_euler",
-        "symplectic Euler (kick, drift)",
-        1,
-        1,
-        2.0,
-        EULER_BAND,
-    )
 };
 
-pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Method = Method {
-    source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
-    not: "explicit_euler, for which it is often taken: it kicks at the position already moved",
-    amplification: Amplification::Composition(
+pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Row = Row {
+    id: "symplectic_euler_drift_first",
+    name: "symplectic Euler (drift, kick)",
+    coefficients: Coefficients::Composition(
         Stage::SYMPLECTIC_EULER_DRIFT_FIRST,
         DampingTreatment::Explicit,
     ),
-    build: |_| {
-        Box::new(Splitting::new(
-            Stage::SYMPLECTIC_EULER_DRIFT_FIRST,
-            DampingTreatment::Explicit,
-        ))
-    },
-    ..symplectic(
-        "symplectic_euler_drift_first",
-        "symplectic Euler (drift, kick)",
-        1,
-        1,
-        2.0,
-        EULER_BAND,
-    )
+    energy: Some("[1/(1 + z/2), 1/(1 - z/2)]"),
+    source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2",
+    not: "explicit_euler, for which it is often taken: it kicks at the position already moved",
 };
 
-pub(super) const VELOCITY_VERLET: Method = Method {
+pub(super) const VELOCITY_VERLET: Row = Row {
+    id: "velocity_verlet",
+    name: "velocity Verlet",
+    coefficients: Coefficients::Composition(Stage::VERLET, DampingTreatment::ExactFlow),
+    energy: Some("[1 - z²/4, 1]"),
     source: "Swope et al. 1982; Hairer, Lubich, Wanner, Acta Numerica 2003 (Störmer-Verlet)",
     not: "position_verlet (drift, kick, drift), or Verlet with a predicted velocity in the damper",
-    amplification: Amplification::Composition(Stage::VERLET, DampingTreatment::ExactFlow),
-    build: |_| Box::new(Splitting::new(Stage::VERLET, DampingTreatment::ExactFlow)),
-    ..symplectic(
-        "velocity_verlet",
-        "velocity Verlet",
-        2,
-        1,
-        2.0,
-        EnergyLaw::Band {
-            band: |z| (1.0 - z * z / 4.0, 1.0),
-            formula: "[1 - z²/4, 1]",
-        },
-    )
 };
 
-pub(super) const POSITION_VERLET: Method = Method {
+pub(super) const POSITION_VERLET: Row = Row {
+    id: "position_verlet",
+    name: "position Verlet",
+    coefficients: Coefficients::Composition(Stage::POSITION_VERLET, DampingTreatment::ExactFlow),
+    energy: Some("[1, 1/(1 - z²/4)]"),
     source: "Verlet 1967; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4",
     not: "velocity_verlet, which kicks first and last",
-    amplification: Amplification::Composition(Stage::POSITION_VERLET, DampingTreatment::ExactFlow),
-    build: |_| {
-        Box::new(Splitting::new(
-            Stage::POSITION_VERLET,
-            DampingTreatment::ExactFlow,
-        ))
-    },
-    ..symplectic(
-        "position_verlet",
-        "position Verlet",
-        2,
-        1,
-        2.0,
-        EnergyLaw::Band {
-            band: |z| (1.0, 1.0 / (1.0 - z * z / 4.0)),
-            formula: "[1, 1/(1 - z²/4)]",
-        },
-    )
 };
 
-pub(super) const YOSHIDA4: Method = Method {
+pub(super) const YOSHIDA4: Row = Row {
+    id: "yoshida4",
+    name: "Yoshida / Forest-Ruth",
+    coefficients: Coefficients::Composition(Stage::YOSHIDA4, DampingTreatment::ExactFlow),
+    energy: None,
     source: "Forest & Ruth 1990, Physica D 43; Yoshida 1990, Phys. Lett. A 150",
     not: "Yoshida's sixth- and eighth-order methods",
-    amplification: Amplification::Composition(Stage::YOSHIDA4, DampingTreatment::ExactFlow),
-    build: |_| Box::new(Splitting::new(Stage::YOSHIDA4, DampingTreatment::ExactFlow)),
-    ..symplectic(
-        "yoshida4",
-        "Yoshida / Forest-Ruth",
-        4,
-        3,
-        1.573_402,
-        EnergyLaw::Bounded,
-    )
 };
 
-pub(super) const PEFRL: Method = Method {
+pub(super) const PEFRL: Row = Row {
+    id: "pefrl",
+    name: "PEFRL",
+    coefficients: Coefficients::Composition(Stage::PEFRL, DampingTreatment::ExactFlow),
+    energy: None,
     source: "Omelyan, Mryglod, Folk 2002, Comput. Phys. Commun. 146, 188",
     not: "Forest-Ruth (yoshida4): one evaluation more, an error constant far smaller",
-    amplification: Amplification::Composition(Stage::PEFRL, DampingTreatment::ExactFlow),
-    build: |_| Box::new(Splitting::new(Stage::PEFRL, DampingTreatment::ExactFlow)),
-    ..symplectic("pefrl", "PEFRL", 4, 4, 2.989_450, EnergyLaw::Bounded)
 };
 
 /// The stepper all compositions of kicks and drifts share.
@@ -294,9 +217,9 @@ impl Splitting {
             self.kept.t = t;
             self.kept.valid = true;
         }
-        if system.is_damped() {
+        if system.kinds().depends_on_velocity() {
             self.flow.advance(system, t, h, &self.kept.a, state)?;
-        } else if system.is_driven() {
+        } else if system.kinds().has(ForceKinds::DRIVEN) {
             // The power is linear in v, and v is linear in time: the trapezoid is exact.
             let before = system.injected_power(t, &state.x, &state.v);
             axpy(&mut state.v, h, &self.kept.a);
@@ -311,7 +234,8 @@ impl Splitting {
 
 impl Integrator for Splitting {
     fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
-        if self.damping == DampingTreatment::Explicit || !system.is_damped() {
+        refuse(self, system)?;
+        if self.damping == DampingTreatment::Explicit || !system.kinds().depends_on_velocity() {
             return self.compose(system, h, state);
         }
         // Only a damping flow can fail, half way through.
@@ -323,6 +247,10 @@ impl Integrator for Splitting {
         }
         self.saved = Some(saved);
         done
+    }
+
+    fn takes(&self) -> ForceKinds {
+        self.damping.takes()
     }
 }
 

@@ -9,8 +9,9 @@
 //! Where nothing but damping acts, a0 = 0, and h G is large, v(h) = e^(hG) v is taken as it stands: the
 //! sum v + h φ1 r knows it to the last bit of v only, which a substep backward would blow up again.
 
-use super::{StepError, axpy, fit, largest, worst_particle};
-use crate::system::{State, System};
+use super::{StepError, axpy, fit, largest, phi1, worst_particle};
+use crate::krylov::Space;
+use crate::physics::{ForceKinds, State, System};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Taylor terms before Lanczos takes over.
@@ -31,7 +32,6 @@ pub(super) struct VelocityFlow {
     /// φ1(hG) r and φ2(hG) r; of damping alone e^(hG) v and φ1(hG) v.
     phi1: Vec<f64>,
     phi2: Vec<f64>,
-    basis: Vec<Vec<f64>>,
 }
 
 impl VelocityFlow {
@@ -112,7 +112,7 @@ impl VelocityFlow {
             }
         }
         state.work.dissipated += dissipated;
-        if system.is_driven() {
+        if system.kinds().has(ForceKinds::DRIVEN) {
             state.work.injected += system.injected_power(t, &state.x, displacement);
         }
         Ok(())
@@ -170,25 +170,15 @@ impl VelocityFlow {
             self.phi1.copy_from_slice(&self.r);
             return true;
         }
-        let (mut alphas, mut betas) = (Vec::new(), Vec::new());
-        self.basis.clear();
-        self.basis.push(self.r.iter().map(|r| r / scale).collect());
+        let start = self.r.iter().map(|r| r / scale).collect();
+        let mut space = Space::new(start, |u, w| weighted_dot(u, w, inverse_mass));
         for k in 0..KRYLOV {
-            system.damping(t, x, &self.basis[k], &mut self.next);
-            let image = weighted_dot(&self.next, &self.next, inverse_mass).sqrt();
-            alphas.push(weighted_dot(&self.next, &self.basis[k], inverse_mass));
-            // Twice is enough (Parlett), to stay orthogonal to rounding.
-            for _ in 0..2 {
-                for q in &self.basis {
-                    let overlap = weighted_dot(&self.next, q, inverse_mass);
-                    axpy(&mut self.next, -overlap, q);
-                }
-            }
-            let beta = weighted_dot(&self.next, &self.next, inverse_mass).sqrt();
+            let beta = space.multiply(|q, image| system.damping(t, x, q, image));
             // What is left after orthogonalising is rounding: the space is closed.
-            let closed = beta <= 1e-13 * image || beta == 0.0;
+            let closed = beta <= 1e-13 * space.image || beta == 0.0;
             if closed || (k + 1) % TRIED == 0 {
-                let Some(small) = Small::new(h, &alphas, &betas) else {
+                let projected = DMatrix::from_fn(k + 1, k + 1, |i, j| h * space.tridiagonal(i, j));
+                let Some(small) = Small::new(projected) else {
                     return false;
                 };
                 if actions.whole && small.largest() > EXPONENT {
@@ -201,16 +191,16 @@ impl VelocityFlow {
                 let beside = speed / (per_step * scale) * mass_root(inverse_mass);
                 let enough = largest(&c1).max(beside);
                 if closed || missing <= 0.25 * f64::EPSILON * enough {
-                    for (row, q) in self.basis.iter().enumerate() {
+                    for (row, q) in space.basis.iter().enumerate() {
                         axpy(&mut self.phi1, scale * c1[row], q);
                         axpy(&mut self.phi2, scale * c2[row], q);
                     }
                     return true;
                 }
             }
-            betas.push(beta);
-            self.basis
-                .push(self.next.iter().map(|r| r / beta).collect());
+            if space.extend().is_none() {
+                return false;
+            }
         }
         false
     }
@@ -245,20 +235,12 @@ struct Small(SymmetricEigen<f64, nalgebra::Dyn>);
 
 impl Small {
     /// None with what is not finite, on which an eigensolver might not end.
-    fn new(h: f64, alphas: &[f64], betas: &[f64]) -> Option<Self> {
-        let m = alphas.len();
-        let mut tridiagonal = DMatrix::zeros(m, m);
-        for i in 0..m {
-            tridiagonal[(i, i)] = h * alphas[i];
-            if i + 1 < m {
-                tridiagonal[(i, i + 1)] = h * betas[i];
-                tridiagonal[(i + 1, i)] = h * betas[i];
-            }
-        }
-        if tridiagonal.iter().any(|c: &f64| !c.is_finite()) {
+    fn new(tridiagonal: DMatrix<f64>) -> Option<Self> {
+        if tridiagonal.iter().any(|c| !c.is_finite()) {
             return None;
         }
-        SymmetricEigen::try_new(tridiagonal, f64::EPSILON, 100 * m).map(Self)
+        let sweeps = 100 * tridiagonal.nrows();
+        SymmetricEigen::try_new(tridiagonal, f64::EPSILON, sweeps).map(Self)
     }
 
     /// The largest eigenvalue of h T.
@@ -292,11 +274,6 @@ fn mass_root(inverse_mass: &[f64]) -> f64 {
     } else {
         0.0
     }
-}
-
-/// (e^z - 1) / z.
-fn phi1(z: f64) -> f64 {
-    if z == 0.0 { 1.0 } else { z.exp_m1() / z }
 }
 
 /// (e^z - 1 - z) / z².

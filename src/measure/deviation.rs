@@ -2,6 +2,7 @@
 
 use crate::outcome::Deviation;
 use crate::trajectory::Trajectory;
+use crate::truth::farthest;
 
 /// The distance at which `first_exceeds_s` is read, as a share of the scene's size, or of the way
 /// gone where the scene has no size.
@@ -14,20 +15,10 @@ pub const TOLERANCE: f64 = 0.01;
 /// says that two runs differ, not which one is wrong.
 pub fn deviation(ours: &Trajectory, reference: &Trajectory, tolerance: f64) -> Option<Deviation> {
     let mut result: Option<Deviation> = None;
-    let mut other = 0;
-    for k in 0..ours.len() {
-        while other < reference.len() && reference.step(other) < ours.step(k) {
-            other += 1;
-        }
-        if other == reference.len() {
-            break;
-        }
-        if reference.step(other) != ours.step(k) {
+    for k in (0..ours.len()).filter(|&k| ours.step(k) > 0) {
+        let Some(other) = reference.instant_at(ours.step(k)) else {
             continue;
-        }
-        if ours.step(k) == 0 {
-            continue;
-        }
+        };
         let distance = farthest(ours.x(k), reference.x(other));
         let entry = result.get_or_insert(Deviation {
             last: 0.0,
@@ -48,15 +39,4 @@ pub fn reach(run: &Trajectory) -> f64 {
     (0..run.len())
         .map(|k| farthest(run.x(k), run.x(0)))
         .fold(0.0, f64::max)
-}
-
-/// Largest distance between the same particle of two states, m.
-pub(crate) fn farthest(a: &[f64], b: &[f64]) -> f64 {
-    let square =
-        |(a, b): (&[f64], &[f64])| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum() };
-    a.chunks_exact(3)
-        .zip(b.chunks_exact(3))
-        .map(square)
-        .fold(0.0, f64::max)
-        .sqrt()
 }

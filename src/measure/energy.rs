@@ -2,7 +2,8 @@
 
 use super::trend::trend;
 use crate::outcome::{Energy, EnergyClass};
-use crate::system::{ParticleSystem, System, Work};
+use crate::physics::effects::Effect;
+use crate::physics::{ParticleSystem, System, Work};
 use crate::trajectory::Trajectory;
 use std::collections::BTreeMap;
 
@@ -18,7 +19,7 @@ pub struct EnergySeries {
     initial: f64,
     last: f64,
     kinetic_last: f64,
-    potential_last: BTreeMap<&'static str, f64>,
+    potential_last: BTreeMap<String, f64>,
     work: Work,
     /// Steps taken up to the last instant, and the largest term ever summed: what rounding grows with.
     steps: u64,
@@ -32,56 +33,37 @@ impl EnergySeries {
         if !run.has_velocities() {
             return None;
         }
-        let mut series = Self {
-            t: Vec::with_capacity(run.len()),
-            instants: Vec::with_capacity(run.len()),
-            balance: Vec::with_capacity(run.len()),
-            initial: 0.0,
-            last: 0.0,
-            kinetic_last: 0.0,
-            potential_last: BTreeMap::new(),
-            work: Work::default(),
-            steps: 0,
-            largest_term: 0.0,
-        };
-        let mut last = None;
-        for k in 0..run.len() {
-            let (t, x) = (run.time(k), run.x(k));
+        let sample = |k: usize| {
+            let (t, x, work) = (run.time(k), run.x(k), run.work(k));
             let mut energy = system.kinetic(run.v(k));
-            let mut largest = energy;
+            let mut largest = energy.max(work.dissipated.abs()).max(work.injected.abs());
             for (_, effect) in system.effects() {
                 let u = effect.potential(t, x);
                 energy += u;
                 largest = largest.max(u.abs());
             }
-            let work = run.work(k);
             let balance = energy + work.dissipated - work.injected;
-            if !(balance.is_finite() && energy.is_finite() && largest.is_finite()) {
-                continue;
-            }
-            if series.t.is_empty() {
-                series.initial = energy;
-            }
-            series.t.push(t);
-            series.instants.push(k);
-            series.balance.push(balance);
-            series.last = energy;
-            series.largest_term = series
-                .largest_term
-                .max(largest)
-                .max(work.dissipated.abs())
-                .max(work.injected.abs());
-            last = Some(k);
-        }
-        let last = last?;
-        series.steps = run.step(last);
-        series.work = run.work(last);
-        series.kinetic_last = system.kinetic(run.v(last));
-        for (row, effect) in system.effects() {
-            let u = effect.potential(run.time(last), run.x(last));
-            series.potential_last.insert(row.id, u);
-        }
-        Some(series)
+            let finite = balance.is_finite() && energy.is_finite() && largest.is_finite();
+            finite.then_some((k, energy, balance, largest))
+        };
+        let samples: Vec<_> = (0..run.len()).filter_map(sample).collect();
+        let (&(_, initial, ..), &(end, last, ..)) = samples.first().zip(samples.last())?;
+        let potential = |effect: &dyn Effect| effect.potential(run.time(end), run.x(end));
+        let effects = system.effects().iter();
+        Some(Self {
+            t: samples.iter().map(|(k, ..)| run.time(*k)).collect(),
+            instants: samples.iter().map(|(k, ..)| *k).collect(),
+            balance: samples.iter().map(|(_, _, balance, _)| *balance).collect(),
+            initial,
+            last,
+            kinetic_last: system.kinetic(run.v(end)),
+            potential_last: effects
+                .map(|(row, effect)| (row.id.to_owned(), potential(effect.as_ref())))
+                .collect(),
+            work: run.work(end),
+            steps: run.step(end),
+            largest_term: samples.iter().fold(0.0, |most, (.., term)| term.max(most)),
+        })
     }
 
     /// Balance minus its initial value at every instant, in units of `scale` (1 for joules).

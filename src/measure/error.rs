@@ -1,9 +1,8 @@
 //! How far a run is from the truth.
 
-use super::deviation::farthest;
 use crate::outcome::Spread;
 use crate::trajectory::Trajectory;
-use crate::truth::States;
+use crate::truth::{States, farthest};
 
 /// What is true at certain steps.
 #[derive(Debug, Clone, Default)]
@@ -27,49 +26,30 @@ pub struct Errors {
 ///
 /// None when it shares no later instant, or is too far away for a number.
 pub fn errors(run: &Trajectory, known: &Known) -> Option<Errors> {
-    let mut position = Sum::default();
-    let mut velocity = Sum::default();
-    for k in 0..run.len() {
-        let Ok(at) = known.steps.binary_search(&run.step(k)) else {
-            continue;
-        };
-        position.add(farthest(run.x(k), known.states.x(at)));
-        velocity.add(farthest(run.v(k), known.states.v(at)));
-    }
+    let shared = (0..run.len()).filter_map(|k| {
+        let at = known.steps.binary_search(&run.step(k)).ok()?;
+        Some((k, at))
+    });
+    let shared: Vec<(usize, usize)> = shared.collect();
+    let distances = |of: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+        shared.iter().map(|&(k, at)| of(k, at)).collect()
+    };
+    let position = distances(&|k, at| farthest(run.x(k), known.states.x(at)));
+    let velocity = distances(&|k, at| farthest(run.v(k), known.states.v(at)));
     Some(Errors {
-        position: position.spread()?,
-        velocity: velocity.spread().filter(|_| run.has_velocities()),
+        position: spread(&position)?,
+        velocity: spread(&velocity).filter(|_| run.has_velocities()),
     })
 }
 
-#[derive(Default)]
-struct Sum {
-    last: f64,
-    max: f64,
-    squares: f64,
-    instants: u32,
-}
-
-impl Sum {
-    fn add(&mut self, distance: f64) {
-        self.last = distance;
-        // NaN stays.
-        self.max = if distance <= self.max {
-            self.max
-        } else {
-            distance
-        };
-        self.squares += distance * distance;
-        self.instants += 1;
-    }
-
-    fn spread(self) -> Option<Spread> {
-        let rms = (self.squares / f64::from(self.instants)).sqrt();
-        let known = self.instants > 1 && self.max.is_finite() && rms.is_finite();
-        known.then_some(Spread {
-            last: self.last,
-            max: self.max,
-            rms,
-        })
-    }
+fn spread(distances: &[f64]) -> Option<Spread> {
+    let squares: f64 = distances.iter().map(|d| d * d).sum();
+    let rms = (squares / distances.len() as f64).sqrt();
+    let max = distances.iter().copied().fold(0.0, f64::max);
+    let known = distances.len() > 1 && max.is_finite() && rms.is_finite();
+    known.then(|| Spread {
+        last: distances[distances.len() - 1],
+        max,
+        rms,
+    })
 }

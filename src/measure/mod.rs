@@ -12,7 +12,6 @@ pub mod stability;
 mod trend;
 pub mod twin;
 
-pub(crate) use deviation::farthest;
 pub use deviation::{TOLERANCE, deviation, reach};
 pub use energy::{EnergySeries, judge};
 pub use error::{Errors, Known, errors};

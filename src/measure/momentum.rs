@@ -1,15 +1,16 @@
 //! Linear and angular momentum where the scene conserves them.
 
 use crate::outcome::Momentum;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
 use crate::trajectory::Trajectory;
+use crate::truth::farthest;
 
 /// Largest departures from the initial values over the recorded instants; each None where
 /// something is fixed or an effect does not keep it. None where velocities are not known.
 pub fn momentum(scene: &Scene, system: &ParticleSystem, run: &Trajectory) -> Option<Momentum> {
     let free = scene.particles.iter().all(|p| !p.fixed);
-    let keeps = |keeps: fn(&dyn crate::effects::Effect) -> bool| {
+    let keeps = |keeps: fn(&dyn crate::physics::effects::Effect) -> bool| {
         free && system.effects().iter().all(|(_, e)| keeps(e.as_ref()))
     };
     let linear = keeps(|e| e.keeps_momentum());
@@ -21,8 +22,8 @@ pub fn momentum(scene: &Scene, system: &ParticleSystem, run: &Trajectory) -> Opt
     let (mut linear_error, mut angular_error) = (0.0_f64, 0.0_f64);
     for k in 1..run.len() {
         let now = totals(scene, run, k);
-        linear_error = linear_error.max(distance(now.0, start.0));
-        angular_error = angular_error.max(distance(now.1, start.1));
+        linear_error = linear_error.max(farthest(&now.0, &start.0));
+        angular_error = angular_error.max(farthest(&now.1, &start.1));
     }
     Some(Momentum {
         linear_error_max: (linear && linear_error.is_finite()).then_some(linear_error),
@@ -43,11 +44,4 @@ fn totals(scene: &Scene, run: &Trajectory, k: usize) -> ([f64; 3], [f64; 3]) {
         }
     }
     (p, l)
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3)
-        .map(|i| (a[i] - b[i]) * (a[i] - b[i]))
-        .sum::<f64>()
-        .sqrt()
 }

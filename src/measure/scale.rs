@@ -1,7 +1,7 @@
 //! The energy scale S that errors are relative to.
 
+use crate::physics::{ParticleSystem, System};
 use crate::scene::{Particle, Scene, Spring};
-use crate::system::{ParticleSystem, System};
 
 /// S in joules: the larger of K(0) + U_elastic(0) and `peak`, the largest kinetic energy of the
 /// truth where one is known; if both are 0, the sum over free particles of m |g| L, with L the

@@ -8,11 +8,12 @@ mod claim;
 mod lockstep;
 mod shake;
 
-use crate::engines::rapier::{RapierEngine, RapierForces, Settings};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::rapier::Settings;
+use crate::solvers::{Solver, Unsupported, find};
 use claim::Claim;
-use lockstep::{Path, distance, ours};
+use lockstep::{Path, distance};
 use shake::{condition, nudged, shaken};
 
 /// One proof's outcome.
@@ -65,7 +66,9 @@ pub fn prove(scene: &Scene, timestep: f64) -> Vec<Proof> {
 
 /// The same with a scene of its own for rapier: a different one must fail. For tests of the proof.
 pub fn prove_pair(ours: &Scene, theirs: &Scene, timestep: f64) -> Vec<Proof> {
-    let start = shaken(ours, timestep * f64::from(JOINT_STEPS));
+    let mut start = shaken(ours, timestep * f64::from(JOINT_STEPS));
+    // Whatever residual the scene puts up with, the proof solves to the default one.
+    start.solver.tolerance = None;
     // Their side differs in what the caller made different, never in the shaking.
     let mut other = theirs.clone();
     for (theirs, shaken) in other.particles.iter_mut().zip(&start.particles) {
@@ -91,6 +94,14 @@ struct Pair {
 }
 
 impl Pair {
+    /// rapier's side, so many world steps of it.
+    fn theirs(&self, solver: Option<Solver>, steps: u32) -> Result<Path, Unsupported> {
+        let solver = solver.ok_or_else(|| Unsupported {
+            reason: "there is no such engine".to_owned(),
+        })?;
+        Path::of(&solver, &self.theirs, self.timestep, 1, steps)
+    }
+
     /// rapier-forces is symplectic Euler.
     fn forces(&self) -> Proof {
         let proof = Claim {
@@ -98,16 +109,12 @@ impl Pair {
             subject: "rapier-forces",
             method: "symplectic_euler",
         };
-        let system = ParticleSystem::new(&self.theirs);
-        let theirs = match RapierForces::new(&self.theirs, system, self.timestep) {
-            Ok(engine) => Path::of(engine, 1, FORCE_STEPS),
+        let solver = find(proof.subject);
+        let theirs = match self.theirs(solver, FORCE_STEPS) {
+            Ok(path) => path,
             Err(unsupported) => return proof.skip(&unsupported),
         };
-        let ours = Path::of(
-            ours(&self.ours, proof.method, self.timestep),
-            1,
-            FORCE_STEPS,
-        );
+        let ours = Path::ours(&self.ours, proof.method, self.timestep, 1, FORCE_STEPS);
         // v += h (f / m), x += h v: the forces are the same code, and both sides round the same
         // four operations in the same order. There is no difference to be amplified.
         let derivation = "both sides round the same operations in the same order: bit for bit";
@@ -122,11 +129,7 @@ impl Pair {
             method: "linearized_implicit_material",
         };
         let mut settings = Settings::CONVERGED;
-        let run = |settings: &Settings| {
-            let system = ParticleSystem::new(&self.theirs);
-            RapierEngine::new(&self.theirs, system, self.timestep, settings)
-                .map(|engine| Path::of(engine, 1, JOINT_STEPS))
-        };
+        let run = |settings: &Settings| self.theirs(Some(Solver::rapier(*settings)), JOINT_STEPS);
         let mut coarse = match run(&settings) {
             Ok(path) => path,
             Err(unsupported) => return proof.skip(&unsupported),
@@ -167,9 +170,8 @@ impl Pair {
             method: "symplectic_euler",
         };
         let settings = Settings::DEFAULT;
-        let system = ParticleSystem::new(&self.theirs);
-        let theirs = match RapierEngine::new(&self.theirs, system, self.timestep, &settings) {
-            Ok(engine) => Path::of(engine, 1, JOINT_STEPS),
+        let theirs = match self.theirs(Some(Solver::rapier(settings)), JOINT_STEPS) {
+            Ok(path) => path,
             Err(unsupported) => return proof.skip(&unsupported),
         };
         let (path, bound, derivation) = self.reference(proof.method, settings.iterations);
@@ -187,11 +189,11 @@ impl Pair {
     /// both sides mostly round positions alike, but need not.
     fn reference(&self, method: &'static str, substeps: u32) -> (Path, f64, String) {
         let h = self.timestep / f64::from(substeps);
-        let path = Path::of(ours(&self.ours, method, h), substeps, JOINT_STEPS);
+        let path = Path::ours(&self.ours, method, h, substeps, JOINT_STEPS);
         // The larger of two random directions: one alone may miss what grows.
         let grown = [2, 3].map(|seed| {
             let start = nudged(&self.ours, seed);
-            let nudged = Path::of(ours(&start, method, h), substeps, JOINT_STEPS);
+            let nudged = Path::ours(&start, method, h, substeps, JOINT_STEPS);
             distance(&path, &nudged).unwrap_or(f64::INFINITY)
         });
         let grown = grown[0].max(grown[1]);

@@ -4,10 +4,10 @@
 //! the order of [`CostTarget::ranking`] and every key that holds `wall`. All else is the same in every run.
 
 use super::{Kind, Status, WallTime};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The `cost` key of the report.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Cost {
     /// How long every run is, s.
     pub duration_s: f64,
@@ -18,16 +18,10 @@ pub struct Cost {
     pub targets: Vec<CostTarget>,
     /// One an engine, in the order of the plan; adaptive pairs after the methods.
     pub curves: Vec<CostCurve>,
-    /// The picture of a few steps side by side; only where steps were asked for by name.
-    #[serde(skip)]
-    pub panels: Option<CostPanels>,
-    /// What holds of the whole answer, in sentences; not part of the JSON.
-    #[serde(skip)]
-    pub remarks: Vec<String>,
 }
 
 /// Who reaches an error, and at what price.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CostTarget {
     /// Largest distance of a particle from where it truly is, over the horizon, m.
     pub error_m: f64,
@@ -44,7 +38,7 @@ pub struct CostTarget {
 }
 
 /// A setting that reaches a target.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CostReached {
     pub engine: String,
     /// Seconds; of an adaptive pair the mean.
@@ -59,7 +53,7 @@ pub struct CostReached {
 }
 
 /// One engine's place for one target.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CostRank {
     pub engine: String,
     /// The coarsest setting from which on every finer one reaches the target; null if there is none.
@@ -76,7 +70,7 @@ pub struct CostRank {
 }
 
 /// One engine's line in the work-precision diagram.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CostCurve {
     pub engine: String,
     pub kind: Kind,
@@ -104,7 +98,7 @@ impl CostCurve {
 }
 
 /// One engine at one setting.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CostPoint {
     /// Seconds; of an adaptive pair the duration over the steps taken.
     pub timestep: f64,
@@ -136,34 +130,4 @@ impl CostPoint {
     pub fn work(&self) -> u64 {
         self.force_evaluations.unwrap_or(self.steps)
     }
-}
-
-/// The classic picture: each integrator at a few steps, the truth, and the difference.
-#[derive(Debug, Clone)]
-pub struct CostPanels {
-    /// The coordinate shown, such as `particle 1, z (m)`.
-    pub label: String,
-    /// The truth's curve: seconds and metres; empty without truth.
-    pub truth: Vec<[f64; 2]>,
-    /// One an engine, in the order of the curves.
-    pub panels: Vec<CostPanel>,
-}
-
-#[derive(Debug, Clone)]
-pub struct CostPanel {
-    pub engine: String,
-    /// Coarse to fine.
-    pub lines: Vec<CostLine>,
-}
-
-/// One run in a panel; all numbers finite.
-#[derive(Debug, Clone)]
-pub struct CostLine {
-    /// Seconds.
-    pub timestep: f64,
-    pub status: Status,
-    /// Seconds and metres.
-    pub curve: Vec<[f64; 2]>,
-    /// Seconds, and metres above the truth; empty without truth.
-    pub difference: Vec<[f64; 2]>,
 }

@@ -1,15 +1,14 @@
 //! How large a step may be, as data.
 
 use super::Kind;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How large a step may be, on this scene.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Stability {
     /// Of the scene linearised about its start; null where nothing oscillates.
     pub omega_max_rad_s: Option<f64>,
-    /// `omega_max_rad_s` is null because nobody knows it; not part of the JSON.
-    #[serde(skip)]
+    /// `omega_max_rad_s` is null because nobody knows it.
     pub unsure: bool,
     /// Up to when the trajectory was searched for the tightest limit, s; the whole duration where
     /// every force is linear, since the limit is then the same everywhere.
@@ -28,12 +27,11 @@ pub struct Stability {
 }
 
 /// One engine's limit.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct StabilityRow {
     pub engine: String,
     pub kind: Kind,
     /// The engine does not take the scene: `reason` says why, and nothing was searched.
-    #[serde(skip)]
     pub unsupported: bool,
     /// About the start; 0 where no step is stable; null where every step is (`unconditional`) and
     /// where none is known (`reason`).
@@ -59,8 +57,7 @@ pub struct StabilityRow {
     pub tightest: Option<TightestLimit>,
     /// What there is to say, sentence after sentence.
     pub reason: Option<String>,
-    /// The same sentences one by one, for reports that say equal ones once; not part of the JSON.
-    #[serde(skip)]
+    /// The same sentences one by one, for reports that say equal ones once.
     pub remarks: Vec<String>,
 }
 
@@ -89,19 +86,19 @@ impl StabilityRow {
 }
 
 /// Where along the trajectory the predicted limit is smallest.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TightestLimit {
     pub limit_s: f64,
     pub t_s: f64,
 }
 
 /// What becomes of a run at each of several timesteps, as one quantity of the scene varies.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct StabilityMap {
     /// The key that varies, such as `springs.stiffness` or `particles[1].mass`.
     pub vary: String,
     /// Of the values.
-    pub unit: &'static str,
+    pub unit: String,
     /// Ascending.
     pub values: Vec<f64>,
     /// Ascending, s.
@@ -113,7 +110,7 @@ pub struct StabilityMap {
 }
 
 /// One engine's part of a map.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct MapPanel {
     pub engine: String,
     /// By value, then by timestep; null where the engine does not take the scene.
@@ -125,7 +122,7 @@ pub struct MapPanel {
 
 /// Of two free particles on one spring, let go at rest: from where one step does not enlarge the
 /// spring's force.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Admissible {
     /// The method, whose first two steps are taken: the first moves nothing.
     pub engine: String,
@@ -140,7 +137,7 @@ pub struct Admissible {
 }
 
 /// One stiffness.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct AdmissiblePanel {
     pub stiffness_n_m: f64,
     /// Of all places, 0 to 1.
@@ -150,7 +147,7 @@ pub struct AdmissiblePanel {
 }
 
 /// What a run at one step does: one cell of a stability map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cell {
     /// None of the others: it keeps its energy, or loses what dampers take.

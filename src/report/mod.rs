@@ -1,14 +1,18 @@
-//! Reports: what a run found in, bytes out. Nothing here touches files or the terminal.
+//! Reports: what a verb found in, bytes out. Nothing here touches files or the terminal, and nothing
+//! but the report decides what is shown.
 //!
-//! A format is a row of [`FORMATS`]; the figures beside a report are [`svg::figures`].
+//! A format is a row of [`FORMATS`]; the figures beside a report are [`svg::figures`]. What is particular
+//! to one verb's reports is its `View`.
 
 mod cost;
-mod identity;
 pub mod json;
 pub mod markdown;
 mod notes;
+mod run;
+pub mod series;
 mod stability;
 pub mod svg;
+mod table;
 pub mod terminal;
 mod verdict;
 mod words;
@@ -18,7 +22,11 @@ mod tests;
 
 pub use verdict::verdict;
 
-use crate::outcome::Report;
+use crate::outcome::{Body, Report};
+use json::Tool;
+use notes::Note;
+use svg::Figure;
+use verdict::Clause;
 
 /// One way to write reports down.
 pub struct Format {
@@ -28,8 +36,8 @@ pub struct Format {
     pub extension: &'static str,
     /// Written beside the scene's figures in every run that writes files.
     pub file: bool,
-    /// One text for all the reports of a run.
-    pub render: fn(&[Report]) -> String,
+    /// One text for all the reports of a command, and for the program that made them.
+    pub render: fn(&Tool, &[Report]) -> String,
 }
 
 /// Every format there is.
@@ -38,33 +46,21 @@ pub const FORMATS: &[Format] = &[
         id: "human",
         extension: "txt",
         file: false,
-        render: |reports| joined(reports, terminal::render),
+        render: |_, reports| joined(reports, terminal::render),
     },
     Format {
         id: "json",
         extension: "json",
         file: true,
-        render: json::render_all,
+        render: json::render,
     },
     Format {
         id: "markdown",
         extension: "md",
         file: true,
-        render: |reports| joined(reports, markdown::render),
+        render: |_, reports| joined(reports, markdown::render),
     },
 ];
-
-/// What a report's files are called, without the dot and what follows: verbs do not write over each
-/// other's.
-pub fn stem(report: &Report) -> &'static str {
-    if stability::is_alone(report) {
-        "stability"
-    } else if cost::is_alone(report) {
-        "cost"
-    } else {
-        "report"
-    }
-}
 
 /// The format with this id.
 pub fn format(id: &str) -> Option<&'static Format> {
@@ -74,4 +70,49 @@ pub fn format(id: &str) -> Option<&'static Format> {
 fn joined(reports: &[Report], render: fn(&Report) -> String) -> String {
     let texts: Vec<String> = reports.iter().map(render).collect();
     texts.join("\n")
+}
+
+/// How what one verb found is shown: the findings themselves know.
+trait View {
+    /// What its files are called, without the dot and what follows: verbs do not write over each
+    /// other's.
+    fn stem(&self) -> &'static str;
+
+    /// The figures it may have, in the order they are shown.
+    fn figures(&self) -> &'static [Figure];
+
+    /// The verdict, but for failed checks, which come first: in the order they are said, which is mostly
+    /// that of their importance.
+    fn clauses(&self, report: &Report) -> Vec<Clause>;
+
+    /// What holds of the whole scene: label and text.
+    fn facts(&self, report: &Report) -> Vec<(&'static str, String)>;
+
+    /// In the terminal: what stands between the facts and the notes.
+    fn lines(&self, report: &Report) -> Vec<String>;
+
+    /// What there is to say of single engines.
+    fn notes(&self, report: &Report) -> Vec<Note>;
+
+    /// In the terminal: what follows the checks, label and text.
+    fn last(&self, _report: &Report) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
+
+    /// The whole page, with its figures linked as files beside it.
+    fn markdown(&self, report: &Report) -> String;
+}
+
+/// The one place that tells verbs apart.
+fn view(report: &Report) -> &dyn View {
+    match &report.body {
+        Body::Run { outcomes } | Body::Compare { outcomes, .. } => outcomes,
+        Body::Stability { stability, .. } => stability,
+        Body::Cost { cost, .. } => cost,
+    }
+}
+
+/// What a report's files are called, without the dot and what follows.
+pub fn stem(report: &Report) -> &'static str {
+    view(report).stem()
 }

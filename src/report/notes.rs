@@ -1,100 +1,34 @@
-//! Sentences about outcomes: who is meant, and what is worth saying.
+//! Sentences and the engines they are about.
 
-use super::{identity, words};
-use crate::outcome::{Outcome, Report, Status};
-
-/// A sentence and the engines it is about.
+/// One sentence, and whom it is about.
 pub struct Note {
     /// Such as `rapier` or `explicit_euler at h = 0.15`.
     pub subject: String,
     pub sentence: String,
 }
 
-/// What the outcomes have to say, in their order; equal sentences are said once.
-pub fn notes(report: &Report) -> Vec<Note> {
-    let mut said: Vec<(String, Vec<&Outcome>)> = Vec::new();
-    for outcome in &report.outcomes {
-        for sentence in sentences(outcome) {
-            match said.iter_mut().find(|(known, _)| *known == sentence) {
-                Some((_, outcomes)) => outcomes.push(outcome),
-                None => said.push((sentence, vec![outcome])),
-            }
+/// Sentences with their subjects. Equal sentences stand once, with one text for all their subjects.
+pub fn notes<W>(
+    said: impl Iterator<Item = (W, String)>,
+    subject: impl Fn(&[W]) -> String,
+) -> Vec<Note> {
+    let note = |(sentence, who): (String, Vec<W>)| Note {
+        subject: subject(&who),
+        sentence,
+    };
+    grouped(said).into_iter().map(note).collect()
+}
+
+/// Equal things once, in the order they first come, each with all that belong to it.
+pub fn grouped<W, T: PartialEq>(pairs: impl Iterator<Item = (W, T)>) -> Vec<(T, Vec<W>)> {
+    let mut groups: Vec<(T, Vec<W>)> = Vec::new();
+    for (member, of) in pairs {
+        match groups.iter_mut().find(|(known, _)| *known == of) {
+            Some((_, members)) => members.push(member),
+            None => groups.push((of, vec![member])),
         }
     }
-    said.into_iter()
-        .map(|(sentence, outcomes)| Note {
-            subject: subjects(report, &outcomes, usize::MAX),
-            sentence,
-        })
-        .collect()
-}
-
-/// The outcome's remarks, led by its reason for ending early where no remark repeats it.
-fn sentences(outcome: &Outcome) -> Vec<String> {
-    let remarks: Vec<String> = outcome.remarks.iter().map(|r| words::one_line(r)).collect();
-    let mut sentences = Vec::new();
-    if outcome.status != Status::Completed {
-        let reason = outcome.reason.as_deref().map(words::one_line);
-        let repeated = reason
-            .as_ref()
-            .is_some_and(|reason| remarks.iter().any(|r| r.contains(reason)));
-        if !repeated {
-            sentences.push(ending(outcome, reason));
-        }
-    }
-    sentences.extend(remarks);
-    sentences.extend(identity::sentence(outcome));
-    sentences
-}
-
-/// `diverged at 1.23 s: ...`
-fn ending(outcome: &Outcome, reason: Option<String>) -> String {
-    let mut text = words::status(outcome.status).to_string();
-    if let Some(t) = outcome.stopped_at_s {
-        text += &format!(" at {} s", words::short(t));
-    }
-    if let Some(reason) = reason {
-        text += &format!(": {reason}");
-    }
-    text
-}
-
-/// The engines of `chosen`, at most `limit` by name, each with its timesteps unless they are all
-/// this report has of it: `midpoint, rk4 at h = 0.05 and 2 more`.
-pub fn subjects(report: &Report, chosen: &[&Outcome], limit: usize) -> String {
-    let mut names: Vec<&str> = Vec::new();
-    for outcome in chosen {
-        if !names.contains(&outcome.engine.as_str()) {
-            names.push(&outcome.engine);
-        }
-    }
-    let hidden = names.len().saturating_sub(limit);
-    // "and 1 more" is no shorter than the name.
-    let hidden = if hidden == 1 { 0 } else { hidden };
-    names.truncate(names.len() - hidden);
-    let mut texts: Vec<String> = names
-        .into_iter()
-        .map(|name| subject(report, chosen, name))
-        .collect();
-    if hidden > 0 {
-        texts.push(format!("{hidden} more"));
-    }
-    listed(&texts)
-}
-
-fn subject(report: &Report, chosen: &[&Outcome], name: &str) -> String {
-    let timesteps: Vec<String> = chosen
-        .iter()
-        .filter(|o| o.engine == name)
-        .map(|o| words::short(o.timestep))
-        .collect();
-    let all = report.outcomes.iter().filter(|o| o.engine == name).count();
-    let name = words::one_line(name);
-    if timesteps.len() >= all {
-        name
-    } else {
-        format!("{name} at h = {}", timesteps.join(", "))
-    }
+    groups
 }
 
 /// `a`, `a and b`, `a, b and c`.
@@ -104,25 +38,4 @@ pub fn listed(texts: &[String]) -> String {
         [only] => only.clone(),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
-}
-
-/// Whether outcomes differ in their timestep, so that a table has to say it.
-pub fn several_timesteps(report: &Report) -> bool {
-    let mut timesteps = report.outcomes.iter().map(|o| o.timestep);
-    let first = timesteps.next();
-    timesteps.any(|h| Some(h) != first)
-}
-
-/// The engines that deviations are stated against, rapier's own first, at most two.
-pub fn references(report: &Report) -> Vec<&str> {
-    let mut found: Vec<&str> = Vec::new();
-    let named = ["rapier", "rapier-forces"];
-    let keys = || report.outcomes.iter().flat_map(|o| o.deviation_m.keys());
-    for name in named.into_iter().chain(keys().map(String::as_str)) {
-        if keys().any(|key| key == name) && !found.contains(&name) {
-            found.push(name);
-        }
-    }
-    found.truncate(2);
-    found
 }

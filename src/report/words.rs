@@ -218,8 +218,8 @@ fn is_invisible(c: char) -> bool {
 
 /// The step outcomes were run at: `0.0005 s`, or `several, the file's 0.0005 s`.
 pub fn timestep(report: &Report) -> String {
-    let own = report.scene.timestep;
-    let mut steps = report.outcomes.iter().map(|o| o.timestep);
+    let own = report.header.scene.timestep;
+    let mut steps = report.outcomes().iter().map(|o| o.timestep);
     match steps.next() {
         None => format!("{} s", short(own)),
         Some(first) if steps.all(|h| h == first) => format!("{} s", short(first)),

@@ -1,7 +1,7 @@
 //! The one table of what a scene file may say: every key with its kind, unit and bounds, its place in the
 //! [`Scene`], its default and what it is for.
 //!
-//! Reading and its messages, `--vary`, the flat arrays of [`external`](crate::engines::external) and the key of
+//! Reading and its messages, `--vary`, the flat arrays of [`external`](crate::solvers::external) and the key of
 //! the [converged truth](crate::truth::converged) are derived from it. The model declares its fields
 //! and their rows in one place, so that there is no field without a row.
 

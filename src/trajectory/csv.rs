@@ -1,8 +1,8 @@
 //! Every step as text: `t,id,x,y,z,vx,vy,vz`, one row a particle.
 
 use super::{SaveError, Selection};
-use crate::engines::Observer;
-use crate::system::State;
+use crate::physics::State;
+use crate::solvers::Observer;
 use std::io::Write;
 
 /// Writes rows as a run goes on. Numbers have the fewest digits that read back to the same bits.

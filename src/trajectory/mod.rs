@@ -3,15 +3,13 @@
 mod csv;
 mod npz;
 mod read;
-mod recall;
 mod record;
 mod rows;
 
 pub use csv::CsvWriter;
 pub use npz::{NpzWriter, Scratch};
 pub use read::{Expected, FreeAxis, Layout, Place, ReadError, free_axis, limits, read};
-pub use recall::RowRecorder;
-pub use record::{Recorder, Trajectory, stride};
+pub use record::{Recorder, RowRecorder, Trajectory, stride};
 pub use rows::{Precision, Rows};
 
 /// A trajectory file could not be written.

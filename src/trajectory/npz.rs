@@ -1,8 +1,8 @@
 //! Every step for NumPy: `t` (T), `x` (T, N, 3), `v` (T, N, 3), doubles, in one NPZ.
 
 use super::{SaveError, Selection};
-use crate::engines::Observer;
-use crate::system::State;
+use crate::physics::State;
+use crate::solvers::Observer;
 use npyz::WriterBuilder;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use zip::write::SimpleFileOptions;

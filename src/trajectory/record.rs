@@ -1,8 +1,10 @@
 //! The record every measure reads: bounded in memory however long the run.
+//!
+//! A [`Recorder`] fills it while a run goes on, a [`RowRecorder`] from the rows of one that is over.
 
-use super::Precision;
-use crate::engines::Observer;
-use crate::system::{State, Work};
+use super::{Precision, Rows};
+use crate::physics::{State, Work};
+use crate::solvers::Observer;
 
 /// At most this many instants, both ends included.
 const INSTANTS: u64 = 2_000;
@@ -11,28 +13,20 @@ const BUDGET: u64 = 10 << 20;
 /// But never fewer instants than this.
 const FEWEST: u64 = 50;
 
-/// States at evenly spaced steps, and beside each the next step's state, so that a thinned run can
-/// still be replayed step by step.
+/// States at evenly spaced steps, the instants, and beside each the next step's state, so that a thinned
+/// run can still be replayed step by step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
-    timestep: f64,
-    dim: usize,
-    steps: Vec<u64>,
-    x: Vec<f64>,
-    v: Vec<f64>,
+    /// Instants and the states one step after them, in order.
+    rows: Rows,
+    /// Which row each instant is.
+    instants: Vec<usize>,
+    /// Of each instant.
     work: Vec<Work>,
-    /// Step numbers of the states in `next_x`, `next_v`: each one past an instant's.
-    next_steps: Vec<u64>,
-    next_x: Vec<f64>,
-    next_v: Vec<f64>,
-    /// Whether `v` and `next_v` are the run's own, not differences of its positions.
-    has_velocities: bool,
-    /// How exactly positions and velocities are given: [`Precision::Double`] but for other programs.
-    precision: [Precision; 2],
 }
 
 /// The most instants a run of `particles` particles is recorded at.
-pub(super) fn most_instants(particles: usize) -> u64 {
+fn most_instants(particles: usize) -> u64 {
     let bytes = 2 * 6 * 8 * particles.max(1) as u64;
     (BUDGET / bytes).clamp(FEWEST, INSTANTS)
 }
@@ -43,82 +37,51 @@ pub fn stride(steps: u64, particles: usize) -> u64 {
 }
 
 impl Trajectory {
-    /// Nothing yet, with room for so many instants and states one step after one.
-    pub(super) fn with_room(
-        dim: usize,
-        timestep: f64,
-        has_velocities: bool,
-        [instants, successors]: [usize; 2],
-    ) -> Self {
-        Self {
-            timestep,
-            dim,
-            steps: Vec::with_capacity(instants),
-            x: Vec::with_capacity(instants * dim),
-            v: Vec::with_capacity(instants * dim),
-            work: Vec::with_capacity(instants),
-            next_steps: Vec::with_capacity(successors),
-            next_x: Vec::with_capacity(successors * dim),
-            next_v: Vec::with_capacity(successors * dim),
-            has_velocities,
-            precision: [Precision::Double; 2],
-        }
-    }
-
     /// Recorded instants.
     pub fn len(&self) -> usize {
-        self.steps.len()
+        self.instants.len()
     }
 
     pub fn is_empty(&self) -> bool {
-        self.steps.is_empty()
+        self.instants.is_empty()
     }
 
-    /// Seconds a step.
-    pub fn timestep(&self) -> f64 {
-        self.timestep
-    }
-
-    /// Coordinates of a state, 3 a particle.
-    pub fn dim(&self) -> usize {
-        self.dim
+    /// The instants and the states one step after them, in order: what can be replayed.
+    pub fn rows(&self) -> &Rows {
+        &self.rows
     }
 
     /// The step number of instant `k`.
     pub fn step(&self, k: usize) -> u64 {
-        self.steps[k]
+        self.rows.steps[self.instants[k]]
+    }
+
+    /// The instant with this step number, if there is one.
+    pub fn instant_at(&self, step: u64) -> Option<usize> {
+        let steps = &self.rows.steps;
+        self.instants
+            .binary_search_by_key(&step, |&row| steps[row])
+            .ok()
     }
 
     /// The time of instant `k`, s.
     pub fn time(&self, k: usize) -> f64 {
-        self.steps[k] as f64 * self.timestep
+        self.rows.time(self.instants[k])
     }
 
-    /// Positions at instant `k`, length [`dim`](Self::dim).
+    /// Positions at instant `k`, m.
     pub fn x(&self, k: usize) -> &[f64] {
-        &self.x[k * self.dim..(k + 1) * self.dim]
+        self.rows.x(self.instants[k])
     }
 
-    /// Whether velocities are known. Where another program gave positions only they are not:
-    /// [`v`](Self::v) then holds differences, from which no energy is to be read.
-    pub fn has_velocities(&self) -> bool {
-        self.has_velocities
-    }
-
-    /// How exactly positions and velocities are given.
-    pub fn precision(&self) -> [Precision; 2] {
-        self.precision
-    }
-
-    /// The same states, given only so exactly.
-    pub(super) fn given_to(mut self, precision: [Precision; 2]) -> Self {
-        self.precision = precision;
-        self
-    }
-
-    /// Velocities at instant `k`.
+    /// Velocities at instant `k`, m/s; empty where they are not known.
     pub fn v(&self, k: usize) -> &[f64] {
-        &self.v[k * self.dim..(k + 1) * self.dim]
+        self.rows.v(self.instants[k]).unwrap_or(&[])
+    }
+
+    /// Whether velocities are known. Where another program gave positions only they are not.
+    pub fn has_velocities(&self) -> bool {
+        self.rows.v.is_some()
     }
 
     /// Work done up to instant `k`.
@@ -126,30 +89,24 @@ impl Trajectory {
         self.work[k]
     }
 
-    /// One more instant, after all others.
-    pub(super) fn push(&mut self, step: u64, state: &State) {
-        self.steps.push(step);
-        self.x.extend_from_slice(&state.x);
-        self.v.extend_from_slice(&state.v);
-        self.work.push(state.work);
-    }
-
-    /// The state one step after the last instant.
-    pub(super) fn push_successor(&mut self, step: u64, state: &State) {
-        self.next_steps.push(step);
-        self.next_x.extend_from_slice(&state.x);
-        self.next_v.extend_from_slice(&state.v);
-    }
-
     /// Positions and velocities one step after instant `k`, where they were recorded.
     pub fn following(&self, k: usize) -> Option<(&[f64], &[f64])> {
-        let wanted = self.steps[k] + 1;
-        if self.steps.get(k + 1) == Some(&wanted) {
-            return Some((self.x(k + 1), self.v(k + 1)));
+        let next = self.instants[k] + 1;
+        let known = self.rows.steps.get(next) == Some(&(self.step(k) + 1));
+        known.then(|| (self.rows.x(next), self.rows.v(next).unwrap_or(&[])))
+    }
+
+    /// One more row, after all others.
+    fn push(&mut self, step: u64, state: &State, is_instant: bool) {
+        if is_instant {
+            self.instants.push(self.rows.len());
+            self.work.push(state.work);
         }
-        let at = self.next_steps.binary_search(&wanted).ok()? * self.dim;
-        let range = at..at + self.dim;
-        Some((&self.next_x[range.clone()], &self.next_v[range]))
+        self.rows.steps.push(step);
+        self.rows.x.extend_from_slice(&state.x);
+        if let Some(v) = &mut self.rows.v {
+            v.extend_from_slice(&state.v);
+        }
     }
 }
 
@@ -167,11 +124,23 @@ impl Recorder {
         let stride = stride(steps, dim / 3);
         let instants = (steps / stride + 2) as usize;
         // Without thinning, an instant's successor is the next instant.
-        let successors = if stride > 1 { instants } else { 0 };
+        let rows = if stride > 1 { 2 * instants } else { instants };
         Self {
             stride,
             last: steps,
-            trajectory: Trajectory::with_room(dim, timestep, true, [instants, successors]),
+            trajectory: Trajectory {
+                rows: Rows {
+                    timestep,
+                    dim,
+                    steps: Vec::with_capacity(rows),
+                    x: Vec::with_capacity(rows * dim),
+                    v: Some(Vec::with_capacity(rows * dim)),
+                    precision: Precision::Double,
+                    precision_v: Precision::Double,
+                },
+                instants: Vec::with_capacity(instants),
+                work: Vec::with_capacity(instants),
+            },
         }
     }
 
@@ -197,15 +166,95 @@ impl Observer for Recorder {
 
     fn observe(&mut self, step: u64, state: &State) {
         let successor = self.stride > 1 && step % self.stride == 1 && step != self.last;
-        if successor {
-            self.trajectory.push_successor(step, state);
-        } else {
-            self.trajectory.push(step, state);
-        }
+        self.trajectory.push(step, state, !successor);
     }
 
     fn observe_diverged(&mut self, step: u64, state: &State) {
-        self.trajectory.push(step, state);
+        self.trajectory.push(step, state, true);
+    }
+}
+
+/// Fills a [`Trajectory`] from rows that come in order.
+#[derive(Debug)]
+pub struct RowRecorder<'a> {
+    steps: &'a [u64],
+    thinning: Thinning,
+    trajectory: Trajectory,
+}
+
+/// Which rows become instants, beside the first and the last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Thinning {
+    None,
+    /// Those at multiples of so many steps, where every other run has its instants too.
+    Steps(u64),
+    /// Every so many-th: rows that leave out too many steps to have those.
+    Rows(usize),
+}
+
+impl<'a> RowRecorder<'a> {
+    /// For rows of a run that was to take `last` steps. Their velocities count as known if they
+    /// have any.
+    pub fn new(rows: &'a Rows, last: u64) -> Self {
+        let particles = rows.dim / 3;
+        let (stride, most) = (stride(last, particles), most_instants(particles) as usize);
+        let shared = rows
+            .steps
+            .iter()
+            .filter(|s| s.is_multiple_of(stride))
+            .count();
+        let thinning = if rows.len() <= most {
+            Thinning::None
+        } else if shared >= most / 2 {
+            Thinning::Steps(stride)
+        } else {
+            Thinning::Rows((rows.len() - 1).div_ceil(most - 1))
+        };
+        Self {
+            steps: &rows.steps,
+            thinning,
+            trajectory: Trajectory {
+                rows: Rows {
+                    steps: Vec::new(),
+                    x: Vec::new(),
+                    v: rows.v.as_ref().map(|_| Vec::new()),
+                    ..*rows
+                },
+                instants: Vec::new(),
+                work: Vec::new(),
+            },
+        }
+    }
+
+    /// Row `k`, of which it keeps what it needs.
+    pub fn observe(&mut self, k: usize, state: &State) {
+        let Some(&step) = self.steps.get(k) else {
+            return;
+        };
+        let is_instant = self.is_instant(k);
+        if is_instant || k > 0 && self.is_instant(k - 1) && self.steps[k - 1] + 1 == step {
+            self.trajectory.push(step, state, is_instant);
+        }
+    }
+
+    /// Row `k` in which the run diverged: its last instant.
+    pub fn observe_diverged(&mut self, k: usize, state: &State) {
+        if let Some(&step) = self.steps.get(k) {
+            self.trajectory.push(step, state, true);
+        }
+    }
+
+    pub fn finish(self) -> Trajectory {
+        self.trajectory
+    }
+
+    fn is_instant(&self, k: usize) -> bool {
+        let by_thinning = match self.thinning {
+            Thinning::None => true,
+            Thinning::Steps(stride) => self.steps[k].is_multiple_of(stride),
+            Thinning::Rows(pitch) => k.is_multiple_of(pitch),
+        };
+        by_thinning || k + 1 == self.steps.len()
     }
 }
 
@@ -245,8 +294,66 @@ mod tests {
     #[test]
     fn large_scenes_are_thinned_further() {
         let t = record(4_000, 1_000);
-        let bytes = (t.x.len() + t.v.len() + t.next_x.len() + t.next_v.len()) * 8;
+        let bytes = 2 * t.rows.x.len() * 8;
         assert!(bytes as u64 <= BUDGET + 2 * 48_000, "{bytes}");
         assert!(t.len() as u64 >= FEWEST);
+    }
+
+    /// One particle whose x is the step number.
+    fn rows(steps: impl Iterator<Item = u64>) -> Rows {
+        let steps: Vec<u64> = steps.collect();
+        let x: Vec<f64> = steps.iter().flat_map(|s| [*s as f64; 3]).collect();
+        Rows {
+            timestep: 0.5,
+            dim: 3,
+            v: Some(x.clone()),
+            steps,
+            x,
+            precision: Precision::Double,
+            precision_v: Precision::Double,
+        }
+    }
+
+    fn state(rows: &Rows, k: usize) -> State {
+        State::new(rows.x(k).to_vec(), rows.x(k).to_vec())
+    }
+
+    fn recalled(rows: &Rows, last: u64) -> Trajectory {
+        let mut recorder = RowRecorder::new(rows, last);
+        for k in 0..rows.len() {
+            recorder.observe(k, &state(rows, k));
+        }
+        recorder.finish()
+    }
+
+    #[test]
+    fn every_step_given_is_recorded_as_a_running_engine_would_be() {
+        for last in [1, 2, 1998, 1999, 2000, 2001, 3998, 3999, 10_007] {
+            let rows = rows(0..=last);
+            let mut recorder = Recorder::new(last, 3, 0.5);
+            let mut due = recorder.next(0);
+            for k in 0..rows.len() {
+                if due == Some(k as u64) {
+                    recorder.observe(k as u64, &state(&rows, k));
+                    due = recorder.next(k as u64 + 1);
+                }
+            }
+            assert_eq!(recalled(&rows, last), recorder.finish(), "{last}");
+        }
+    }
+
+    #[test]
+    fn sparse_rows_are_all_kept_until_there_are_too_many() {
+        // A run of 10,000 steps has its instants every 6 steps.
+        let tenth = recalled(&rows((0..=10_000).step_by(10)), 10_000);
+        assert_eq!(tenth.len(), 1_001);
+        assert_eq!(tenth.following(3), None);
+        // Every 5th of a million: 200,001 rows, of which few are on the multiples of 501.
+        let many = recalled(&rows((0..=1_000_000).step_by(5)), 1_000_000);
+        assert!((1_000..=2_000).contains(&many.len()), "{}", many.len());
+        assert_eq!(many.step(many.len() - 1), 1_000_000);
+        for k in 0..many.len() {
+            assert_eq!(many.x(k)[0], many.step(k) as f64);
+        }
     }
 }

@@ -1,7 +1,5 @@
 //! A trajectory as rows of data, whoever computed it: what files and other programs give.
 
-use super::Trajectory;
-
 /// States a whole number of steps apart, not necessarily always the same number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
@@ -90,37 +88,5 @@ impl Rows {
     pub fn v(&self, k: usize) -> Option<&[f64]> {
         let v = self.v.as_ref()?;
         Some(&v[k * self.dim..(k + 1) * self.dim])
-    }
-}
-
-impl From<&Trajectory> for Rows {
-    /// The instants and their successors, in order, as exactly as they are given.
-    fn from(run: &Trajectory) -> Self {
-        let [precision, precision_v] = run.precision();
-        let mut rows = Self {
-            timestep: run.timestep(),
-            dim: run.dim(),
-            steps: Vec::new(),
-            x: Vec::new(),
-            v: None,
-            precision,
-            precision_v,
-        };
-        let mut velocities = Vec::new();
-        let mut push = |step: u64, x: &[f64], v: &[f64]| {
-            if rows.steps.last() != Some(&step) {
-                rows.steps.push(step);
-                rows.x.extend_from_slice(x);
-                velocities.extend_from_slice(v);
-            }
-        };
-        for k in 0..run.len() {
-            push(run.step(k), run.x(k), run.v(k));
-            if let Some((x, v)) = run.following(k) {
-                push(run.step(k) + 1, x, v);
-            }
-        }
-        rows.v = run.has_velocities().then_some(velocities);
-        rows
     }
 }

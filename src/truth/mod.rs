@@ -7,8 +7,9 @@ pub mod closed;
 pub mod converged;
 
 use crate::outcome::TruthKind;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use serde::{Deserialize, Serialize};
 
 /// A known motion.
 pub trait Motion: Send + Sync {
@@ -30,7 +31,7 @@ pub trait Motion: Send + Sync {
 const LANDMARKS: u32 = 1_000;
 
 /// States at given times, all of one length.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct States {
     /// Coordinates of a state.
     pub dim: usize,
@@ -40,6 +41,30 @@ pub struct States {
 }
 
 impl States {
+    /// Nothing yet, with room for so many states of `dim` coordinates.
+    pub fn with_room(dim: usize, states: usize) -> Self {
+        Self {
+            dim,
+            x: Vec::with_capacity(states * dim),
+            v: Vec::with_capacity(states * dim),
+        }
+    }
+
+    /// Adds a state.
+    pub fn push(&mut self, x: &[f64], v: &[f64]) {
+        self.x.extend_from_slice(x);
+        self.v.extend_from_slice(v);
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.x.len() / self.dim.max(1)
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
     pub fn x(&self, k: usize) -> &[f64] {
         &self.x[k * self.dim..(k + 1) * self.dim]
     }
@@ -47,6 +72,24 @@ impl States {
     pub fn v(&self, k: usize) -> &[f64] {
         &self.v[k * self.dim..(k + 1) * self.dim]
     }
+}
+
+/// Largest distance between the same particle of two states, three coordinates each, m; infinite where a
+/// coordinate is not finite. A system of fewer than three coordinates is one particle.
+pub(crate) fn farthest(a: &[f64], b: &[f64]) -> f64 {
+    let particles = a.chunks(3).zip(b.chunks(3));
+    let squares = particles.map(|(a, b)| {
+        let coordinates = a.iter().zip(b);
+        coordinates.map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
+    });
+    let largest = squares.fold(0.0, |most: f64, square| {
+        if square.is_nan() {
+            f64::INFINITY
+        } else {
+            most.max(square)
+        }
+    });
+    largest.sqrt()
 }
 
 /// Which truths are wanted.

@@ -20,6 +20,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -72,7 +73,11 @@ def record(program, folder, scenes, jobs):
             run(name, arguments, out)
         saved = sorted((out / "save").rglob("*.npz"))
         for file in saved[:1]:
-            run("compare", ["compare", file, "--scene", path.relative_to(ROOT), "--output", out / "compare"], out)
+            # A report lies under its file's path, which must not name the folder it is recorded in.
+            with tempfile.TemporaryDirectory(dir=ROOT / "target") as place:
+                copy = Path(place) / "saved.npz"
+                copy.write_bytes(file.read_bytes())
+                run("compare", ["compare", copy, "--scene", path.relative_to(ROOT), "--format", "json"], out)
         print(path.relative_to(ROOT), flush=True)
 
     for kind in LISTS:
@@ -126,7 +131,7 @@ def reports(text):
 
 
 # Numbers with a unit of time that may be wall time, ratios of times, and the table's columns of them.
-TIMES = re.compile(r"(?<![\w.])[\d.,]+(e-?\d+)? ?(ns|µs|us|ms|s|min|h)\b|[\d.,]+ times|[\d.,]+x\b")
+TIMES = re.compile(r"(?<![\w.])[\d.,]+(e-?\d+)? ?(ns|µs|us|ms|s|min|h)\b( ±\d+ ?%)?|[\d.,]+ times|[\d.,]+x\b")
 
 
 def plain(text, name):
@@ -134,8 +139,9 @@ def plain(text, name):
     if name.startswith(("cost", "panels")) and not name.endswith(".code"):
         # Whole sentences name the cheapest, which the clock chooses.
         return ""
-    text = TIMES.sub("#", text)
-    return "\n".join(re.sub(r"[ ─┄-]+", " ", line).strip() for line in text.splitlines())
+    # Where the report lies is not what it says.
+    lines = [line for line in TIMES.sub("#", text).splitlines() if not line.startswith("report: ")]
+    return "\n".join(re.sub(r"[ ─┄-]+", " ", line).strip() for line in lines)
 
 
 def compare(before, after):
@@ -149,7 +155,7 @@ def compare(before, after):
             continue
         if file.suffix == ".npz":
             found = [] if file.read_bytes() == other.read_bytes() else ["other bytes"]
-        elif file.suffix == ".json" or file.name.endswith("json.out"):
+        elif file.suffix == ".json" or file.read_bytes()[:1] in (b"{", b"["):
             try:
                 one, two = reports(file.read_text()), reports(other.read_text())
                 found = list(differs("", one, two))

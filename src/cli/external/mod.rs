@@ -6,9 +6,9 @@ mod tree;
 
 use crate::cli::time::Time;
 use anyhow::bail;
-use springcheck::crosscheck::ChosenProgram;
-use springcheck::engines::external::Command;
-use springcheck::{engines, integrators};
+use springcheck::integrators;
+use springcheck::solvers::external::Command;
+use springcheck::solvers::{Solver, rapier};
 use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -43,14 +43,14 @@ impl FromStr for External {
             name: name.to_owned(),
             command: command
                 .parse()
-                .map_err(|error: springcheck::engines::external::CommandError| error.to_string())?,
+                .map_err(|error: springcheck::solvers::external::CommandError| error.to_string())?,
         })
     }
 }
 
 /// Refuses names that mean something else already. Before any work.
 pub fn distinct(externals: &[External]) -> anyhow::Result<()> {
-    let taken = [integrators::ids(), engines::ids()].concat();
+    let taken = [&integrators::ids()[..], &rapier::IDS].concat();
     for (at, External { name, .. }) in externals.iter().enumerate() {
         // As file systems do that ignore case.
         let same = |other: &str| other.eq_ignore_ascii_case(name);
@@ -65,14 +65,14 @@ pub fn distinct(externals: &[External]) -> anyhow::Result<()> {
 }
 
 /// The programs, ready to run on this scene.
-pub fn chosen(externals: &[External], scene: &Path, timeout: Time) -> Vec<ChosenProgram> {
-    let ready = |external: &External| ChosenProgram {
-        name: external.name.clone(),
-        program: Arc::new(program::Started {
+pub fn chosen(externals: &[External], scene: &Path, timeout: Time) -> Vec<Solver> {
+    let ready = |external: &External| {
+        let program = program::Started {
             command: external.command.clone(),
             scene: std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned()),
             timeout: timeout.0,
-        }),
+        };
+        Solver::program(&external.name, Arc::new(program))
     };
     externals.iter().map(ready).collect()
 }

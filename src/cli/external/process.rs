@@ -1,7 +1,7 @@
 //! Starts a program, takes what it prints, and stops it when it takes too long.
 
 use super::tree;
-use springcheck::engines::external::Failure;
+use springcheck::solvers::external::Failure;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Read, Write};
 use std::process::{Child, Command, ExitStatus, Stdio};

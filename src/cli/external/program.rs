@@ -1,7 +1,7 @@
 //! A command as the library's [`Program`].
 
 use super::process;
-use springcheck::engines::external::{
+use springcheck::solvers::external::{
     Command, Failure, Flat, Placeholder, Program, Recording, Task,
 };
 use springcheck::trajectory::{self, Expected, Layout};

@@ -1,6 +1,6 @@
 //! Systems of one coordinate (the constant force has three) whose motion is known in closed form.
 
-use crate::system::{Jacobian, Linearization, Power, State, System};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power, State, System};
 
 /// x'' = -w² x - 2 ζ w x', one coordinate, mass 1.
 #[derive(Debug, Clone, Copy)]
@@ -31,8 +31,8 @@ impl System for Oscillator {
         }
         Power::default()
     }
-    fn is_damped(&self) -> bool {
-        self.zeta != 0.0
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::of_damper(self.zeta * self.w)
     }
     fn damping(&self, _t: f64, _x: &[f64], w: &[f64], a: &mut [f64]) {
         for (a, w) in a.iter_mut().zip(w) {
@@ -71,6 +71,9 @@ impl System for Across {
     }
     fn inverse_mass(&self) -> &[f64] {
         &[1.0]
+    }
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NONE
     }
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
         self.along().acceleration(t, x, v, a)
@@ -120,6 +123,9 @@ impl System for Driven {
     fn inverse_mass(&self) -> &[f64] {
         &[1.0]
     }
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NONE
+    }
     fn acceleration(&self, t: f64, x: &[f64], _: &[f64], a: &mut [f64]) -> Power {
         for (a, x) in a.iter_mut().zip(x) {
             *a = -Self::W * Self::W * x + (Self::DRIVE * t).cos();
@@ -165,6 +171,9 @@ impl System for ConstantForce {
     }
     fn inverse_mass(&self) -> &[f64] {
         &[1.0, 2.0, 0.4]
+    }
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NONE
     }
     fn acceleration(&self, _: f64, _: &[f64], _: &[f64], a: &mut [f64]) -> Power {
         for (a, constant) in a.iter_mut().zip(Self::A) {

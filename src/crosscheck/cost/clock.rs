@@ -1,12 +1,9 @@
 //! Wall times: one run after the other, when nothing else runs.
 
-use super::entrant::Entrant;
-use super::lane::Lane;
-use super::runner::{Eye, Runner};
-use super::setting::Setting;
-use super::sweep::{Ground, Swept};
-use crate::crosscheck::execute::median;
+use super::sweep::{Ground, Sweep, Swept};
+use crate::crosscheck::execute::spread;
 use crate::outcome::{Status, WallTime};
+use crate::solvers::{Run, Setting, Solver, Unwatched};
 use std::time::Instant;
 
 /// A sample takes at least this, s, by repeating a short run: a thousand grains of the clock.
@@ -20,18 +17,18 @@ const LONG: f64 = 0.02;
 const RUNS_OF_LONG: usize = 3;
 
 /// Times every point that completed.
-pub(super) fn time(ground: &Ground, lane: &Lane, swept: &mut Swept) {
+pub(super) fn time(ground: &Ground, sweep: &Sweep, swept: &mut Swept) {
     for (setting, point) in swept.settings.iter().zip(&mut swept.points) {
         if point.status == Status::Completed {
-            point.wall_s = wall(ground, &lane.entrant, setting);
-            ground.host.progress(lane.of_timing(setting));
+            point.wall_s = wall(ground, &sweep.solver, setting);
+            ground.host.progress(sweep.of_timing(setting));
         }
     }
 }
 
-fn wall(ground: &Ground, entrant: &Entrant, setting: &Setting) -> Option<WallTime> {
+fn wall(ground: &Ground, solver: &Solver, setting: &Setting) -> Option<WallTime> {
     // The first is the warm-up, and says how many there are to a sample.
-    let once = sample(ground, entrant, setting, 1)?;
+    let once = sample(ground, solver, setting, 1)?;
     let batch = ((SAMPLE / once.max(1e-9)).ceil() as usize).clamp(1, MOST);
     let (mut times, count) = if once > LONG {
         (vec![once], RUNS_OF_LONG)
@@ -39,25 +36,18 @@ fn wall(ground: &Ground, entrant: &Entrant, setting: &Setting) -> Option<WallTim
         (Vec::new(), SAMPLES)
     };
     while times.len() < count {
-        times.push(sample(ground, entrant, setting, batch)?);
+        times.push(sample(ground, solver, setting, batch)?);
     }
-    let median = median(&mut times);
-    let mut off: Vec<f64> = times.iter().map(|t| (t - median).abs()).collect();
-    Some(WallTime {
-        min: *times.first()?,
-        median,
-        mad: Some(self::median(&mut off)),
-    })
+    Some(spread(times))
 }
 
 /// Seconds of one run, of so many run one after the other.
-fn sample(ground: &Ground, entrant: &Entrant, setting: &Setting, batch: usize) -> Option<f64> {
-    let make = || entrant.make(ground.scene, ground.system, setting).ok();
-    let mut runners: Vec<Runner> = (0..batch).map(|_| make()).collect::<Option<_>>()?;
-    let mut eye = Eye::closed();
+fn sample(ground: &Ground, solver: &Solver, setting: &Setting, batch: usize) -> Option<f64> {
+    let make = || solver.start(ground.scene, ground.system, setting).ok();
+    let mut runs: Vec<Run> = (0..batch).map(|_| make()).collect::<Option<_>>()?;
     let start = Instant::now();
-    for runner in &mut runners {
-        runner.run(setting, ground.limits, &mut eye);
+    for run in &mut runs {
+        run.finish(ground.limits, &mut Unwatched, &|_| {});
     }
     Some(start.elapsed().as_secs_f64() / batch as f64)
 }

@@ -6,49 +6,36 @@
 
 mod answer;
 mod clock;
-mod entrant;
-mod explain;
-mod ladder;
-mod lane;
+mod errors;
 mod panels;
 mod price;
 mod refine;
-mod runner;
-mod setting;
+mod sampler;
+mod settings;
 mod sweep;
-mod witness;
 
-use super::{Choice, ChosenEngine, Estimate, Host, Label, ledger, truths};
-use crate::engines::rapier::Settings;
-use crate::engines::{self, Limits};
-use crate::integrators::adaptive::{self, Pair};
-use crate::integrators::{Integrator, Method};
+use super::{Choice, Estimate, Host, Label, ledger, truths};
+use crate::integrators::adaptive;
 use crate::measure;
-use crate::outcome::{Figures, Report, SCHEMA_VERSION};
+use crate::outcome::{Beside, Body, Header, Report, Series};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::rapier::Settings;
+use crate::solvers::{self, Limits, Setting, Solver};
 use crate::truth::{self, Demand};
-use lane::Lane;
+use errors::Errors;
 use rayon::prelude::*;
-use setting::Setting;
-use std::sync::Arc;
-use sweep::{Ground, Swept};
-use witness::Witness;
+use sweep::{Ground, Sweep, Swept};
 
 /// What is asked.
 #[derive(Debug, Clone)]
 pub struct CostChoice {
-    /// In the order of the curves.
-    pub methods: Vec<&'static Method>,
-    /// Integrators of the caller's own, after the methods.
-    pub own: Vec<OwnIntegrator>,
-    /// Adaptive pairs, swept over their tolerance.
-    pub pairs: Vec<&'static Pair>,
-    /// After all integrators. A timestep of their own is not looked at: the step is what is swept.
-    pub engines: Vec<ChosenEngine>,
+    /// In the order of the curves; adaptive pairs are swept over their tolerance. A timestep of their own
+    /// is not looked at: the step is what is swept.
+    pub solvers: Vec<Solver>,
     /// Errors somebody wants to reach, m.
     pub targets: Vec<f64>,
-    /// Settings of each engine, at least 2; a few more where a target lies between two of them.
+    /// Settings of each solver, at least 2; a few more where a target lies between two of them.
     pub settings: usize,
     /// What the whole may take, in seconds of a nominal machine: work is counted, so that every machine
     /// tries the same settings.
@@ -57,21 +44,6 @@ pub struct CostChoice {
     pub timesteps: Option<Vec<f64>>,
     /// What errors are measured against.
     pub truth: Demand,
-}
-
-/// An integrator of the caller's own, and what reports call it. Nothing is claimed of it here;
-/// `conformance::check` is for that.
-#[derive(Clone)]
-pub struct OwnIntegrator {
-    pub name: String,
-    /// A fresh one for each run.
-    pub build: Arc<dyn Fn() -> Box<dyn Integrator> + Send + Sync>,
-}
-
-impl std::fmt::Debug for OwnIntegrator {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("OwnIntegrator").field(&self.name).finish()
-    }
 }
 
 /// Errors to reach when none are named, m.
@@ -86,19 +58,17 @@ const ITERATIONS: [u32; 2] = [1, 16];
 impl CostChoice {
     /// Every method and pair, and rapier at three numbers of iterations.
     pub fn default_for(scene: &Scene) -> Self {
-        let rapier = engines::find("rapier").map(ChosenEngine::from);
         let others = ITERATIONS.map(|iterations| {
-            let settings = Settings {
+            Solver::rapier(Settings {
                 iterations,
                 ..Settings::DEFAULT
-            };
-            ChosenEngine::from(&engines::rapier_with(settings))
+            })
         });
+        let mut solvers = Choice::all_methods(scene);
+        solvers.extend(adaptive::REGISTRY.iter().map(Solver::pair));
+        solvers.extend(solvers::find("rapier").into_iter().chain(others));
         Self {
-            methods: Choice::all_methods(scene),
-            own: Vec::new(),
-            pairs: adaptive::REGISTRY.iter().collect(),
-            engines: rapier.into_iter().chain(others).collect(),
+            solvers,
             targets: TARGETS.to_vec(),
             settings: SETTINGS,
             budget_s: BUDGET_S,
@@ -113,38 +83,38 @@ pub struct CostPlan<'a> {
     scene: &'a Scene,
     system: ParticleSystem,
     choice: CostChoice,
-    lanes: Vec<Lane>,
+    sweeps: Vec<Sweep>,
 }
 
 impl<'a> CostPlan<'a> {
     pub fn new(scene: &'a Scene, choice: &CostChoice) -> Self {
         let system = ParticleSystem::new(scene);
-        let lanes = lane::lanes(scene, &system, choice);
+        let sweeps = sweep::plan(scene, &system, choice);
         Self {
             scene,
             system,
             choice: choice.clone(),
-            lanes,
+            sweeps,
         }
     }
 
     /// What a progress bar counts against and [`Host::progress`] is told: nominal microseconds.
     pub fn work(&self) -> u64 {
-        self.lanes.iter().map(Lane::work).sum()
+        self.sweeps.iter().map(Sweep::work).sum()
     }
 
     /// How long each engine will take, from its nominal work.
     pub fn estimate(&self) -> Vec<Estimate> {
-        let estimate = |lane: &Lane| Estimate {
+        let estimate = |sweep: &Sweep| Estimate {
             label: Label {
-                engine: lane.entrant.id.clone(),
-                timestep: lane.ladder.last().map_or(0.0, Setting::timestep),
-                steps: lane.ladder.iter().map(Setting::steps).sum(),
+                engine: sweep.solver.id.to_string(),
+                timestep: sweep.settings.last().map_or(0.0, Setting::timestep),
+                steps: sweep.settings.iter().map(Setting::steps).sum(),
                 particles: self.scene.particles.len(),
             },
-            seconds: 1e-6 * lane.work() as f64,
+            seconds: 1e-6 * sweep.work() as f64,
         };
-        self.lanes.iter().map(estimate).collect()
+        self.sweeps.iter().map(estimate).collect()
     }
 
     /// Sweeps, times and judges. Whatever an engine does is a point with its reason.
@@ -156,41 +126,41 @@ impl<'a> CostPlan<'a> {
         let before = measure::energy_scale(scene, system, None);
         let limit = measure::divergence_limit(scene, before);
         let limits = Limits::new(system.clone(), limit).now_and_then();
-        let witness = Witness::new(scene, system, &truth, scale);
+        let errors = Errors::new(scene, system, &truth, scale);
         let named = self.choice.timesteps.is_some();
         let ground = Ground {
             scene,
             system,
-            witness: &witness,
+            errors: &errors,
             limits: &limits,
             host,
             panels: named,
         };
-        let sweep = |lane: &Lane| {
-            let mut swept = ground.sweep(lane, !named);
+        let run = |sweep: &Sweep| {
+            let mut swept = ground.sweep(sweep, !named);
             if !named {
-                refine::toward(&ground, lane, &mut swept, &self.choice.targets);
+                refine::toward(&ground, sweep, &mut swept, &self.choice.targets);
             }
             swept
         };
-        let mut swept: Vec<Swept> = self.lanes.par_iter().map(sweep).collect();
-        for (lane, swept) in self.lanes.iter().zip(&mut swept) {
-            clock::time(&ground, lane, swept);
+        let mut swept: Vec<Swept> = self.sweeps.par_iter().map(run).collect();
+        for (sweep, swept) in self.sweeps.iter().zip(&mut swept) {
+            clock::time(&ground, sweep, swept);
         }
-        let counted = Swept::evaluations(&swept, &self.lanes);
-        let panels = named.then(|| panels::panels(scene, &witness, &self.lanes, &swept));
+        let counted = Swept::evaluations(&swept, &self.sweeps);
+        let panels = named.then(|| panels::panels(scene, &errors, &self.sweeps, &swept));
         let facts = ledger::facts(scene, ledger::effects(scene, system, counted), scale);
-        let cost = answer::answer(scene, &witness, &self.choice, &self.lanes, swept, panels);
+        let cost = answer::answer(scene, &errors, &self.choice, &self.sweeps, swept);
         Report {
-            schema_version: SCHEMA_VERSION,
-            scene: facts,
-            truth: truths::facts(&truth),
-            outcomes: Vec::new(),
-            checks: ledger::no_scale(scale).into_iter().collect(),
-            fault: None,
-            stability: None,
-            cost: Some(cost),
-            figures: Figures::default(),
+            header: Header {
+                scene: facts,
+                truth: truths::facts(&truth),
+                checks: ledger::no_scale(scale).into_iter().collect(),
+            },
+            body: Body::Cost { outcomes: [], cost },
+            beside: panels.map_or(Beside::Nothing, |panels| {
+                Beside::Here(Series::Panels(panels))
+            }),
         }
     }
 

@@ -1,8 +1,8 @@
 //! The classic picture: a coordinate over time at a few steps, engine by engine, beside the truth.
 
-use super::lane::Lane;
-use super::sweep::Swept;
-use super::witness::{Kept, Witness};
+use super::errors::Errors;
+use super::sampler::Samples;
+use super::sweep::{Sweep, Swept};
 use crate::outcome::{CostLine, CostPanel, CostPanels, CostPoint};
 use crate::scene::Scene;
 
@@ -11,25 +11,25 @@ const POINTS: u32 = 600;
 
 pub(super) fn panels(
     scene: &Scene,
-    witness: &Witness,
-    lanes: &[Lane],
+    errors: &Errors,
+    sweeps: &[Sweep],
     swept: &[Swept],
 ) -> CostPanels {
     let [particle, axis] = shown(scene, swept);
     let at = 3 * particle + axis;
-    let panel = |(lane, swept): (&Lane, &Swept)| CostPanel {
-        engine: lane.entrant.id.clone(),
+    let panel = |(sweep, swept): (&Sweep, &Swept)| CostPanel {
+        engine: sweep.solver.id.to_string(),
         lines: swept
             .points
             .iter()
             .zip(&swept.kept)
-            .map(|(point, kept)| line(witness, point, kept, at))
+            .map(|(point, kept)| line(errors, point, kept, at))
             .collect(),
     };
     CostPanels {
         label: format!("particle {particle}, {} (m)", ["x", "y", "z"][axis]),
-        truth: truth(witness, at),
-        panels: lanes.iter().zip(swept).map(panel).collect(),
+        truth: truth(errors, at),
+        panels: sweeps.iter().zip(swept).map(panel).collect(),
     }
 }
 
@@ -54,10 +54,10 @@ fn shown(scene: &Scene, swept: &[Swept]) -> [usize; 2] {
     best.0
 }
 
-fn line(witness: &Witness, point: &CostPoint, kept: &Kept, at: usize) -> CostLine {
+fn line(errors: &Errors, point: &CostPoint, kept: &Samples, at: usize) -> CostLine {
     let finite = |p: &[f64; 2]| p.iter().all(|c| c.is_finite());
     let curve = (0..kept.t.len()).map(|k| [kept.t[k], kept.x(k)[at]]);
-    let difference = witness.states(kept).map(|(times, states)| {
+    let difference = errors.states(kept).map(|(times, states)| {
         let off = |k: usize| [times[k], kept.x(k + 1)[at] - states.x(k)[at]];
         (0..times.len()).map(off).filter(finite).collect()
     });
@@ -69,11 +69,11 @@ fn line(witness: &Witness, point: &CostPoint, kept: &Kept, at: usize) -> CostLin
     }
 }
 
-fn truth(witness: &Witness, at: usize) -> Vec<[f64; 2]> {
-    let Some(motion) = witness.truth.motion() else {
+fn truth(errors: &Errors, at: usize) -> Vec<[f64; 2]> {
+    let Some(motion) = errors.truth.motion() else {
         return Vec::new();
     };
-    let until = witness.truth.horizon;
+    let until = errors.truth.horizon;
     let part = |k: u32| until * f64::from(k) / f64::from(POINTS);
     let times: Vec<f64> = (0..=POINTS).map(part).collect();
     let states = motion.states(&times);

@@ -1,11 +1,10 @@
 //! What a run is expected to take on a nominal machine, from what it counts: the same on every machine,
 //! so that all sweep the same settings.
 
-use super::entrant::Entrant;
-use super::setting::Setting;
 use crate::outcome::Kind;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::{Setting, Solver};
 
 /// Nanoseconds on the nominal machine. A step beside its forces, and each particle in it:
 const STEP: f64 = 30.0;
@@ -32,21 +31,21 @@ pub(super) const TIMED_LEAST: f64 = 1.2e7;
 pub(super) fn of_step(
     scene: &Scene,
     system: &ParticleSystem,
-    entrant: &Entrant,
+    solver: &Solver,
     setting: &Setting,
 ) -> f64 {
     let (particles, springs) = (scene.particles.len() as f64, scene.springs.len() as f64);
-    if entrant.kind == Kind::Rapier {
-        let substeps = f64::from(entrant.substeps);
+    if solver.kind == Kind::Rapier {
+        let substeps = f64::from(solver.substeps);
         return WORLD + (particles + springs) * (BODY + SWEPT * substeps);
     }
-    let Ok(mut runner) = entrant.make(scene, system, setting) else {
+    let Ok(mut run) = solver.start(scene, system, setting) else {
         return STEP;
     };
-    let engine = runner.engine();
-    let taken = (0..SAMPLE).take_while(|_| engine.step().is_ok()).count();
-    let counts = engine.counts();
-    let each = |count: Option<u64>| count.unwrap_or(0) as f64 / taken.max(1) as f64;
+    // A step that fails ends the sample.
+    let _ = run.advance(SAMPLE);
+    let counts = run.counts();
+    let each = |count: Option<u64>| count.unwrap_or(0) as f64 / run.taken().max(1) as f64;
     let pairs = scene.gravitational.len() as f64;
     let evaluation = CALL + EVALUATION * particles + SPRING * (springs + 2.0 * pairs);
     let free = scene.particles.iter().filter(|p| !p.fixed).count() as f64;

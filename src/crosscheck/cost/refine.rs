@@ -1,10 +1,9 @@
-//! One or two more settings where a target lies between two of a ladder, so that who is cheapest does
-//! not hang on where its settings happen to lie.
+//! One or two more settings where a target lies between two that were tried, so that which solver is the
+//! cheapest does not hang on where its settings happen to lie.
 
-use super::lane::Lane;
-use super::setting::Setting;
-use super::sweep::{Ground, Swept};
+use super::sweep::{Ground, Sweep, Swept};
 use crate::measure::cost::reach;
+use crate::solvers::Setting;
 
 /// Attempts for each target.
 const ATTEMPTS: usize = 2;
@@ -16,13 +15,13 @@ const AIM: f64 = 0.93;
 const NEAR: f64 = 0.85;
 
 /// Adds settings to what was swept.
-pub(super) fn toward(ground: &Ground, lane: &Lane, swept: &mut Swept, targets: &[f64]) {
+pub(super) fn toward(ground: &Ground, sweep: &Sweep, swept: &mut Swept, targets: &[f64]) {
     for &target in targets {
         for _ in 0..ATTEMPTS {
             let Some(setting) = between(swept, target) else {
                 break;
             };
-            swept.insert(setting, ground.run(&lane.entrant, &setting));
+            swept.insert(setting, ground.run(&sweep.solver, &setting));
         }
     }
 }
@@ -72,7 +71,7 @@ fn along(coarse: &Setting, fine: &Setting, part: f64) -> Option<Setting> {
         _ => {
             let duration = coarse.timestep() * coarse.steps() as f64;
             let inside = steps > coarse.steps() && steps < fine.steps();
-            inside.then(|| Setting::of_steps(duration, steps))
+            inside.then(|| Setting::divided(duration, steps))
         }
     }
 }

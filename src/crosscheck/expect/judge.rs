@@ -1,7 +1,7 @@
 //! One expectation held against one outcome.
 
-use super::ID;
-use crate::outcome::{Check, CheckStatus, Outcome, Report, Status, TruthKind};
+use super::{Found, ID};
+use crate::outcome::{Check, CheckStatus, Outcome, Status, TruthKind};
 use crate::scene::{Expectation, Wanted};
 use serde_json::Value;
 
@@ -10,7 +10,7 @@ pub(super) fn judge(
     expectation: &Expectation,
     outcome: &Outcome,
     value: &Value,
-    report: &Report,
+    runs: &Found,
 ) -> Check {
     let Expectation { scope, key, wanted } = expectation;
     let engine = &outcome.engine;
@@ -23,7 +23,7 @@ pub(super) fn judge(
         derivation: format!("the scene's `expect`, under `{scope}`"),
         message,
     };
-    if let Some(reference) = absent_reference(key, outcome, report) {
+    if let Some(reference) = absent_reference(key, outcome, runs.outcomes) {
         let message = format!("{engine}: {key} has no value, since {reference} did not run");
         return check(CheckStatus::Skip, None, None, message);
     }
@@ -43,7 +43,7 @@ pub(super) fn judge(
     };
     let said = match found {
         Some(found) => said(key, found, outcome),
-        None => format!("no value ({})", missing(key, outcome, report)),
+        None => format!("no value ({})", missing(key, outcome, runs)),
     };
     let verb = if met { "is to be" } else { "should be" };
     let at = outcome.timestep;
@@ -52,10 +52,10 @@ pub(super) fn judge(
 }
 
 /// The engine a deviation is from, if it did not run: nobody's fault.
-fn absent_reference<'a>(key: &'a str, outcome: &Outcome, report: &Report) -> Option<&'a str> {
+fn absent_reference<'a>(key: &'a str, outcome: &Outcome, outcomes: &[Outcome]) -> Option<&'a str> {
     let reference = key.strip_prefix("deviation_m.")?.split('.').next()?;
     let ran = |o: &Outcome| o.engine == reference && o.timestep == outcome.timestep;
-    (!report.outcomes.iter().any(ran)).then_some(reference)
+    (!outcomes.iter().any(ran)).then_some(reference)
 }
 
 /// A word or a truth value as the file writes it.
@@ -93,15 +93,15 @@ fn said(key: &str, found: &Value, outcome: &Outcome) -> String {
 }
 
 /// Why a key has no value.
-fn missing(key: &str, outcome: &Outcome, report: &Report) -> String {
+fn missing(key: &str, outcome: &Outcome, runs: &Found) -> String {
     let error = key.starts_with("position_error_m") || key.starts_with("velocity_error_m_s");
-    match (&outcome.reason, &report.truth.reason) {
+    match (&outcome.reason, &runs.truth.reason) {
         (Some(reason), _) => reason.clone(),
-        (None, Some(reason)) if error && report.truth.kind == TruthKind::None => {
+        (None, Some(reason)) if error && runs.truth.kind == TruthKind::None => {
             format!("there is no truth: {reason}")
         }
         _ if error => "the truth ends before its second instant".to_owned(),
-        _ if key.starts_with("energy.") && report.scene.energy_scale_j.is_none() => {
+        _ if key.starts_with("energy.") && runs.scene.energy_scale_j.is_none() => {
             "the scene has no energy scale".to_owned()
         }
         _ if key.starts_with("momentum.") => "the scene does not conserve it".to_owned(),

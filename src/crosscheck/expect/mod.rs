@@ -5,11 +5,11 @@ mod keys;
 
 pub use keys::names;
 
-use super::plan::{Choice, ChosenEngine, Orders};
-use crate::outcome::{Check, CheckStatus, Outcome, Report};
-use crate::scene::Scene;
+use super::plan::{Choice, Expectations, Orders};
+use crate::outcome::{Check, CheckStatus, Kind, Outcome, Report, SceneFacts, Truth};
+use crate::scene::{Expectation, Scene};
+use crate::solvers::{Solver, catalogue};
 use crate::truth::Demand;
-use crate::{engines, integrators};
 
 /// The id of these checks.
 pub const ID: &str = "expect";
@@ -26,51 +26,83 @@ const OF_THE_TRUTH: &[&str] = &[
 /// One check for each key expected of an engine, on its outcome at the scene's own timestep; one
 /// that is skipped for each engine that did not run there, or one in all where none did.
 ///
-/// `scene` is the scene as its file states it: a report of another duration is not judged. Where a
-/// key has no value, the expectation fails.
+/// `scene` is the scene as its file states it: runs of another duration are not judged. Where a key has
+/// no value, the expectation fails.
 pub fn check(scene: &Scene, report: &Report) -> Vec<Check> {
-    if scene.expect.is_empty() {
-        return Vec::new();
+    Found {
+        truth: &report.header.truth,
+        scene: &report.header.scene,
+        outcomes: report.outcomes(),
     }
-    if report.scene.duration != scene.duration {
-        return vec![not_judged(&format!(
-            "they are about {:?} s, and {:?} s ran",
-            scene.duration, report.scene.duration
-        ))];
-    }
-    let timestep = scene.solver.timestep;
-    let outcome = |id: &str| -> Option<&Outcome> {
-        let of = |o: &&Outcome| o.engine == id && o.timestep == timestep;
-        report.outcomes.iter().find(of)
-    };
-    let subjects = subjects(scene);
-    if subjects.iter().all(|(id, _)| outcome(id).is_none()) {
-        return vec![not_judged(&format!(
-            "none of the engines they are about ran at the scene's own timestep, {timestep:?} s; \
-             --integrators all runs every integrator"
-        ))];
-    }
-    let mut checks = Vec::new();
-    for (id, integrator) in subjects {
-        let Some(outcome) = outcome(id) else {
-            let why = "did not run at the scene's own timestep";
-            checks.push(skipped(id, why.to_owned()));
-            continue;
+    .check(scene)
+}
+
+/// What a scene's runs left, as far as expectations are about it.
+pub(super) struct Found<'a> {
+    pub truth: &'a Truth,
+    pub scene: &'a SceneFacts,
+    pub outcomes: &'a [Outcome],
+}
+
+impl Found<'_> {
+    /// As [`check`].
+    fn check(&self, scene: &Scene) -> Vec<Check> {
+        if scene.expect.is_empty() {
+            return Vec::new();
+        }
+        if self.scene.duration != scene.duration {
+            return vec![not_judged(&format!(
+                "they are about {:?} s, and {:?} s ran",
+                scene.duration, self.scene.duration
+            ))];
+        }
+        let timestep = scene.solver.timestep;
+        let outcome = |id: &str| -> Option<&Outcome> {
+            let of = |o: &&Outcome| o.engine == id && o.timestep == timestep;
+            self.outcomes.iter().find(of)
         };
-        // Whatever an outcome holds has a JSON form.
-        let value = serde_json::to_value(outcome).unwrap_or_default();
-        let expected = scene.expected_of(id, integrator);
-        checks.extend(
-            expected
+        let subjects: Vec<Solver> = subjects(scene).collect();
+        if subjects
+            .iter()
+            .all(|subject| outcome(&subject.id).is_none())
+        {
+            return vec![not_judged(&format!(
+                "none of the engines they are about ran at the scene's own timestep, {timestep:?} s; \
+             --integrators all runs every integrator"
+            ))];
+        }
+        let mut checks = Vec::new();
+        for subject in subjects {
+            let Some(outcome) = outcome(&subject.id) else {
+                let why = "did not run at the scene's own timestep";
+                checks.push(skipped(&subject.id, why.to_owned()));
+                continue;
+            };
+            // Whatever an outcome holds has a JSON form.
+            let value = serde_json::to_value(outcome).unwrap_or_default();
+            let expected = expected_of(scene, &subject);
+            let judged = expected
                 .into_iter()
-                .map(|expectation| judge::judge(expectation, outcome, &value, report)),
-        );
+                .map(|expectation| judge::judge(expectation, outcome, &value, self));
+            checks.extend(judged);
+        }
+        checks
     }
-    checks
+}
+
+impl Expectations {
+    /// The checks that say what came of them.
+    pub(super) fn checks(&self, scene: &Scene, found: &Found) -> Vec<Check> {
+        match self {
+            Self::Judged => found.check(scene),
+            Self::Skipped(why) if !scene.expect.is_empty() => vec![not_judged(why)],
+            Self::Ignored | Self::Skipped(_) => Vec::new(),
+        }
+    }
 }
 
 /// The one check that says why nothing was judged.
-pub fn not_judged(why: &str) -> Check {
+fn not_judged(why: &str) -> Check {
     skipped("scene", format!("expectations are not judged: {why}"))
 }
 
@@ -86,14 +118,15 @@ fn skipped(subject: &str, message: String) -> Check {
     }
 }
 
-/// Everybody something is expected of, in registry order, integrators (true) first.
-fn subjects(scene: &Scene) -> Vec<(&'static str, bool)> {
-    let methods = integrators::ids().into_iter().map(|id| (id, true));
-    let engines = engines::ids().into_iter().map(|id| (id, false));
-    methods
-        .chain(engines)
-        .filter(|(id, integrator)| !scene.expected_of(id, *integrator).is_empty())
-        .collect()
+/// The solvers of fixed steps that something is expected of, in the catalogue's order.
+fn subjects(scene: &Scene) -> impl Iterator<Item = Solver> {
+    let fixed = catalogue().filter(|solver| solver.as_pair().is_none());
+    fixed.filter(|solver| !expected_of(scene, solver).is_empty())
+}
+
+/// What is expected of a solver.
+fn expected_of<'a>(scene: &'a Scene, solver: &Solver) -> Vec<&'a Expectation> {
+    scene.expected_of(&solver.id, solver.kind == Kind::Integrator)
 }
 
 impl Choice {
@@ -105,23 +138,15 @@ impl Choice {
             let about = |key: &str| prefixes.iter().any(|prefix| key.starts_with(prefix));
             scene.expect.iter().any(|e| about(&e.key))
         };
-        let subjects = subjects(scene);
-        let about = |id: &str| subjects.iter().any(|(subject, _)| *subject == id);
-        let referred = |id: &str| {
-            let prefix = format!("deviation_m.{id}.");
-            mentions(&[&prefix])
+        let fixed = catalogue().filter(|solver| solver.as_pair().is_none());
+        let referred = |solver: &Solver| {
+            let prefix = format!("deviation_m.{}.", solver.id);
+            solver.kind == Kind::Rapier && mentions(&[&prefix])
         };
         Self {
-            methods: integrators::REGISTRY
-                .iter()
-                .filter(|method| about(method.id))
+            solvers: fixed
+                .filter(|solver| !expected_of(scene, solver).is_empty() || referred(solver))
                 .collect(),
-            engines: engines::REGISTRY
-                .iter()
-                .filter(|row| about(&row.id) || referred(&row.id))
-                .map(ChosenEngine::from)
-                .collect(),
-            programs: Vec::new(),
             timesteps: vec![scene.solver.timestep],
             truth: if mentions(OF_THE_TRUTH) {
                 Demand::Auto
@@ -131,6 +156,7 @@ impl Choice {
             order: Orders::Never,
             identify: mentions(&["identified."]),
             prove: false,
+            expectations: Expectations::Judged,
         }
     }
 }

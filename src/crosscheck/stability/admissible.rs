@@ -8,8 +8,9 @@
 
 use crate::integrators::{self, Integrator, Settings};
 use crate::outcome::{Admissible, AdmissiblePanel};
+use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State};
+use crate::solvers::advance;
 use rayon::prelude::*;
 
 /// The method the picture is about.
@@ -57,7 +58,7 @@ pub(super) fn draw(
         let system = ParticleSystem::new(&scene);
         let settings = Settings::stated(scene.solver.tolerance);
         let line = |x2: &f64| {
-            let mut integrator = (method.build)(&settings);
+            let mut integrator = method.build(&settings);
             let mut admits = |x1: &f64| {
                 let admitted = admits(&system, integrator.as_mut(), timestep, [*x1, *x2], rest);
                 if admitted { '1' } else { '0' }
@@ -125,7 +126,7 @@ fn admits(
     };
     let before = strain(&state);
     for _ in 0..2 {
-        if integrator.step(system, timestep, &mut state).is_err() {
+        if advance(integrator, system, timestep, &mut state).is_err() {
             return false;
         }
     }

@@ -1,10 +1,10 @@
 //! The sentences of a row: what prediction and measurement say, and why they differ.
 
 use super::rows::Asked;
-use super::subject::Subject;
 use crate::integrators::{Amplification, Stage};
 use crate::measure::stability::{Limit, Measured, Prediction};
 use crate::outcome::StabilityRow;
+use crate::solvers::Solver;
 
 /// Limits are found to this part of themselves.
 const RESOLUTION: f64 = 1e-3;
@@ -12,7 +12,7 @@ const RESOLUTION: f64 = 1e-3;
 /// What there is to say of one row.
 pub(super) fn remarks(
     asked: &Asked,
-    subject: &Subject,
+    solver: &Solver,
     row: &StabilityRow,
     predicted: Option<&Prediction>,
     measured: &Measured,
@@ -30,7 +30,7 @@ pub(super) fn remarks(
     remarks.extend(tightest(asked, row));
     remarks.extend(predicted.and_then(|predicted| {
         let (from, to) = (&predicted.limit, &measured.limit);
-        let amplification = subject.follows.map(|(method, _)| method.amplification);
+        let amplification = solver.follows.map(|method| method.amplification);
         if !asked.linear {
             difference(from, to)
         } else if !differ(from, to) {

@@ -1,14 +1,15 @@
 //! Timestep against one quantity of the scene: what becomes of a run in each cell.
 
-use super::rows::{as_keys, predicted};
-use super::subject::Subject;
+use super::rows::{as_keys, predicted, start};
 use super::vary::{COUNT, Range, Vary};
 use crate::crosscheck::Host;
-use crate::measure::stability::{Linearised, Make, classify};
+use crate::measure::stability::{Linearised, classify};
 use crate::outcome::{Cell, MapPanel, StabilityMap};
+use crate::physics::ParticleSystem;
 use crate::scene::{Scene, limits};
-use crate::system::ParticleSystem;
+use crate::solvers::{Solver, Tally};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Steps times particles of a whole map, unless the caller says otherwise: some seconds.
 const BUDGET: u64 = 40_000_000;
@@ -92,14 +93,20 @@ impl Cells<'_> {
         self.count.saturating_mul(self.steps)
     }
 
-    pub fn run(&self, scene: &Scene, subjects: &[Subject], host: &dyn Host) -> StabilityMap {
+    pub fn run(
+        &self,
+        scene: &Scene,
+        solvers: &[Solver],
+        tally: &Arc<Tally>,
+        host: &dyn Host,
+    ) -> StabilityMap {
         let linearised: Vec<Linearised> = self.scenes.par_iter().map(linearised).collect();
-        // By subject, then by value.
-        let limits: Vec<Vec<(Option<f64>, bool)>> = subjects
+        // By solver, then by value.
+        let limits: Vec<Vec<(Option<f64>, bool)>> = solvers
             .par_iter()
-            .map(|subject| {
+            .map(|solver| {
                 let limit = |about: &Linearised| {
-                    let prediction = predicted(about, subject, scene.solver.timestep);
+                    let prediction = predicted(about, solver, scene.solver.timestep);
                     prediction.map_or((None, false), |p| as_keys(&p.limit))
                 };
                 linearised.iter().map(limit).collect()
@@ -114,33 +121,33 @@ impl Cells<'_> {
             }
         });
         let timesteps = range.values();
-        let places: Vec<(usize, usize, usize)> = (0..subjects.len())
+        let places: Vec<(usize, usize, usize)> = (0..solvers.len())
             .flat_map(|s| (0..self.scenes.len()).map(move |v| (s, v)))
             .flat_map(|(s, v)| (0..timesteps.len()).map(move |h| (s, v, h)))
             .collect();
         let cells: Vec<Option<Cell>> = places
             .into_par_iter()
             .map(|(s, v, h)| {
-                let (subject, scene, h) = (&subjects[s], &self.scenes[v], timesteps[h]);
-                subject.make(scene, h).ok()?;
-                let make: &Make = &|scene, h| subject.make(scene, h);
+                let (solver, scene, h) = (&solvers[s], &self.scenes[v], timesteps[h]);
+                start(solver, scene, h, tally).ok()?;
+                let make = |scene: &Scene, h| start(solver, scene, h, tally);
                 let tick = |steps| host.progress(steps);
-                Some(classify(scene, make, h, self.steps, &tick))
+                Some(classify(scene, &make, h, self.steps, &tick))
             })
             .collect();
         let mut rows = cells.chunks(timesteps.len().max(1)).map(<[_]>::to_vec);
-        let engines = subjects
+        let engines = solvers
             .iter()
             .zip(limits)
-            .map(|(subject, limits)| MapPanel {
-                engine: subject.id.clone(),
+            .map(|(solver, limits)| MapPanel {
+                engine: solver.id.to_string(),
                 cells: rows.by_ref().take(self.scenes.len()).collect(),
                 predicted_limit_s: limits.into_iter().map(|(limit, _)| limit).collect(),
             })
             .collect();
         StabilityMap {
             vary: self.plan.vary.id(),
-            unit: self.plan.vary.unit(),
+            unit: self.plan.vary.unit().to_owned(),
             values: self.plan.vary.values.clone(),
             timesteps_s: timesteps,
             steps_per_cell: self.steps,

@@ -6,33 +6,28 @@ mod explain;
 mod map;
 mod path;
 mod rows;
-mod subject;
 mod vary;
 
 pub use admissible::NotAdmissible;
 pub use map::{BudgetError, MapPlan};
 pub use vary::{COUNT, Range, RangeError, Vary, VaryError};
 
-use super::{ChosenEngine, Host, ledger};
-use crate::integrators::Method;
+use super::{Host, ledger};
 use crate::measure;
 use crate::measure::stability::{Linearised, is_linear};
-use crate::outcome::{Figures, Report, SCHEMA_VERSION, Stability, Truth, TruthKind};
+use crate::outcome::{Beside, Body, Header, Report, Stability, Truth, TruthKind};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::{Solver, Tally};
 use rayon::prelude::*;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
-use subject::{Subject, Tally};
 
 /// What is asked of one scene.
 #[derive(Debug, Clone)]
 pub struct StabilityPlan<'a> {
     pub scene: &'a Scene,
-    /// In the order of the rows.
-    pub methods: Vec<&'static Method>,
-    /// After the methods. A timestep of their own is not looked at: the step is what is searched.
-    pub engines: Vec<ChosenEngine>,
+    /// In the order of the rows. A timestep of their own is not looked at: the step is what is searched.
+    pub solvers: Vec<Solver>,
     /// Where growth is taken, seconds.
     pub timestep: f64,
     pub map: Option<MapPlan>,
@@ -55,9 +50,8 @@ impl StabilityPlan<'_> {
             stiffnesses => Some(admissible::draw(scene, self.timestep, stiffnesses)?),
         };
         let tally = Arc::new(Tally::default());
-        let subjects = self.subjects(&tally);
         let map = match &self.map {
-            Some(map) => Some(map.cells(scene, subjects.len())?),
+            Some(map) => Some(map.cells(scene, self.solvers.len())?),
             None => None,
         };
         let system = ParticleSystem::new(scene);
@@ -71,12 +65,14 @@ impl StabilityPlan<'_> {
             linearised: &linearised,
             linear,
             path: &path,
+            tally: &tally,
         };
-        let rows = subjects
+        let rows = self
+            .solvers
             .par_iter()
-            .map(|subject| rows::row(&asked, subject, host))
+            .map(|solver| rows::row(&asked, solver, host))
             .collect();
-        let map = map.map(|cells| cells.run(scene, &subjects, host));
+        let map = map.map(|cells| cells.run(scene, &self.solvers, &tally, host));
         let stability = Stability {
             omega_max_rad_s: linearised.omega_max().filter(|w| w.is_finite()),
             unsure: linearised.is_unsure(),
@@ -92,24 +88,28 @@ impl StabilityPlan<'_> {
             map,
             admissible: pair,
         };
-        let counted = [&tally.forces, &tally.damping].map(|n| n.load(Ordering::Relaxed));
         let scale = measure::energy_scale(scene, &system, None);
         Ok(Report {
-            schema_version: SCHEMA_VERSION,
-            scene: ledger::facts(scene, ledger::effects(scene, &system, counted), scale),
-            truth: Truth {
-                kind: TruthKind::None,
-                method: None,
-                error_bound_m: None,
-                horizon_s: None,
-                reason: Some("stability compares nothing with a truth".to_owned()),
+            header: Header {
+                scene: ledger::facts(
+                    scene,
+                    ledger::effects(scene, &system, tally.evaluations()),
+                    scale,
+                ),
+                truth: Truth {
+                    kind: TruthKind::None,
+                    method: None,
+                    error_bound_m: None,
+                    horizon_s: None,
+                    reason: Some("stability compares nothing with a truth".to_owned()),
+                },
+                checks: Vec::new(),
             },
-            outcomes: Vec::new(),
-            checks: Vec::new(),
-            fault: None,
-            stability: Some(stability),
-            cost: None,
-            figures: Figures::default(),
+            body: Body::Stability {
+                outcomes: [],
+                stability,
+            },
+            beside: Beside::Nothing,
         })
     }
 
@@ -118,28 +118,21 @@ impl StabilityPlan<'_> {
     /// # Errors
     /// A budget that leaves the map's cells too few steps.
     pub fn steps(&self) -> Result<u64, BudgetError> {
-        let subjects = self.subjects(&Arc::default());
-        let panels = subjects.len();
         let of_map = match &self.map {
-            Some(map) => map.cells(self.scene, panels)?.steps(),
+            Some(map) => map.cells(self.scene, self.solvers.len())?.steps(),
             None => 0,
         };
-        let usual = |subject: &Subject| rows::usual(self.scene, subject, self.timestep);
-        let of_rows = subjects.iter().map(usual).sum::<u64>();
-        Ok(of_rows.saturating_add(of_map))
+        Ok(self
+            .steps_by_row()
+            .iter()
+            .sum::<u64>()
+            .saturating_add(of_map))
     }
 
     /// Of each row's search, in the order of the rows: what it mostly takes.
     pub fn steps_by_row(&self) -> Vec<u64> {
-        let subjects = self.subjects(&Arc::default());
-        let usual = |subject: &Subject| rows::usual(self.scene, subject, self.timestep);
-        subjects.iter().map(usual).collect()
-    }
-
-    fn subjects(&self, tally: &Arc<Tally>) -> Vec<Subject> {
-        let methods = self.methods.iter().map(|m| Subject::method(m, tally));
-        let engines = self.engines.iter().map(|e| Subject::engine(e, tally));
-        methods.chain(engines).collect()
+        let usual = |solver| rows::usual(self.scene, solver, self.timestep);
+        self.solvers.iter().map(usual).collect()
     }
 }
 

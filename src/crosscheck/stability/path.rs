@@ -1,11 +1,11 @@
 //! States along a trajectory, where limits are taken again.
 
 use super::StabilityPlan;
-use crate::engines::{Engine, IntegratorEngine, Limits, Observer, simulate};
-use crate::integrators::{Method, Settings};
+use crate::integrators::Method;
 use crate::measure;
-use crate::measure::stability::{Along, Limit, Linearised};
-use crate::system::{ParticleSystem, State};
+use crate::measure::stability::{Along, Linearised};
+use crate::physics::{ParticleSystem, State};
+use crate::solvers::{Limits, Observer, Setting, Solver};
 
 /// States kept of a path.
 const STATES: u64 = 100;
@@ -33,35 +33,35 @@ pub(super) fn of(
 ) -> Path {
     let scene = plan.scene;
     let h = scene.solver.timestep;
-    let calm = |method: &&'static Method| match linearised.predict(method, h).limit {
-        Limit::At(limit) | Limit::Between(limit, _) => h <= limit,
-        Limit::Unconditional => true,
-        Limit::Never | Limit::Unknown(_) => false,
-    };
+    let calm = |method: &&'static Method| linearised.predict(method, h).limit.allows(h);
     let candidates = crate::crosscheck::Choice::all_methods(scene);
+    let candidates: Vec<&Method> = candidates.iter().filter_map(Solver::as_method).collect();
     let chosen = candidates.iter().find(|m| calm(m)).or(candidates.first());
-    let (false, Some(method)) = (linear, chosen.copied()) else {
-        return Path {
-            along: None,
-            until: scene.duration,
-            method: None,
-        };
+    let nowhere = Path {
+        along: None,
+        until: scene.duration,
+        method: None,
+    };
+    let (false, Some(&method)) = (linear, chosen) else {
+        return nowhere;
     };
     let particles = scene.particles.len().max(1) as u64;
     let steps = scene.steps(h).min((REACH / particles).max(STATES));
-    let settings = Settings::stated(scene.solver.tolerance);
-    let mut engine = IntegratorEngine::new(scene, system.clone(), method, &settings, h);
+    let setting = Setting::Steps { timestep: h, steps };
+    let Ok(mut run) = Solver::method(method).start(scene, system, &setting) else {
+        return nowhere;
+    };
     let scale = measure::energy_scale(scene, system, None);
     let limits = Limits::new(system.clone(), measure::divergence_limit(scene, scale));
     let mut kept = Kept {
         every: steps.div_ceil(STATES).max(1),
         states: Vec::new(),
     };
-    simulate(&mut engine, steps, &limits, &mut kept, &|_| {});
+    run.finish(&limits, &mut kept, &|_| {});
     // Where it ended early, what it ended in is no place to linearise about.
     kept.states.retain(State::is_finite);
     Path {
-        until: engine.state().t.min(scene.duration),
+        until: run.state().t.min(scene.duration),
         along: Some(Along::new(system, &kept.states)),
         method: Some(method),
     }

@@ -1,13 +1,15 @@
 //! One engine's limits.
 
 use super::path::Path;
-use super::subject::Subject;
 use super::{StabilityPlan, explain};
 use crate::crosscheck::Host;
-use crate::measure::stability::{Limit, Linearised, Make, Measured, Prediction, Tightest, measure};
-use crate::outcome::{StabilityRow, TightestLimit};
+use crate::integrators::Method;
+use crate::measure::stability::{Limit, Linearised, Measured, Prediction, Tightest, measure};
+use crate::outcome::{Kind, StabilityRow, TightestLimit};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
+use crate::solvers::{Run, Setting, Solver, Tally, Unsupported};
+use std::sync::Arc;
 
 /// Work the search for one limit may take, in particles passed over: some ten seconds. A probe takes
 /// 20,000 steps and a search some twenty probes, so small scenes never meet it; large ones get shorter
@@ -29,12 +31,13 @@ const UNCOUNTED: u64 = 150;
 
 /// Passes over all particles a step takes, from a few steps of the scene: counted, not timed, so that
 /// every machine searches alike.
-fn price(scene: &Scene, subject: &Subject, timestep: f64) -> u64 {
-    let Ok(mut engine) = subject.make(scene, timestep) else {
+fn price(scene: &Scene, solver: &Solver, timestep: f64, tally: &Arc<Tally>) -> u64 {
+    let Ok(mut run) = start(solver, scene, timestep, tally) else {
         return BESIDE;
     };
-    let taken = (0..SAMPLE).take_while(|_| engine.step().is_ok()).count() as u64;
-    let counts = engine.counts();
+    // A step that fails ends the sample.
+    let _ = run.advance(SAMPLE);
+    let counts = run.counts();
     let solve = SOLVE.min(scene.particles.len() as u64);
     let Some(forces) = counts.force_evaluations else {
         return BESIDE + UNCOUNTED.min(10 * scene.particles.len() as u64);
@@ -42,18 +45,18 @@ fn price(scene: &Scene, subject: &Subject, timestep: f64) -> u64 {
     let work = forces
         + DAMPING * counts.damping_evaluations.unwrap_or(0)
         + solve * counts.linear_solves.unwrap_or(0);
-    BESIDE + work / taken.max(1)
+    BESIDE + work / run.taken().max(1)
 }
 
 /// Steps the search for one limit may take.
-fn patience(scene: &Scene, subject: &Subject, timestep: f64) -> u64 {
-    let each = scene.particles.len().max(1) as u64 * price(scene, subject, timestep);
+fn patience(scene: &Scene, solver: &Solver, timestep: f64, tally: &Arc<Tally>) -> u64 {
+    let each = scene.particles.len().max(1) as u64 * price(scene, solver, timestep, tally);
     (PATIENCE / each).max(LEAST)
 }
 
 /// Steps it mostly takes.
-pub(super) fn usual(scene: &Scene, subject: &Subject, timestep: f64) -> u64 {
-    patience(scene, subject, timestep).min(USUAL)
+pub(super) fn usual(scene: &Scene, solver: &Solver, timestep: f64) -> u64 {
+    patience(scene, solver, timestep, &Arc::default()).min(USUAL)
 }
 
 /// What all rows share.
@@ -63,15 +66,37 @@ pub(super) struct Asked<'a> {
     pub linearised: &'a Linearised,
     pub linear: bool,
     pub path: &'a Path,
+    /// What integrators evaluated, over all runs.
+    pub tally: &'a Arc<Tally>,
 }
 
-pub(super) fn row(asked: &Asked, subject: &Subject, host: &dyn Host) -> StabilityRow {
+/// A fresh run of a scene at a step, s, counted with the others where it is an integrator's.
+pub(super) fn start(
+    solver: &Solver,
+    scene: &Scene,
+    timestep: f64,
+    tally: &Arc<Tally>,
+) -> Result<Run, Unsupported> {
+    let system = ParticleSystem::new(scene);
+    let run = solver.start(scene, &system, &Setting::step(timestep))?;
+    Ok(match solver.kind {
+        Kind::Integrator => run.tallied(tally),
+        Kind::Rapier | Kind::External => run,
+    })
+}
+
+/// The method whose step a solver takes, as often as this in one timestep.
+fn follows(solver: &Solver) -> Option<(&'static Method, f64)> {
+    Some((solver.follows?, f64::from(solver.substeps)))
+}
+
+pub(super) fn row(asked: &Asked, solver: &Solver, host: &dyn Host) -> StabilityRow {
     let timestep = asked.plan.timestep;
-    let predicted = predicted(asked.linearised, subject, timestep);
-    let tightest = tightest(asked, subject);
+    let predicted = predicted(asked.linearised, solver, timestep);
+    let tightest = tightest(asked, solver);
     let mut row = StabilityRow {
-        engine: subject.id.clone(),
-        kind: subject.kind,
+        engine: solver.id.to_string(),
+        kind: solver.kind,
         unsupported: false,
         predicted_limit_s: None,
         measured_limit_s: None,
@@ -95,12 +120,12 @@ pub(super) fn row(asked: &Asked, subject: &Subject, host: &dyn Host) -> Stabilit
         row.smooth_below_s = predicted.smooth_below_s.filter(|h| h.is_finite());
     }
     // Asked before anything is searched: what cannot run has no limit to be found.
-    if let Err(unsupported) = subject.make(asked.plan.scene, timestep) {
+    if let Err(unsupported) = start(solver, asked.plan.scene, timestep, asked.tally) {
         row.unsupported = true;
         row.remarks
             .push(format!("unsupported: {}", unsupported.reason));
     } else {
-        let measured = measured(asked, subject, &row, host);
+        let measured = measured(asked, solver, &row, host);
         (row.measured_limit_s, row.measured_unconditional) = as_keys(&measured.limit);
         row.measured_between_s = match measured.limit {
             Limit::Between(low, high) => Some([low, high]),
@@ -108,7 +133,7 @@ pub(super) fn row(asked: &Asked, subject: &Subject, host: &dyn Host) -> Stabilit
         };
         row.measured_growth_per_s = measured.growth_per_s.and_then(growth);
         row.measured_smooth_below_s = measured.smooth_below_s.filter(|h| h.is_finite());
-        row.remarks = explain::remarks(asked, subject, &row, predicted.as_ref(), &measured);
+        row.remarks = explain::remarks(asked, solver, &row, predicted.as_ref(), &measured);
     }
     row.reason = (!row.remarks.is_empty()).then(|| row.remarks.join("; "));
     row
@@ -117,11 +142,10 @@ pub(super) fn row(asked: &Asked, subject: &Subject, host: &dyn Host) -> Stabilit
 /// What the method it follows does to the linearised scene, at its own substep.
 pub(super) fn predicted(
     linearised: &Linearised,
-    subject: &Subject,
+    solver: &Solver,
     timestep: f64,
 ) -> Option<Prediction> {
-    let (method, substeps) = subject.follows?;
-    let substeps = f64::from(substeps);
+    let (method, substeps) = follows(solver)?;
     let mut prediction = linearised.predict(method, timestep / substeps);
     if let Limit::At(limit) = &mut prediction.limit {
         *limit *= substeps;
@@ -133,29 +157,28 @@ pub(super) fn predicted(
     Some(prediction)
 }
 
-fn tightest(asked: &Asked, subject: &Subject) -> Option<Tightest> {
-    let (method, substeps) = subject.follows?;
+fn tightest(asked: &Asked, solver: &Solver) -> Option<Tightest> {
+    let (method, substeps) = follows(solver)?;
     let tightest = asked.path.along.as_ref()?.tightest(method)?;
-    let limit_s = tightest.limit_s * f64::from(substeps);
+    let limit_s = tightest.limit_s * substeps;
     (limit_s.is_finite() && tightest.t_s.is_finite()).then_some(Tightest {
         limit_s,
         ..tightest
     })
 }
 
-fn measured(asked: &Asked, subject: &Subject, row: &StabilityRow, host: &dyn Host) -> Measured {
+fn measured(asked: &Asked, solver: &Solver, row: &StabilityRow, host: &dyn Host) -> Measured {
     let scene = asked.plan.scene;
-    let make: &Make = &|scene, h| subject.make(scene, h);
     let along = row.tightest.as_ref().map(|tightest| tightest.limit_s);
     let near = [row.predicted_limit_s, along].into_iter().flatten();
     let near = near.filter(|h| *h > 0.0).reduce(f64::min);
     measure(
         scene,
         asked.system,
-        make,
+        &|scene, h| start(solver, scene, h, asked.tally),
         asked.plan.timestep,
         near,
-        patience(scene, subject, asked.plan.timestep),
+        patience(scene, solver, asked.plan.timestep, asked.tally),
         &|steps| host.progress(steps),
     )
 }

@@ -5,7 +5,7 @@ use super::control::Controller;
 use super::scale::Scale;
 use super::trial::Trial;
 use crate::integrators::StepError;
-use crate::system::{State, System};
+use crate::physics::{State, System};
 
 /// What rounding leaves of a tolerance.
 const TIGHTEST: f64 = 4.0 * f64::EPSILON;

@@ -5,7 +5,7 @@ use super::scale::Scale;
 use super::{Estimate, Pair};
 use crate::integrators::nystrom::{LANES, Stage, Weight, stages, sums, weights};
 use crate::integrators::{axpy, largest, worst_particle};
-use crate::system::{Power, State, System};
+use crate::physics::{Power, State, System};
 
 /// Stages of the step at hand. Vectors are padded with zeros to whole lanes.
 pub(super) struct Trial {

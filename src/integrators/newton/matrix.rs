@@ -4,7 +4,7 @@
 //! pass that adds.
 
 use super::pattern::{Pattern, Place};
-use crate::system::{Jacobian, PairBlock, Slope};
+use crate::physics::{Jacobian, PairBlock, Slope};
 use nalgebra::Matrix3;
 
 /// Rows and columns are coordinates in threes, one block a particle, those without a free coordinate

@@ -19,7 +19,7 @@ mod stage;
 mod tests;
 
 use super::{StepError, fit, worst_particle};
-use crate::system::{Jacobian, Linearization, Power, Slope, State, System};
+use crate::physics::{Jacobian, Linearization, Power, Slope, State, System};
 use choose::Kind;
 use matrix::Matrix;
 use search::{Merit, Search};
@@ -50,7 +50,6 @@ pub(super) struct Newton {
     /// The direction, over all coordinates and over the matrix's rows.
     d: Vec<f64>,
     z: Vec<f64>,
-    power: Power,
     solves: u64,
     iterations: u64,
 }
@@ -66,7 +65,6 @@ impl Newton {
             next: Trial::default(),
             d: Vec::new(),
             z: Vec::new(),
-            power: Power::default(),
             solves: 0,
             iterations: 0,
         }
@@ -81,13 +79,9 @@ impl Newton {
         self.iterations
     }
 
-    /// The powers at the converged stage.
-    pub(super) fn last_power(&self) -> Power {
-        self.power
-    }
-
     /// Improves `u` until |r| <= tolerance (|M (u - b)| + |γ f|), or until it stops shrinking
-    /// within a few roundings of the positions: far from the origin forces are no better.
+    /// within a few roundings of the positions: far from the origin forces are no better. Returns the
+    /// powers there.
     ///
     /// # Errors
     /// [`StepError::NotConverged`], [`StepError::NotFinite`] at the first guess, and
@@ -100,7 +94,7 @@ impl Newton {
         b: &[f64],
         y: &[f64],
         u: &mut [f64],
-    ) -> Result<(), StepError> {
+    ) -> Result<Power, StepError> {
         let stage = Stage {
             system,
             t,
@@ -110,8 +104,7 @@ impl Newton {
         };
         self.iterate(&stage, u, |_| {})?;
         u.copy_from_slice(&self.at.u);
-        self.power = self.at.power;
-        Ok(())
+        Ok(self.at.power)
     }
 
     /// Leaves the solution in `self.at`; `seen` is shown every accepted iterate.

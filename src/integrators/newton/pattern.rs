@@ -1,7 +1,7 @@
 //! Where the pieces of a Jacobian go in the matrix: a system emits them in the same places at every
 //! call, so they are looked up once.
 
-use crate::system::{Jacobian, Slope};
+use crate::physics::{Jacobian, Slope};
 
 /// Rows, places, and where what is emitted goes.
 #[derive(Default)]

@@ -12,7 +12,7 @@ use super::Newton;
 use super::search::{Merit, Search};
 use super::solver::Solved;
 use super::stage::Stage;
-use crate::system::Linearization;
+use crate::physics::Linearization;
 
 /// The first share of the masses added, and how it grows.
 const SHIFT: f64 = 1.0;

@@ -10,7 +10,7 @@
 //! Hager & Zhang 2005, SIAM J. Optim. 16.)
 
 use super::stage::{Stage, Trial};
-use crate::system::{Jacobian, Slope};
+use crate::physics::{ForceKinds, Jacobian, Slope};
 
 /// Share of the decrease its slope promises that Φ has to make (Armijo).
 const ARMIJO: f64 = 1e-4;
@@ -53,14 +53,14 @@ impl Line {
                 rest += d[i] * (from.u[i] - stage.b[i]) / w;
             }
         }
-        if system.is_damped() {
+        if system.kinds().depends_on_velocity() {
             let mut damping = vec![0.0; d.len()];
             jacobian.add_product(Slope::Velocity, gamma, d, &mut damping);
             // D is symmetric, and d is 0 where a coordinate is fixed.
             curvature -= dot(&damping, d);
             rest -= dot(&damping, &from.u);
         }
-        if system.is_driven() {
+        if system.kinds().has(ForceKinds::DRIVEN) {
             let displacement: Vec<f64> = d.iter().map(|d| gamma * d).collect();
             rest -= system.injected_power(stage.t, &from.x, &displacement);
         }
@@ -185,6 +185,6 @@ impl Search<'_> {
         let (change, hidden) = line.change(self.stage, alpha, to);
         change <= ARMIJO * alpha * line.slope
             || (flat && alpha * line.slope.abs() <= hidden && change <= hidden)
-            || (self.stage.system.is_damped() && to.off <= 0.5 * before)
+            || (self.stage.system.kinds().depends_on_velocity() && to.off <= 0.5 * before)
     }
 }

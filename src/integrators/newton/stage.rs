@@ -1,6 +1,6 @@
 //! The stage equation M (u - b) = γ f(t, y + γ u, u), and one trial of it.
 
-use crate::system::{Power, System};
+use crate::physics::{Power, System};
 
 /// What is to be solved for u.
 #[derive(Clone, Copy)]

@@ -4,8 +4,8 @@ use super::stage::{Stage, Trial};
 use super::*;
 use crate::conformance::systems::swinging_triangle;
 use crate::integrators::{axpy, largest};
+use crate::physics::ParticleSystem;
 use crate::scene::{DampingModel, Particle, Scene, Spring};
-use crate::system::ParticleSystem;
 
 fn particle(position: [f64; 3], fixed: bool, mass: f64) -> Particle {
     Particle {
@@ -344,7 +344,7 @@ fn a_flat_ridge_is_left_in_few_iterations() {
     let system = ParticleSystem::new(&scene);
     let mut state = ParticleSystem::initial_state(&scene);
     let method = super::super::find("trapezoidal").expect("a method");
-    let mut integrator = (method.build)(&Default::default());
+    let mut integrator = method.build(&Default::default());
     integrator
         .step(&system, 0.4953, &mut state)
         .expect("a solution");

@@ -1,7 +1,8 @@
 //! What a trajectory may follow: a method, whole or in substeps, or one of the common mistakes.
 
 use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError};
-use crate::system::{ParticleSystem, State, System};
+use crate::physics::{ParticleSystem, State, System};
+use crate::solvers::advance;
 
 /// A scheme to replay: known method, known mistake, or a guess at what went wrong.
 #[derive(Clone)]
@@ -153,7 +154,7 @@ impl Candidate {
         Replayer {
             candidate: self,
             integrator: match self.scheme {
-                Scheme::Method(method) => Some((method.build)(settings)),
+                Scheme::Method(method) => Some(method.build(settings)),
                 Scheme::Map(_) => None,
             },
         }
@@ -208,7 +209,7 @@ impl<'a> Replayer<'a> {
                 state.t = (at * u64::from(n) + u64::from(part)) as f64 * part_of_h;
                 match (&mut self.integrator, self.candidate.scheme) {
                     (Some(integrator), _) => {
-                        integrator.step(&self.candidate.system, inner, state)?;
+                        advance(integrator.as_mut(), &self.candidate.system, inner, state)?;
                     }
                     (None, Scheme::Map(map)) => {
                         let start = state.clone();

@@ -13,8 +13,8 @@ pub use rows::MISTAKES;
 
 use super::{Candidate, Map};
 use crate::integrators::{self, Method};
+use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, System};
 
 /// One way to get it wrong.
 pub struct Mistake {
@@ -77,7 +77,7 @@ impl Mistake {
                 map,
                 remembers,
                 only_damped,
-            } if system.is_damped() || !only_damped => {
+            } if system.kinds().depends_on_velocity() || !only_damped => {
                 let candidate = Candidate::map(system, self.id, meant, self.says, map);
                 Some(candidate.remembering(remembers))
             }

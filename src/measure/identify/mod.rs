@@ -28,8 +28,8 @@ pub use transition::Transition;
 
 use crate::integrators::{REGISTRY, Settings};
 use crate::outcome::{Identified, Undecided};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
 use crate::trajectory::Rows;
 use contest::{Entry, Race};
 use decision::Decision;

@@ -6,8 +6,8 @@ use super::defect::{CLEAR, HOPELESS, NUDGES, largest_ratio};
 use super::transition::Transition;
 use super::velocity;
 use crate::integrators::{Settings, StepError};
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State, System};
 use crate::trajectory::Rows;
 use std::sync::atomic::{AtomicU64, Ordering};
 

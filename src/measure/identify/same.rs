@@ -3,8 +3,8 @@
 use super::candidate::Candidate;
 use super::replay::Replay;
 use super::transition::{Transition, spread};
+use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State};
 use crate::trajectory::{Precision, Rows};
 
 /// Steps longer than the data's by this much: schemes that differ at all differ more.

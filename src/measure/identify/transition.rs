@@ -1,6 +1,6 @@
 //! Which pairs of rows are replayed.
 
-use crate::system::{ParticleSystem, System};
+use crate::physics::{ParticleSystem, System};
 use crate::trajectory::Rows;
 
 /// A replay from one row to a later one.

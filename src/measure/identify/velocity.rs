@@ -2,7 +2,7 @@
 
 use super::candidate::Replayer;
 use crate::integrators::StepError;
-use crate::system::State;
+use crate::physics::State;
 
 /// From one row of positions to the next.
 pub(super) struct Leg {

@@ -1,7 +1,7 @@
 //! What a report says of a measured order.
 
-use super::ladder::Measured;
 use super::observed::{Point, TOLERANCE, Verdict};
+use super::study::Measured;
 use crate::outcome::{Check, CheckStatus};
 
 /// The check `order` of this method: passes at the stated order minus [`TOLERANCE`] or above.

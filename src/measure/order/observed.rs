@@ -23,7 +23,7 @@ pub const TOLERANCE: f64 = 0.05;
 /// From the coarsest of five steps to the finest, each half the one before.
 const SPAN: f64 = 16.0;
 
-/// What a ladder of errors says of the order.
+/// What a list of errors says of the order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observed {
     /// The order the method claims.
@@ -63,7 +63,7 @@ pub enum Reason {
     /// The slopes still change: the steps are too coarse.
     NotAsymptotic,
     /// The forces jump or have a kink along the motion: a method known to be good falls short of its
-    /// order, too. Only a [`Ladder`](super::Ladder), which runs one, says so.
+    /// order, too. Only a [`Study`](super::Study), which runs one, says so.
     NotSmooth,
 }
 

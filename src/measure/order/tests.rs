@@ -3,7 +3,7 @@
 use super::*;
 
 /// Errors e(h) at `many` steps from 1 down, a factor `ratio` apart, under one floor.
-fn ladder(many: i32, ratio: f64, floor: f64, error: impl Fn(f64) -> f64) -> Vec<Point> {
+fn levels(many: i32, ratio: f64, floor: f64, error: impl Fn(f64) -> f64) -> Vec<Point> {
     (0..many)
         .map(|j| ratio.powi(-j))
         .map(|h| Point {
@@ -25,7 +25,7 @@ fn reason(points: &[Point], stated: u32) -> Option<Reason> {
 fn an_order_is_read_off_clean_errors() {
     for (p, ratio) in [(1, 2.0), (2, 2.0), (3, 2.0), (4, 2.0), (5, 1.3), (8, 1.3)] {
         for c in [-0.3, 0.0, 0.7] {
-            let points = ladder(12, ratio, 0.0, |h| 3.0 * h.powi(p) * (1.0 + c * h));
+            let points = levels(12, ratio, 0.0, |h| 3.0 * h.powi(p) * (1.0 + c * h));
             let seen = observed(&points, p as u32);
             assert_eq!(seen.verdict, Verdict::Meets, "{p} {c} {seen:?}");
             assert_eq!(seen.used, [7, 8, 9, 10, 11]);
@@ -47,7 +47,7 @@ fn a_verdict_turns_at_the_tolerance() {
         (2.0 + 0.051, Verdict::Above),
     ] {
         assert_eq!(
-            observed(&ladder(5, 2.0, 0.0, |h| h.powf(p)), 2).verdict,
+            observed(&levels(5, 2.0, 0.0, |h| h.powf(p)), 2).verdict,
             verdict
         );
     }
@@ -58,22 +58,22 @@ fn the_floor_is_left_out() {
     // Rounding of 1e-9, up and down: the fourth order falls below it after seven halvings.
     let rounding = |h: f64| 1e-9 * (1.0 + 0.5 * (1e3 * h).sin());
     let error = |h: f64| h.powi(4) + rounding(h);
-    let seen = observed(&ladder(12, 2.0, 1e-8, error), 4);
+    let seen = observed(&levels(12, 2.0, 1e-8, error), 4);
     assert_eq!(seen.verdict, Verdict::Meets, "{seen:?}");
     assert!(seen.used.last() < Some(&7));
     // Had nobody said where the floor is, the method would be blamed, or nothing be seen.
     assert_ne!(
-        observed(&ladder(12, 2.0, 0.0, error), 4).verdict,
+        observed(&levels(12, 2.0, 0.0, error), 4).verdict,
         Verdict::Meets
     );
     // With too few steps above it, nothing is.
     assert_eq!(
-        reason(&ladder(12, 2.0, 1e-4, error), 4),
+        reason(&levels(12, 2.0, 1e-4, error), 4),
         Some(Reason::AtFloor)
     );
-    assert_eq!(reason(&ladder(12, 2.0, 2.0, error), 4), Some(Reason::Exact));
+    assert_eq!(reason(&levels(12, 2.0, 2.0, error), 4), Some(Reason::Exact));
     assert_eq!(
-        reason(&ladder(12, 2.0, 1e-9, |_| 0.0), 4),
+        reason(&levels(12, 2.0, 1e-9, |_| 0.0), 4),
         Some(Reason::Exact)
     );
 }
@@ -83,10 +83,10 @@ fn coarse_steps_are_left_out() {
     // Errors that cannot pass the size of the motion, 1, and are of first order below h = 0.02.
     let error = |h: f64| (50.0 * h).tanh();
     assert_eq!(
-        reason(&ladder(7, 2.0, 0.0, error), 1),
+        reason(&levels(7, 2.0, 0.0, error), 1),
         Some(Reason::NotAsymptotic)
     );
-    let seen = observed(&ladder(12, 2.0, 0.0, error), 1);
+    let seen = observed(&levels(12, 2.0, 0.0, error), 1);
     assert_eq!(
         (seen.verdict, seen.used),
         (Verdict::Meets, vec![7, 8, 9, 10, 11])
@@ -97,21 +97,21 @@ fn coarse_steps_are_left_out() {
 fn a_low_order_term_that_shows_late_is_not_overlooked() {
     let error = |h: f64| h.powi(4) + 1e-6 * h;
     assert_eq!(
-        observed(&ladder(5, 2.0, 0.0, error), 4).verdict,
+        observed(&levels(5, 2.0, 0.0, error), 4).verdict,
         Verdict::Meets
     );
     for many in 8..20 {
-        let seen = observed(&ladder(many, 2.0, 1e-12, error), 4);
+        let seen = observed(&levels(many, 2.0, 1e-12, error), 4);
         assert_ne!(seen.verdict, Verdict::Meets, "{many} {seen:?}");
     }
-    let late = observed(&ladder(14, 2.0, 1e-12, error), 4);
+    let late = observed(&levels(14, 2.0, 1e-12, error), 4);
     assert_eq!(late.verdict, Verdict::Misses);
     assert!((late.order.unwrap() - 1.0).abs() < 0.01);
 }
 
 #[test]
 fn bad_points_are_no_points() {
-    let good = ladder(5, 2.0, 0.0, |h| h * h);
+    let good = levels(5, 2.0, 0.0, |h| h * h);
     let bad = [
         (f64::NAN, 1.0, 0.0),
         (0.3, f64::NAN, 0.0),
@@ -143,7 +143,7 @@ fn bad_points_are_no_points() {
     }
     let extremes: Vec<Point> = [1e300, 5e-324, 1e-300, f64::MAX, 0.0, 1.0]
         .iter()
-        .zip(ladder(6, 2.0, 0.0, |h| h))
+        .zip(levels(6, 2.0, 0.0, |h| h))
         .map(|(&error, point)| Point { error, ..point })
         .collect();
     let seen = observed(&extremes, 2);
@@ -167,7 +167,7 @@ fn a_conclusive_order_is_right() {
         for _ in 0..10_000 {
             let (a, b) = (2.0 * next(), 2.0 * next());
             let error = |h: f64| h * h * (1.0 + a * h + b * h * h).abs();
-            let points = ladder(many, ratio, 0.0, error);
+            let points = levels(many, ratio, 0.0, error);
             if let Some(order) = observed(&points, 2).order {
                 conclusive += 1;
                 wrong += usize::from((order - 2.0).abs() > TOLERANCE);

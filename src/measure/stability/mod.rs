@@ -1,11 +1,12 @@
 //! How large a step may be: predicted from the linearised scene and a method's stability region,
 //! and measured on the scene itself.
 
+mod matrix;
 mod measured;
 mod predicted;
 
 pub use measured::{Make, Measured, classify, measure};
-pub use predicted::{Along, Effort, Excluded, Linearised, Prediction, Tightest, along, is_linear};
+pub use predicted::{Along, Effort, Excluded, Linearised, Prediction, Tightest, is_linear};
 
 /// The largest step that is stable, with all smaller ones.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,4 +21,15 @@ pub enum Limit {
     Unconditional,
     /// Not found, and why.
     Unknown(String),
+}
+
+impl Limit {
+    /// Whether a step of `h` seconds is stable, as far as is known.
+    pub fn allows(&self, h: f64) -> bool {
+        match self {
+            Self::Unconditional => true,
+            Self::At(limit) | Self::Between(limit, _) => h <= *limit,
+            Self::Never | Self::Unknown(_) => false,
+        }
+    }
 }

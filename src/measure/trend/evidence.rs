@@ -9,9 +9,12 @@
 
 use std::f64::consts::{LN_2, TAU};
 
-/// A path that goes one way: its net change, and the share of it that noise may have lent.
-pub struct OneWay {
+/// What a test finds.
+pub struct Evidence {
+    /// Along the trend, in units of y.
     pub change: f64,
+    /// How much of the change noise explains: a share of it from [`one_way`], in units of y from
+    /// [`slow`].
     pub doubt: f64,
 }
 
@@ -23,7 +26,7 @@ const ONE_WAY_SAMPLES: usize = 13;
 /// continuous martingale into one (Dambis, Dubins & Schwarz 1965): the ratio needs neither a scale nor an
 /// even pace, so an exponential, a decay over by the tenth sample and a straight line are alike to it.
 /// Blind to a trend under an oscillation of its own size; that is for [`slow`].
-pub fn one_way(y: &[f64]) -> Option<OneWay> {
+pub fn one_way(y: &[f64]) -> Option<Evidence> {
     let (mut lowest, mut highest, mut rise, mut fall) = (y[0], y[0], 0.0_f64, 0.0_f64);
     for &y in y {
         (lowest, highest) = (lowest.min(y), highest.max(y));
@@ -32,16 +35,10 @@ pub fn one_way(y: &[f64]) -> Option<OneWay> {
     let n = y.len() as f64;
     // 10.5 for a Brownian path; a short walk never reaches its own extremes, so it falls back by less.
     let doubt = (10.5 + 9e3 / (n * n)) * rise.min(fall) / rise.max(fall);
-    (y.len() >= ONE_WAY_SAMPLES && doubt < 1.0).then_some(OneWay {
+    (y.len() >= ONE_WAY_SAMPLES && doubt < 1.0).then_some(Evidence {
         change: rise - fall,
         doubt,
     })
-}
-
-/// The change along the trend as the slow part of the series tells it; noise explains up to `doubt`.
-pub struct Slow {
-    pub change: f64,
-    pub doubt: f64,
 }
 
 /// Below this the slow frequencies are too few to tell noise from trend: nothing is significant.
@@ -59,7 +56,7 @@ const LEVEL_CRITICAL: f64 = 7.5;
 /// rest, as flat: one answer for noise with and without memory, as in Harvey, Leybourne & Taylor 2007.
 /// The Hann taper keeps an oscillation of five periods or more out of the trend (2/p^2 of its amplitude,
 /// against 1.2/p for least squares), and the median over frequencies keeps it out of the noise.
-pub fn slow(s: &[f64], residual: &[f64], line: f64) -> Slow {
+pub fn slow(s: &[f64], residual: &[f64], line: f64) -> Evidence {
     let n = residual.len();
     let steps = (n - 1) as f64;
     if n < SLOW_SAMPLES {
@@ -67,7 +64,7 @@ pub fn slow(s: &[f64], residual: &[f64], line: f64) -> Slow {
             .windows(2)
             .map(|w| (w[1] - w[0] + line / steps).powi(2))
             .sum();
-        return Slow {
+        return Evidence {
             change: line,
             doubt: WALK_CRITICAL * (1.5 * squares).sqrt(),
         };
@@ -92,7 +89,7 @@ pub fn slow(s: &[f64], residual: &[f64], line: f64) -> Slow {
 
     let change = line + beyond;
     if n < LEVEL_SAMPLES {
-        return Slow {
+        return Evidence {
             change,
             doubt: as_walk,
         };
@@ -102,7 +99,7 @@ pub fn slow(s: &[f64], residual: &[f64], line: f64) -> Slow {
     let first = (2..8).map(|k| power[k]).sum::<f64>() / 6.0;
     let rest = median(power[8..].iter().copied());
     let as_level = LEVEL_CRITICAL * (first.max(rest) / 3.0 + 11.7 * (first - rest).max(0.0)).sqrt();
-    Slow {
+    Evidence {
         change,
         doubt: as_walk.min(as_level),
     }

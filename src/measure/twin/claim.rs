@@ -2,7 +2,7 @@
 
 use super::lockstep::{Path, distance};
 use super::{Proof, Status};
-use crate::engines::Unsupported;
+use crate::solvers::Unsupported;
 
 /// A proof that could not tell a relative error of this size is none.
 const BLUNT: f64 = 1e-6;

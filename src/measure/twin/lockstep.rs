@@ -1,9 +1,9 @@
 //! Two engines over the same few instants.
 
-use crate::engines::{Engine, IntegratorEngine};
 use crate::integrators::{self, StepError};
+use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State};
+use crate::solvers::{Setting, Solver, Unsupported};
 
 /// The states at the start and after each of a few world steps.
 pub(super) struct Path {
@@ -12,22 +12,40 @@ pub(super) struct Path {
 }
 
 impl Path {
-    /// `steps` world steps of `substeps` engine steps each, or fewer if a step fails.
-    pub(super) fn of(mut engine: impl Engine, substeps: u32, steps: u32) -> Self {
+    /// `steps` world steps of `substeps` steps of `h` seconds each, or fewer if a step fails.
+    pub(super) fn of(
+        solver: &Solver,
+        scene: &Scene,
+        h: f64,
+        substeps: u32,
+        steps: u32,
+    ) -> Result<Self, Unsupported> {
+        let system = ParticleSystem::new(scene);
+        let mut run = solver.start(scene, &system, &Setting::step(h))?;
         let mut path = Self {
-            states: vec![engine.state().clone()],
+            states: vec![run.state().clone()],
             failed: None,
         };
         for _ in 0..steps {
-            for _ in 0..substeps {
-                if let Err(error) = engine.step() {
-                    path.failed = Some(error);
-                    return path;
-                }
+            if let Err(error) = run.advance(substeps.into()) {
+                path.failed = Some(error);
+                break;
             }
-            path.states.push(engine.state().clone());
+            path.states.push(run.state().clone());
         }
-        path
+        Ok(path)
+    }
+
+    /// The path of our integrator of this id.
+    pub(super) fn ours(scene: &Scene, method: &str, h: f64, substeps: u32, steps: u32) -> Self {
+        // A missing row would be a fault of this program's; explicit Euler, the first, then fails the
+        // proof instead of stopping the run.
+        let method = integrators::find(method).unwrap_or(&integrators::REGISTRY[0]);
+        let none = Self {
+            states: Vec::new(),
+            failed: None,
+        };
+        Self::of(&Solver::method(method), scene, h, substeps, steps).unwrap_or(none)
     }
 
     /// Why the path is not a whole one.
@@ -38,16 +56,6 @@ impl Path {
         let finite = self.states.iter().all(State::is_finite);
         (!finite).then(|| "it leaves the finite numbers".to_owned())
     }
-}
-
-/// The engine of our integrator of this id, at its default settings.
-pub(super) fn ours(scene: &Scene, method: &'static str, h: f64) -> IntegratorEngine {
-    let system = ParticleSystem::new(scene);
-    let settings = integrators::Settings::default();
-    // A missing row would be a fault of this program's; explicit Euler, the first, then fails the
-    // proof instead of stopping the run.
-    let method = integrators::find(method).unwrap_or(&integrators::REGISTRY[0]);
-    IntegratorEngine::new(scene, system, method, &settings, h)
 }
 
 /// Largest distance over the instants both have: positions in units of the largest coordinate,

@@ -3,7 +3,7 @@
 
 use super::{evaluations, metres, price, ratio, setting};
 use crate::outcome::{Cost, CostRank, CostReached, CostTarget};
-use crate::report::notes::listed;
+use crate::report::notes::{grouped, listed};
 use crate::report::words;
 
 /// `1e-6 m`.
@@ -24,16 +24,14 @@ pub fn reached(reached: &CostReached) -> String {
 /// What there is to say of each target, labels first; targets that share a reason not to be judged are
 /// one paragraph.
 pub fn paragraphs(cost: &Cost) -> Vec<(String, String)> {
-    let mut said: Vec<(Vec<String>, String)> = Vec::new();
-    for target in &cost.targets {
-        let text = paragraph(target);
-        match said.iter_mut().find(|(_, known)| *known == text) {
-            Some((errors, _)) if target.reason.is_some() => errors.push(metres(target.error_m)),
-            _ => said.push((vec![metres(target.error_m)], text)),
-        }
-    }
-    let label = |(errors, text): (Vec<String>, String)| (format!("{} m", listed(&errors)), text);
-    said.into_iter().map(label).collect()
+    let said = cost.targets.iter().enumerate().map(|(at, target)| {
+        let alone = target.reason.is_none().then_some(at);
+        (metres(target.error_m), (alone, paragraph(target)))
+    });
+    let labelled = grouped(said).into_iter();
+    labelled
+        .map(|((_, text), errors)| (format!("{} m", listed(&errors)), text))
+        .collect()
 }
 
 /// Everything there is to say of one target, without its label.
@@ -129,18 +127,13 @@ fn missing(ranks: &[CostRank], ranked: bool) -> Option<String> {
 /// Who does not reach it and why. Equal reasons are said once, and of those that differ in a number
 /// alone only the number, after the first.
 fn misses(ranks: &[CostRank], ranked: bool) -> Vec<String> {
-    let mut said: Vec<(String, Vec<String>)> = Vec::new();
     // Of integrators with a price by their slope, that is said instead.
     let priced = |rank: &&CostRank| rank.extrapolated_wall_ratio.is_some() && ranked;
     let missing = ranks.iter().filter(|rank| rank.reached.is_none());
-    for rank in missing.filter(|rank| !priced(rank)) {
+    let said = grouped(missing.filter(|rank| !priced(rank)).map(|rank| {
         let reason = rank.reason.as_deref().map(words::one_line);
-        let (reason, name) = (reason.unwrap_or_default(), words::one_line(&rank.engine));
-        match said.iter_mut().find(|(known, _)| *known == reason) {
-            Some((_, names)) => names.push(name),
-            None => said.push((reason, vec![name])),
-        }
-    }
+        (words::one_line(&rank.engine), reason.unwrap_or_default())
+    }));
     let because = |at: usize, reason: &str| {
         let mut before = said.iter().take(at);
         let number = before.find_map(|(known, _)| other_number(known, reason));

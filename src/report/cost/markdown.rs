@@ -1,9 +1,10 @@
 //! The answers, the rankings and every setting as GitHub shows them.
 
-use super::notes::notes;
-use super::{answer, facts, metres, nearest_energy, nearest_error, order, ratio, slope, tried};
+use super::{answer, facts, metres, ratio, table, tried};
 use crate::outcome::{Cost, CostCurve, CostPoint, CostRank, CostTarget, Report};
-use crate::report::markdown::{checks, escape, heading, images, table};
+use crate::report::View;
+use crate::report::markdown::{checks, escape, heading, images, remarks, scene, section};
+use crate::report::table::{Mark, Table};
 use crate::report::words::{self, NOTHING};
 
 const LEGEND: &str = "\
@@ -23,117 +24,73 @@ const LEGEND: &str = "\
 
 /// One report, with its figures linked as files beside it.
 pub fn render(report: &Report, cost: &Cost) -> String {
-    let mut text = heading(report);
-    text += &scene(report, cost);
-    if !cost.targets.is_empty() {
-        text += "## Answer\n\n";
-        for (label, said) in answer::paragraphs(cost) {
-            text += &format!("- **{}**: {}\n", escape(&label), escape(&said));
-        }
-        text += "\n";
-    }
+    let duration = format!("{} s", words::short(cost.duration_s));
+    let mut more = vec![("duration", duration)];
+    more.extend(facts(report, cost));
+    let answers = answer::paragraphs(cost).into_iter();
+    let answers =
+        answers.map(|(label, said)| format!("- **{}**: {}\n", escape(&label), escape(&said)));
+    let mut text = heading(report) + &scene(report, more);
+    text += &section("Answer", answers.collect());
     text += &images(report);
     text += "## Engines\n\n";
-    text += &engines(report, cost);
+    text += &table(report, cost).in_markdown();
     for target in cost.targets.iter().filter(|target| target.reason.is_none()) {
         text += &ranking(report, target);
     }
     text += &settings(cost);
-    text += &remarks(cost);
-    text += &checks(&report.checks);
+    text += &remarks(&cost.notes(report));
+    text += &checks(&report.header.checks);
     text + LEGEND
 }
 
-fn scene(report: &Report, cost: &Cost) -> String {
-    let scene = &report.scene;
-    let mut rows = vec![
-        vec!["file".to_owned(), escape(&scene.file)],
-        vec!["particles".to_owned(), scene.particles.to_string()],
-        vec!["springs".to_owned(), scene.springs.to_string()],
-        vec!["own integrator".to_owned(), escape(&scene.own_method)],
-        vec![
-            "duration".to_owned(),
-            format!("{} s", words::short(cost.duration_s)),
-        ],
-    ];
-    let facts = facts(report, cost).into_iter();
-    rows.extend(facts.map(|(label, text)| vec![label.to_owned(), escape(&text)]));
-    table(&["scene", ""], &rows)
-}
-
-fn named(report: &Report, engine: &str) -> String {
-    let name = escape(engine);
-    if engine == report.scene.own_method {
-        format!("**{name}**")
-    } else {
-        name
-    }
-}
-
-fn engines(report: &Report, cost: &Cost) -> String {
-    let header = [
-        "engine",
-        "order",
-        "slope",
-        "smallest error (m)",
-        "smallest energy error",
-        "settings",
-    ];
-    let row = |curve: &CostCurve| {
-        vec![
-            named(report, &curve.engine),
-            order(curve),
-            slope(curve),
-            nearest_error(curve),
-            nearest_energy(curve),
-            tried(curve),
-        ]
-    };
-    let rows: Vec<Vec<String>> = cost.curves.iter().map(row).collect();
-    table(&header, &rows)
+fn cell(text: Option<String>) -> String {
+    text.unwrap_or(NOTHING.into())
 }
 
 /// One target's: the places, then those without one.
 fn ranking(report: &Report, target: &CostTarget) -> String {
-    let title = format!("## To {}\n\n", escape(&answer::label(target)));
-    let ranks = || target.ranking.iter().chain(&target.reference);
-    let adaptive = ranks().any(|rank| {
-        let reached = rank.reached.as_ref();
-        reached.is_some_and(|reached| reached.tolerance.is_some())
-    });
-    let mut header = vec!["place", "engine", "h (s)"];
-    header.extend(adaptive.then_some("tolerance"));
-    header.extend(["error (m)", "time", "ratio", "force evaluations", "remark"]);
-    let row = |(place, rank): (String, &CostRank)| {
-        let reached = rank.reached.as_ref();
-        let cell = |text: Option<String>| text.unwrap_or(NOTHING.into());
-        let mut cells = vec![
-            place,
-            named(report, &rank.engine),
-            cell(reached.map(|r| words::short(r.timestep))),
-        ];
-        if adaptive {
-            cells.push(cell(reached.and_then(|r| r.tolerance).map(metres)));
-        }
-        cells.extend([
-            cell(reached.map(|r| words::sci(r.error_m))),
-            cell(reached.and_then(|r| r.wall_median_s).map(words::seconds)),
-            cell(dear(rank)),
-            cell(reached.and_then(|r| r.force_evaluations).map(words::count)),
-            rank.reason.as_deref().map(escape).unwrap_or_default(),
-        ]);
-        cells
-    };
+    let own = &report.header.scene.own_integrator;
     let places = target.ranking.iter().enumerate().map(|(at, rank)| {
         let place = rank.reached.as_ref().map(|_| (at + 1).to_string());
-        (place.unwrap_or(NOTHING.into()), rank)
+        (cell(place), rank)
     });
     let beside = target
         .reference
         .iter()
         .map(|rank| ("not ranked".to_owned(), rank));
-    let rows: Vec<Vec<String>> = places.chain(beside).map(row).collect();
-    title + &table(&header, &rows)
+    let rows: Vec<(String, &CostRank)> = places.chain(beside).collect();
+    let reached = |rank: &CostRank| rank.reached.clone();
+    let mut table = Table::new(&rows);
+    table.markdown("place", |(place, _)| place.clone());
+    table.engines(|(_, rank)| (rank.engine.clone(), Mark::of(&rank.engine, own)));
+    table.markdown("h (s)", |(_, rank)| {
+        cell(reached(rank).map(|r| words::short(r.timestep)))
+    });
+    let tolerance = |rank: &CostRank| reached(rank).and_then(|reached| reached.tolerance);
+    if rows.iter().any(|(_, rank)| tolerance(rank).is_some()) {
+        table.markdown("tolerance", |(_, rank)| cell(tolerance(rank).map(metres)));
+    }
+    table.markdown("error (m)", |(_, rank)| {
+        cell(reached(rank).map(|r| words::sci(r.error_m)))
+    });
+    table.markdown("time", |(_, rank)| {
+        let wall = reached(rank).and_then(|r| r.wall_median_s);
+        cell(wall.map(words::seconds))
+    });
+    table.markdown("ratio", |(_, rank)| cell(dear(rank)));
+    table.markdown("force evaluations", |(_, rank)| {
+        let count = reached(rank).and_then(|r| r.force_evaluations);
+        cell(count.map(words::count))
+    });
+    table.markdown("remark", |(_, rank)| {
+        rank.reason.as_deref().map(escape).unwrap_or_default()
+    });
+    format!(
+        "## To {}\n\n{}",
+        escape(&answer::label(target)),
+        table.in_markdown()
+    )
 }
 
 /// How many times as dear, by the slope where no setting tried reaches the target.
@@ -159,49 +116,51 @@ fn settings(cost: &Cost) -> String {
 
 fn points(curve: &CostCurve) -> String {
     let any = |wanted: fn(&CostPoint) -> bool| curve.points.iter().any(wanted);
-    let adaptive = any(|point| point.tolerance.is_some());
-    let solves = any(|point| point.linear_solves.is_some_and(|n| n > 0));
-    let newton = any(|point| point.newton_iterations.is_some_and(|n| n > 0));
-    let mut header = vec!["h (s)"];
-    header.extend(adaptive.then_some("tolerance"));
-    header.extend([
-        "steps",
-        "status",
-        "error (m)",
-        "error at the end (m)",
-        "energy error",
-        "time",
-        "least",
-        "spread (MAD)",
-        "force evaluations",
-    ]);
-    header.extend(solves.then_some("linear solves"));
-    header.extend(newton.then_some("Newton iterations"));
-    header.push("remark");
-    let row = |(at, point): (usize, &CostPoint)| {
-        let cell = |text: Option<String>| text.unwrap_or(NOTHING.into());
-        let count = |n: Option<u64>| cell(n.map(words::count));
-        let wall = point.wall_s.as_ref();
-        let mut cells = vec![words::short(point.timestep)];
-        cells.extend(adaptive.then(|| cell(point.tolerance.map(metres))));
-        cells.extend([
-            words::count(point.steps),
-            words::status(point.status).to_owned(),
-            cell(point.error_m.map(words::sci)),
-            cell(point.error_final_m.map(words::sci)),
-            cell(point.energy_error.map(words::sci)),
-            cell(wall.map(|wall| words::seconds(wall.median))),
-            cell(wall.map(|wall| words::seconds(wall.min))),
-            cell(wall.and_then(|wall| wall.mad).map(words::seconds)),
-            count(point.force_evaluations),
-        ]);
-        cells.extend(solves.then(|| count(point.linear_solves)));
-        cells.extend(newton.then(|| count(point.newton_iterations)));
-        cells.push(remark(curve, at, point));
-        cells
+    let rows: Vec<(usize, &CostPoint)> = curve.points.iter().enumerate().collect();
+    let mut table = Table::new(&rows);
+    table.markdown("h (s)", |(_, point)| words::short(point.timestep));
+    if any(|point| point.tolerance.is_some()) {
+        table.markdown("tolerance", |(_, point)| cell(point.tolerance.map(metres)));
+    }
+    table.markdown("steps", |(_, point)| words::count(point.steps));
+    table.markdown("status", |(_, point)| words::status(point.status).into());
+    let mut number = |header, value: fn(&CostPoint) -> Option<f64>, text: fn(f64) -> String| {
+        table.markdown(header, |(_, point)| cell(value(point).map(text)));
     };
-    let rows: Vec<Vec<String>> = curve.points.iter().enumerate().map(row).collect();
-    table(&header, &rows)
+    number("error (m)", |point| point.error_m, words::sci);
+    number(
+        "error at the end (m)",
+        |point| point.error_final_m,
+        words::sci,
+    );
+    number("energy error", |point| point.energy_error, words::sci);
+    number(
+        "time",
+        |point| Some(point.wall_s.as_ref()?.median),
+        words::seconds,
+    );
+    number(
+        "least",
+        |point| Some(point.wall_s.as_ref()?.min),
+        words::seconds,
+    );
+    number(
+        "spread (MAD)",
+        |point| point.wall_s.as_ref()?.mad,
+        words::seconds,
+    );
+    let mut count = |header, value: fn(&CostPoint) -> Option<u64>| {
+        table.markdown(header, |(_, point)| cell(value(point).map(words::count)));
+    };
+    count("force evaluations", |point| point.force_evaluations);
+    if any(|point| point.linear_solves.is_some_and(|n| n > 0)) {
+        count("linear solves", |point| point.linear_solves);
+    }
+    if any(|point| point.newton_iterations.is_some_and(|n| n > 0)) {
+        count("Newton iterations", |point| point.newton_iterations);
+    }
+    table.markdown("remark", |(at, point)| remark(curve, *at, point));
+    table.in_markdown()
 }
 
 fn remark(curve: &CostCurve, at: usize, point: &CostPoint) -> String {
@@ -211,19 +170,4 @@ fn remark(curve: &CostCurve, at: usize, point: &CostPoint) -> String {
     marks.extend(point.at_floor.then(|| "floor".to_owned()));
     marks.extend(point.reason.as_deref().map(escape));
     marks.join(", ")
-}
-
-fn remarks(cost: &Cost) -> String {
-    let notes = notes(cost);
-    if notes.is_empty() {
-        return String::new();
-    }
-    let line = |(subject, sentence): &(String, String)| match subject.as_str() {
-        "" => format!("- {}\n", escape(sentence)),
-        subject => format!("- **{}**: {}\n", escape(subject), escape(sentence)),
-    };
-    format!(
-        "## Remarks\n\n{}\n",
-        notes.iter().map(line).collect::<String>()
-    )
 }

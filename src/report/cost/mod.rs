@@ -1,18 +1,78 @@
 //! What `cost` found, for people: how settings, prices and ratios are written.
 
 mod answer;
-pub mod markdown;
+mod markdown;
 mod notes;
 mod scatter;
-pub mod terminal;
-pub mod verdict;
+mod terminal;
+mod verdict;
 
+use super::View;
+use super::notes::Note;
+use super::svg::{self, Figure};
+use super::table::{Mark, Table};
+use super::verdict::Clause;
 use super::words::{self, NOTHING};
 use crate::outcome::{Cost, CostCurve, CostPoint, CostReached, Report, Status};
 
-/// Whether costs are all a report has.
-pub fn is_alone(report: &Report) -> bool {
-    report.cost.is_some() && report.outcomes.is_empty() && report.stability.is_none()
+impl View for Cost {
+    fn stem(&self) -> &'static str {
+        "cost"
+    }
+
+    fn figures(&self) -> &'static [Figure] {
+        svg::OF_COST
+    }
+
+    fn clauses(&self, report: &Report) -> Vec<Clause> {
+        verdict::clauses(report, self)
+    }
+
+    fn facts(&self, report: &Report) -> Vec<(&'static str, String)> {
+        facts(report, self)
+    }
+
+    fn lines(&self, report: &Report) -> Vec<String> {
+        terminal::lines(report, self)
+    }
+
+    fn notes(&self, _report: &Report) -> Vec<Note> {
+        notes::notes(self)
+    }
+
+    fn markdown(&self, report: &Report) -> String {
+        markdown::render(report, self)
+    }
+}
+
+/// The table of engines, in the terminal, where it also has the targets, and in Markdown.
+fn table<'a>(report: &Report, cost: &'a Cost) -> Table<'a, CostCurve> {
+    let own = &report.header.scene.own_integrator;
+    let timed = is_timed(cost);
+    let paid = if timed { "time" } else { "evaluations" };
+    let mut table = Table::new(&cost.curves);
+    table.engines(|curve| {
+        let mark = match Mark::of(&curve.engine, own) {
+            Mark::Plain if !curve.is_ranked() => Mark::Unranked,
+            mark => mark,
+        };
+        (curve.engine.clone(), mark)
+    });
+    table.right("order", "order", 4, order);
+    table.right("slope", "slope", 2, slope);
+    for target in cost.targets.iter().filter(|target| target.reason.is_none()) {
+        let header = format!("{}\nh (s), {paid}", answer::label(target));
+        table.toned(&header, 1, |curve| terminal::cell(target, curve, timed));
+    }
+    table.right(
+        "smallest\nerror (m)",
+        "smallest error (m)",
+        3,
+        nearest_error,
+    );
+    table.right("energy\nerror", "smallest energy error", 5, nearest_energy);
+    table.right("settings", "settings", 6, tried);
+    table
 }
 
 /// A target or a floor, at most two digits: `1e-6`, `2.5e-4`.
@@ -127,15 +187,42 @@ fn slope(curve: &CostCurve) -> String {
     }
 }
 
+/// Which numbers a work-precision diagram shows: an error over a cost.
+#[derive(Clone, Copy)]
+pub struct Diagram {
+    /// Whether the error is the one targets, floor, front and slope are about; else that of the energy.
+    pub judged: bool,
+    /// Whether the cost is a time, which has a spread; else force evaluations.
+    pub timed: bool,
+}
+
+impl Diagram {
+    pub fn cost(self, point: &CostPoint) -> Option<f64> {
+        if self.timed {
+            point.wall_s.as_ref().map(|wall| wall.median)
+        } else {
+            point.force_evaluations.map(|count| count as f64)
+        }
+    }
+
+    pub fn error(self, point: &CostPoint) -> Option<f64> {
+        if self.judged {
+            point.error_m
+        } else {
+            point.energy_error
+        }
+    }
+}
+
 /// Whether anything was timed.
-fn is_timed(cost: &Cost) -> bool {
+pub fn is_timed(cost: &Cost) -> bool {
     let mut points = cost.curves.iter().flat_map(|curve| &curve.points);
     points.any(|point| point.wall_s.is_some())
 }
 
 /// What holds of the whole answer, line by line: label and text.
 fn facts(report: &Report, cost: &Cost) -> Vec<(&'static str, String)> {
-    let mut facts = vec![("truth", words::truth(&report.truth))];
+    let mut facts = vec![("truth", words::truth(&report.header.truth))];
     if let Some(horizon) = cost.horizon_s {
         let whole = if horizon < cost.duration_s {
             format!(

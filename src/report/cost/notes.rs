@@ -2,29 +2,20 @@
 //! have no error.
 
 use crate::outcome::{Cost, CostCurve, CostPoint, Status};
-use crate::report::notes::listed;
+use crate::report::notes::{self, Note, listed};
 use crate::report::words;
 
 /// More settings than this are given by their first and last.
 const NAMED: usize = 4;
 
-/// Who says what, in the order of the curves; equal sentences are said once. Remarks on the whole come
-/// first, without a subject.
-pub fn notes(cost: &Cost) -> Vec<(String, String)> {
-    let remarks = cost.remarks.iter().map(|remark| words::one_line(remark));
-    let mut notes: Vec<(String, String)> = remarks.map(|r| (String::new(), r)).collect();
-    let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    for curve in &cost.curves {
+/// What each engine has to say, in the order of the curves.
+pub fn notes(cost: &Cost) -> Vec<Note> {
+    let said = cost.curves.iter().flat_map(|curve| {
         let name = words::one_line(&curve.engine);
-        for sentence in sentences(curve) {
-            match said.iter_mut().find(|(known, _)| *known == sentence) {
-                Some((_, names)) => names.push(name.clone()),
-                None => said.push((sentence, vec![name.clone()])),
-            }
-        }
-    }
-    notes.extend(said.into_iter().map(|(text, names)| (listed(&names), text)));
-    notes
+        let sentences = sentences(curve).into_iter();
+        sentences.map(move |sentence| (name.clone(), sentence))
+    });
+    notes::notes(said, listed)
 }
 
 fn sentences(curve: &CostCurve) -> Vec<String> {

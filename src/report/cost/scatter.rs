@@ -1,7 +1,7 @@
 //! The work-precision diagram in characters: one letter a setting, both axes logarithmic.
 
-use super::{answer, is_timed};
-use crate::outcome::{Cost, CostPoint, Report};
+use super::{Diagram, answer, is_timed};
+use crate::outcome::{Cost, CostCurve, Report};
 use crate::report::terminal::WIDTH;
 use crate::report::terminal::fit::{clip, wrap};
 use crate::report::terminal::paint::{Tone, mark};
@@ -21,13 +21,6 @@ struct Engine {
     name: String,
     tone: Option<Tone>,
     points: Vec<[f64; 2]>,
-}
-
-/// What stands in one place of the field.
-#[derive(Clone, Copy)]
-struct Place {
-    symbol: char,
-    tone: Option<Tone>,
 }
 
 /// Decades shown along one axis.
@@ -68,180 +61,137 @@ impl Decades {
     }
 }
 
-/// The diagram with its legend; nothing where no setting has both an error and a cost.
-pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
-    let points = || cost.curves.iter().flat_map(|curve| &curve.points);
-    let judged = points().any(|point| point.error_m.is_some());
-    let error: fn(&CostPoint) -> Option<f64> = if judged {
-        |point| point.error_m
-    } else {
-        |point| point.energy_error
-    };
-    let timed = is_timed(cost);
-    let paid: fn(&CostPoint) -> Option<f64> = if timed {
-        |point| point.wall_s.as_ref().map(|wall| wall.median)
-    } else {
-        |point| point.force_evaluations.map(|count| count as f64)
-    };
-    let engines = engines(report, cost, |point| {
-        let log = |value: f64| (value > 0.0).then(|| value.log10());
-        Some([log(paid(point)?)?, log(error(point)?)?])
-    });
-    let all = || engines.iter().flat_map(|engine| &engine.points);
-    let marked: Vec<f64> = if judged {
-        let targets = cost.targets.iter().map(|target| target.error_m);
-        targets.filter(|e| *e > 0.0).map(f64::log10).collect()
-    } else {
-        Vec::new()
-    };
-    let x = Decades::around(all().map(|p| p[0]));
-    let y = Decades::around(all().map(|p| p[1]).chain(marked));
-    let (Some(x), Some(y)) = (x.filter(|_| all().next().is_some()), y) else {
-        return Vec::new();
-    };
-    let mut field = [[None; COLUMNS]; LINES];
-    let mut beside: Vec<(usize, String)> = Vec::new();
-    if judged {
-        level(&mut field, &mut beside, y, cost);
+/// The characters of the diagram with their tones, the highest row first.
+struct Field {
+    rows: [[(char, Option<Tone>); COLUMNS]; LINES],
+    /// What stands beside each row.
+    beside: [String; LINES],
+    x: Decades,
+    y: Decades,
+}
+
+impl Field {
+    fn row(&self, error: f64) -> Option<usize> {
+        Some(LINES - 1 - self.y.place(error, LINES)?)
     }
-    for engine in &engines {
-        for [column, row] in engine.points.iter().filter_map(|p| {
-            let row = y.place(p[1], LINES)?;
-            Some([x.place(p[0], COLUMNS)?, LINES - 1 - row])
-        }) {
-            if let Some(place) = field.get_mut(row).and_then(|line| line.get_mut(column)) {
-                let taken = place.is_some_and(|place: Place| place.symbol.is_alphanumeric());
-                if !taken {
-                    *place = Some(Place {
-                        symbol: engine.letter,
-                        tone: engine.tone,
-                    });
-                }
+
+    /// A line across the field with a label, unless another has one there.
+    fn level(&mut self, error: f64, symbol: char, label: String) {
+        if let Some(row) = self.row(error.log10()).filter(|_| error > 0.0) {
+            self.rows[row] = [(symbol, Some(Tone::Dim)); COLUMNS];
+            if self.beside[row].is_empty() {
+                self.beside[row] = label;
             }
         }
     }
-    let what = match (judged, timed) {
-        (true, true) => "error (m) over wall time (median)",
-        (true, false) => "error (m) over force evaluations",
-        (false, true) => "energy error over wall time (median)",
-        (false, false) => "energy error over force evaluations",
+
+    /// A letter, unless another stands there.
+    fn point(&mut self, [cost, error]: [f64; 2], engine: &Engine) {
+        if let (Some(column), Some(row)) = (self.x.place(cost, COLUMNS), self.row(error)) {
+            let place = &mut self.rows[row][column];
+            if !place.0.is_alphanumeric() {
+                *place = (engine.letter, engine.tone);
+            }
+        }
+    }
+
+    /// The rows with the axis of errors, equal tones in one mark.
+    fn lines(&self) -> impl Iterator<Item = String> {
+        let mut labels = [const { String::new() }; LINES];
+        for decade in self.y.labelled(LINES, 2.0) {
+            if let Some(row) = self.row(f64::from(decade)) {
+                labels[row] = clip(&format!("1e{decade}"), LABEL);
+            }
+        }
+        let rows = self.rows.iter().zip(labels).zip(&self.beside);
+        rows.map(|((row, label), beside)| {
+            let runs = row.chunk_by(|a, b| a.1 == b.1).map(|run| {
+                let text: String = run.iter().map(|(symbol, _)| symbol).collect();
+                run[0].1.map_or(text.clone(), |tone| mark(tone, &text))
+            });
+            let text: String = runs.collect();
+            let tick = if label.is_empty() { '│' } else { '┤' };
+            let beside = clip(beside, WIDTH - LABEL - 2 - COLUMNS);
+            let line = format!("{label:>LABEL$}{tick}{text} {}", mark(Tone::Dim, &beside));
+            line.trim_end().to_owned()
+        })
+    }
+}
+
+/// The diagram with its legend; nothing where no setting has both an error and a cost.
+pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
+    let mut points = cost.curves.iter().flat_map(|curve| &curve.points);
+    let judged = points.any(|point| point.error_m.is_some());
+    let timed = is_timed(cost);
+    let engines = engines(report, cost, Diagram { judged, timed });
+    let all = || engines.iter().flat_map(|engine| &engine.points);
+    let targets = || cost.targets.iter().filter(|_| judged);
+    let marked = targets().map(|target| target.error_m).filter(|e| *e > 0.0);
+    let (Some(x), Some(y)) = (
+        Decades::around(all().map(|p| p[0])),
+        Decades::around(all().map(|p| p[1]).chain(marked.map(f64::log10))),
+    ) else {
+        return Vec::new();
     };
-    let mut lines = vec![String::new(), what.to_owned()];
-    lines.extend(drawn(&field, &beside, y));
+    let mut field = Field {
+        rows: [[(' ', None); COLUMNS]; LINES],
+        beside: [const { String::new() }; LINES],
+        x,
+        y,
+    };
+    for target in targets() {
+        field.level(target.error_m, '┈', answer::label(target));
+    }
+    let floor = cost.floor_m.filter(|_| judged);
+    if let Some(floor) = floor {
+        field.level(floor, '═', "floor".to_owned());
+    }
+    for engine in &engines {
+        for point in &engine.points {
+            field.point(*point, engine);
+        }
+    }
+    let error = if judged { "error (m)" } else { "energy error" };
+    let over = if timed {
+        "wall time (median)"
+    } else {
+        "force evaluations"
+    };
+    let mut lines = vec![String::new(), format!("{error} over {over}")];
+    lines.extend(field.lines());
     lines.extend(axis(x, timed));
-    lines.extend(legend(&engines, judged && cost.floor_m.is_some()));
+    lines.extend(legend(&engines, floor.is_some()));
     lines
 }
 
 /// Every engine with something to show: the scene's own first, then as listed; integrators have small
 /// letters, references capitals.
-fn engines(
-    report: &Report,
-    cost: &Cost,
-    place: impl Fn(&CostPoint) -> Option<[f64; 2]>,
-) -> Vec<Engine> {
-    let own = |curve: &&crate::outcome::CostCurve| curve.engine == report.scene.own_method;
-    let first = cost.curves.iter().filter(own);
-    let rest = cost.curves.iter().filter(|curve| !own(curve));
-    let mut letters = [('a'..='z'), ('A'..='Z')];
-    let mut engines = Vec::new();
-    for curve in first.chain(rest) {
-        let points: Vec<[f64; 2]> = curve.points.iter().filter_map(&place).collect();
+fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
+    let own = |curve: &CostCurve| curve.engine == report.header.scene.own_integrator;
+    let mut curves: Vec<&CostCurve> = cost.curves.iter().collect();
+    curves.sort_by_key(|curve| !own(curve));
+    let (mut small, mut capital) = ('a'..='z', 'A'..='Z');
+    let engines = curves.into_iter().filter_map(|curve| {
+        let log = |value: f64| (value > 0.0).then(|| value.log10());
+        let points = curve.points.iter();
+        let points = points.filter_map(|p| Some([log(diagram.cost(p)?)?, log(diagram.error(p)?)?]));
+        let points: Vec<[f64; 2]> = points.collect();
         if points.is_empty() {
-            continue;
+            return None;
         }
-        let [small, capital] = &mut letters;
-        let letter = if curve.is_ranked() {
-            small.next()
-        } else {
-            capital.next()
+        let (letter, tone) = match curve.is_ranked() {
+            true => (small.next(), own(curve).then_some(Tone::Strong)),
+            false => (capital.next(), Some(Tone::Warn)),
         };
-        engines.push(Engine {
+        Some(Engine {
             // More than 26 of a kind share the last.
             letter: letter.unwrap_or('0'),
             name: words::one_line(&curve.engine),
-            tone: if curve.engine == report.scene.own_method {
-                Some(Tone::Strong)
-            } else if curve.is_ranked() {
-                None
-            } else {
-                Some(Tone::Warn)
-            },
+            tone,
             points,
-        });
-    }
-    engines
-}
-
-/// Lines across the field: the targets and the floor.
-fn level(
-    field: &mut [[Option<Place>; COLUMNS]; LINES],
-    beside: &mut Vec<(usize, String)>,
-    y: Decades,
-    cost: &Cost,
-) {
-    let floor = cost.floor_m.map(|floor| (floor, '═', "floor".to_owned()));
-    let targets = cost
-        .targets
-        .iter()
-        .map(|target| (target.error_m, '┈', answer::label(target)));
-    for (error, symbol, label) in targets.chain(floor).filter(|(error, ..)| *error > 0.0) {
-        let Some(row) = y.place(error.log10(), LINES).map(|row| LINES - 1 - row) else {
-            continue;
-        };
-        let place = Place {
-            symbol,
-            tone: Some(Tone::Dim),
-        };
-        if let Some(line) = field.get_mut(row) {
-            *line = [Some(place); COLUMNS];
-        }
-        if beside.iter().all(|(taken, _)| *taken != row) {
-            beside.push((row, label));
-        }
-    }
-}
-
-fn drawn(
-    field: &[[Option<Place>; COLUMNS]; LINES],
-    beside: &[(usize, String)],
-    y: Decades,
-) -> Vec<String> {
-    let labels: Vec<(usize, String)> = y
-        .labelled(LINES, 2.0)
-        .filter_map(|decade| {
-            let row = y.place(f64::from(decade), LINES)?;
-            Some((LINES - 1 - row, format!("1e{decade}")))
         })
-        .collect();
-    let find = |list: &[(usize, String)], row: usize| {
-        let found = list.iter().find(|(at, _)| *at == row);
-        found.map(|(_, label)| label.clone()).unwrap_or_default()
-    };
-    let lines = field.iter().enumerate().map(|(row, line)| {
-        let label = clip(&find(&labels, row), LABEL);
-        let tick = if label.is_empty() { '│' } else { '┤' };
-        let text = runs(line);
-        let right = clip(&find(beside, row), WIDTH - LABEL - 2 - COLUMNS);
-        let text = format!("{label:>LABEL$}{tick}{text} {}", mark(Tone::Dim, &right));
-        text.trim_end().to_owned()
     });
-    lines.collect()
-}
-
-/// A line of the field, equal tones in one mark.
-fn runs(line: &[Option<Place>]) -> String {
-    let tone = |place: &Option<Place>| place.and_then(|place| place.tone);
-    let alike = |a: &Option<Place>, b: &Option<Place>| {
-        tone(a).map(|tone| tone as u8) == tone(b).map(|tone| tone as u8)
-    };
-    line.chunk_by(alike)
-        .map(|run| {
-            let text: String = run.iter().map(|p| p.map_or(' ', |p| p.symbol)).collect();
-            let tone = run.first().and_then(tone);
-            tone.map_or(text.clone(), |tone| mark(tone, &text))
-        })
-        .collect()
+    engines.collect()
 }
 
 /// The rule below the field and its labels.

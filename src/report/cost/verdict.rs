@@ -74,7 +74,7 @@ fn cheapest(target: &CostTarget, leads: bool) -> Option<Clause> {
 /// `symplectic_euler, the scene's own, takes 6,200x the time`.
 fn own(report: &Report, target: &CostTarget) -> Option<Clause> {
     let mut ranks = target.ranking.iter();
-    let rank = ranks.find(|rank| rank.engine == report.scene.own_method)?;
+    let rank = ranks.find(|rank| rank.engine == report.header.scene.own_integrator)?;
     let name = words::one_line(&rank.engine);
     let [long, short] = match (&rank.reached, rank.wall_ratio) {
         (None, _) => ["does not reach it".to_owned(), "does not".to_owned()],

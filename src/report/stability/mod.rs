@@ -1,20 +1,109 @@
 //! What `stability` found, for people: how limits and growth are written, and who says what.
 
-pub mod markdown;
-pub mod terminal;
-pub mod verdict;
+mod markdown;
+mod terminal;
+mod verdict;
 
-use super::notes::listed;
+use super::View;
+use super::notes::{Note, listed, notes};
+use super::svg::{self, Figure};
+use super::table::{Mark, Table};
+use super::terminal::paint::Tone;
+use super::verdict::Clause;
 use super::words::{self, NOTHING};
 use crate::outcome::{Report, Stability, StabilityRow};
 
-/// Whether limits are all a report has.
-pub fn is_alone(report: &Report) -> bool {
-    report.stability.is_some() && report.outcomes.is_empty()
+impl View for Stability {
+    fn stem(&self) -> &'static str {
+        "stability"
+    }
+
+    fn figures(&self) -> &'static [Figure] {
+        svg::OF_STABILITY
+    }
+
+    fn clauses(&self, report: &Report) -> Vec<Clause> {
+        verdict::clauses(report, self)
+    }
+
+    fn facts(&self, _report: &Report) -> Vec<(&'static str, String)> {
+        facts(self)
+    }
+
+    fn lines(&self, report: &Report) -> Vec<String> {
+        terminal::lines(report, self)
+    }
+
+    fn notes(&self, _report: &Report) -> Vec<Note> {
+        let all = self.rows.len();
+        let said = self.rows.iter().flat_map(|row| {
+            let engine = words::one_line(&row.engine);
+            let remarks = row.remarks.iter();
+            remarks.map(move |remark| (engine.clone(), words::one_line(remark)))
+        });
+        notes(said, |engines| {
+            if engines.len() == all && all > 2 {
+                "all".to_owned()
+            } else {
+                listed(engines)
+            }
+        })
+    }
+
+    fn markdown(&self, report: &Report) -> String {
+        markdown::render(report, self)
+    }
+}
+
+/// The table of limits, in the terminal and in Markdown.
+fn table<'a>(report: &Report, stability: &'a Stability) -> Table<'a, StabilityRow> {
+    let h = stability.timestep_s;
+    let own = &report.header.scene.own_integrator;
+    let any = |wanted: fn(&StabilityRow) -> bool| stability.rows.iter().any(wanted);
+    let mut table = Table::new(&stability.rows);
+    table.engines(|row| (row.engine.clone(), Mark::of(&row.engine, own)));
+    table.right("predicted\nlimit (s)", "predicted limit (s)", 0, |row| {
+        limit(row.predicted_limit_s, row.unconditional)
+    });
+    table.right("measured\nlimit (s)", "measured limit (s)", 0, measured);
+    table.right("ratio", "ratio", 2, ratio);
+    if any(|row| row.tightest.is_some()) {
+        let tightest = |row: &StabilityRow| row.tightest.clone();
+        table.markdown("tightest along the way (s)", |row| {
+            limit(tightest(row).map(|tightest| tightest.limit_s), false)
+        });
+        table.markdown("at t (s)", |row| {
+            tightest(row).map_or(NOTHING.into(), |tightest| words::short(tightest.t_s))
+        });
+    }
+    // The terminal drops it by itself where nobody has one.
+    let smooth = any(|row| row.smooth_below_s.or(row.measured_smooth_below_s).is_some());
+    let below = if smooth { "smooth below (s)" } else { "" };
+    table.right("smooth\nbelow (s)", below, 4, |row| {
+        limit(row.smooth_below_s, false)
+    });
+    if smooth {
+        table.markdown("measured (s)", |row| {
+            limit(row.measured_smooth_below_s, false)
+        });
+    }
+    table.right("growth/s\npredicted", "growth predicted (1/s)", 1, |row| {
+        growth(row.growth_per_s)
+    });
+    table.right("growth/s\nmeasured", "growth measured (1/s)", 1, |row| {
+        growth(row.measured_growth_per_s)
+    });
+    let step = words::short(h);
+    let [terminal, markdown] = [format!("at h =\n{step} s"), format!("h = {step} s")];
+    table.left(&terminal, &markdown, |row| {
+        let tone = |holds| if holds { Tone::Good } else { Tone::Bad };
+        (place(row, h), row.holds(h).map(tone))
+    });
+    table
 }
 
 /// A limit: four digits, `never` for 0, `always` where every step is stable.
-pub fn limit(limit: Option<f64>, unconditional: bool) -> String {
+fn limit(limit: Option<f64>, unconditional: bool) -> String {
     match limit {
         Some(0.0) => "never".into(),
         Some(h) => digits(h),
@@ -24,7 +113,7 @@ pub fn limit(limit: Option<f64>, unconditional: bool) -> String {
 }
 
 /// What running found: a limit, or what it lies between.
-pub fn measured(row: &StabilityRow) -> String {
+fn measured(row: &StabilityRow) -> String {
     match row.measured_between_s {
         Some([low, high]) => format!("{}..{}", digits(low), digits(high)),
         None => limit(row.measured_limit_s, row.measured_unconditional),
@@ -32,7 +121,7 @@ pub fn measured(row: &StabilityRow) -> String {
 }
 
 /// Four significant digits, plain where that is short: `0.2828`, `3.535e-5`, `12.00`.
-pub fn digits(value: f64) -> String {
+fn digits(value: f64) -> String {
     if !value.is_finite() {
         return NOTHING.into();
     }
@@ -46,7 +135,7 @@ pub fn digits(value: f64) -> String {
 }
 
 /// Measured over predicted, where both are numbers above 0.
-pub fn ratio(row: &StabilityRow) -> String {
+fn ratio(row: &StabilityRow) -> String {
     match (row.predicted_limit_s, row.measured_limit_s) {
         (Some(p), Some(m)) if p > 0.0 && m > 0.0 => match m / p {
             // As many decimals above 1 as below.
@@ -58,12 +147,12 @@ pub fn ratio(row: &StabilityRow) -> String {
 }
 
 /// Growth of the amplitude, 1/s.
-pub fn growth(per_s: Option<f64>) -> String {
+fn growth(per_s: Option<f64>) -> String {
     per_s.map_or(NOTHING.into(), digits)
 }
 
 /// Where the step stands: inside the limit, or how many times beyond.
-pub fn place(row: &StabilityRow, timestep: f64) -> String {
+fn place(row: &StabilityRow, timestep: f64) -> String {
     match (row.holds(timestep), row.limit()) {
         (Some(true), _) => "inside".into(),
         (Some(false), Some(limit)) if limit > 0.0 && timestep / limit < 1e6 => {
@@ -74,33 +163,8 @@ pub fn place(row: &StabilityRow, timestep: f64) -> String {
     }
 }
 
-/// Who says what; equal sentences are said once.
-pub fn notes(stability: &Stability) -> Vec<(String, String)> {
-    let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    for row in &stability.rows {
-        for remark in &row.remarks {
-            let (remark, engine) = (words::one_line(remark), words::one_line(&row.engine));
-            match said.iter_mut().find(|(known, _)| *known == remark) {
-                Some((_, engines)) => engines.push(engine),
-                None => said.push((remark, vec![engine])),
-            }
-        }
-    }
-    let all = stability.rows.len();
-    said.into_iter()
-        .map(|(remark, engines)| {
-            let subject = if engines.len() == all && all > 2 {
-                "all".to_owned()
-            } else {
-                listed(&engines)
-            };
-            (subject, remark)
-        })
-        .collect()
-}
-
 /// What holds of the whole scene, line by line: label and text.
-pub fn facts(stability: &Stability) -> Vec<(&'static str, String)> {
+fn facts(stability: &Stability) -> Vec<(&'static str, String)> {
     let mut facts = Vec::new();
     let fastest = match stability.omega_max_rad_s {
         Some(omega) => format!("fastest mode {} rad/s", digits(omega)),
@@ -123,7 +187,7 @@ pub fn facts(stability: &Stability) -> Vec<(&'static str, String)> {
 }
 
 /// What the map shows and how long each cell ran.
-pub fn map_heading(stability: &Stability) -> Option<String> {
+fn map_heading(stability: &Stability) -> Option<String> {
     let map = stability.map.as_ref()?;
     Some(format!(
         "{} x {} cells of {}, {} steps each at most",

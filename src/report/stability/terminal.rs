@@ -1,107 +1,32 @@
-//! The table of limits, the reasons, and a map in characters.
+//! The table of limits and a map in characters.
 
-use super::{digits, facts, growth, limit, map_heading, measured, notes, place, ratio};
-use crate::outcome::{Cell, MapPanel, Report, Stability, StabilityMap, StabilityRow};
-use crate::report::terminal::columns::{Column, fitted, laid_out};
+use super::{digits, map_heading, table};
+use crate::outcome::{Cell, MapPanel, Report, Stability, StabilityMap};
+use crate::report::terminal::WIDTH;
 use crate::report::terminal::fit::{clip, pad, width, wrap};
 use crate::report::terminal::paint::{Tone, mark};
-use crate::report::terminal::{WIDTH, finished, scene};
 use crate::report::words;
-use comfy_table::CellAlignment::{Left, Right};
 
 /// Values a map in characters has room for, one column each and its axis.
 const COLUMNS: usize = 80;
 /// Lines it may take.
 const LINES: usize = 40;
 
-/// The report with ANSI colours. Ends with the verdict and a newline.
-pub fn render(report: &Report) -> String {
-    let mut lines = scene(report);
-    if let Some(stability) = &report.stability {
-        for (label, text) in facts(stability) {
-            let line = format!("{label:<9}{}", words::one_line(&text));
-            lines.extend(wrap(&line, WIDTH, "         "));
+/// What stands below the facts.
+pub fn lines(report: &Report, stability: &Stability) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    lines.extend(table(report, stability).in_terminal(", ", |_| {
+        let mut legend = "▸ own integrator | never, always: no step is stable, every step is | \
+                          ratio: measured over predicted"
+            .to_owned();
+        let mut rows = stability.rows.iter();
+        if rows.any(|row| row.smooth_below_s.is_some()) {
+            legend += " | smooth: decays without changing sign, predicted";
         }
-        lines.push(String::new());
-        lines.extend(table(report, stability));
-        lines.extend(map(report, stability));
-        lines.extend(admissible(stability));
-        lines.extend(reasons(stability));
-    }
-    finished(report, lines)
-}
-
-fn table(report: &Report, stability: &Stability) -> Vec<String> {
-    let h = stability.timestep_s;
-    let column = |header: &str, alignment, spare, cell: &dyn Fn(&StabilityRow) -> _| Column {
-        header: header.into(),
-        alignment,
-        spare,
-        cells: stability.rows.iter().map(cell).collect(),
-    };
-    let plain = |text: String| (text, None);
-    let mut columns = vec![
-        column("  engine", Left, 0, &|row| engine(report, row)),
-        column("predicted\nlimit (s)", Right, 0, &|row| {
-            plain(limit(row.predicted_limit_s, row.unconditional))
-        }),
-        column("measured\nlimit (s)", Right, 0, &|row| plain(measured(row))),
-        column("ratio", Right, 2, &|row| plain(ratio(row))),
-        column("smooth\nbelow (s)", Right, 4, &|row| {
-            plain(limit(row.smooth_below_s, false))
-        }),
-        column("growth/s\npredicted", Right, 1, &|row| {
-            plain(growth(row.growth_per_s))
-        }),
-        column("growth/s\nmeasured", Right, 1, &|row| {
-            plain(growth(row.measured_growth_per_s))
-        }),
-        column(&format!("at h =\n{} s", words::short(h)), Left, 0, &|row| {
-            let tone = row
-                .holds(h)
-                .map(|holds| if holds { Tone::Good } else { Tone::Bad });
-            (place(row, h), tone)
-        }),
-    ];
-    // Most scenes have no use for some.
-    columns.retain(|column| !column.is_empty());
-    let (columns, left_out) = fitted(columns);
-    let mut lines = laid_out(&columns);
-    let mut legend = "▸ own integrator | never, always: no step is stable, every step is | ratio: \
-                      measured over predicted"
-        .to_owned();
-    if stability
-        .rows
-        .iter()
-        .any(|row| row.smooth_below_s.is_some())
-    {
-        legend += " | smooth: decays without changing sign, predicted";
-    }
-    if !left_out.is_empty() {
-        legend += &format!(" | left out for width: {}", left_out.join(", "));
-    }
-    let legend = wrap(&legend, WIDTH, "");
-    lines.extend(legend.iter().map(|line| mark(Tone::Dim, line)));
-    lines
-}
-
-fn engine(report: &Report, row: &StabilityRow) -> (String, Option<Tone>) {
-    let name = words::one_line(&row.engine);
-    if row.engine == report.scene.own_method {
-        (format!("▸ {name}"), Some(Tone::Strong))
-    } else {
-        (format!("  {name}"), None)
-    }
-}
-
-fn reasons(stability: &Stability) -> Vec<String> {
-    let mut lines = Vec::new();
-    for (subject, sentence) in notes(stability) {
-        lines.extend(wrap(&format!("- {subject}: {sentence}"), WIDTH, "  "));
-    }
-    if !lines.is_empty() {
-        lines.insert(0, String::new());
-    }
+        legend
+    }));
+    lines.extend(map(report, stability));
+    lines.extend(admissible(stability));
     lines
 }
 
@@ -121,7 +46,7 @@ fn map(report: &Report, stability: &Stability) -> Vec<String> {
     let (Some(map), Some(heading)) = (&stability.map, map_heading(stability)) else {
         return Vec::new();
     };
-    let own = |panel: &&MapPanel| panel.engine == report.scene.own_method;
+    let own = |panel: &&MapPanel| panel.engine == report.header.scene.own_integrator;
     let panel = map.engines.iter().find(own).or(map.engines.first());
     let mut lines = vec![String::new()];
     let fits = map.values.len() <= COLUMNS && map.timesteps_s.len() <= LINES;

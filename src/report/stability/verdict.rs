@@ -10,7 +10,7 @@ use crate::report::words;
 /// never stable, who always, and who has no answer.
 pub fn clauses(report: &Report, stability: &Stability) -> Vec<Clause> {
     let h = stability.timestep_s;
-    let own = |row: &&StabilityRow| row.engine == report.scene.own_method;
+    let own = |row: &&StabilityRow| row.engine == report.header.scene.own_integrator;
     let mut clauses: Vec<Clause> = Vec::new();
     clauses.extend(
         stability

@@ -1,8 +1,6 @@
 //! SVG text, written element by element. Every number has one fixed decimal, so equal input gives
 //! equal bytes; there are no ids, so several figures can stand inline on one page.
 
-use std::fmt::Write;
-
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
@@ -13,29 +11,59 @@ pub struct Stroke {
     pub width: f64,
 }
 
+impl Stroke {
+    pub const fn new(colour: &'static str, dash: &'static str, width: f64) -> Stroke {
+        Stroke {
+            colour,
+            dash,
+            width,
+        }
+    }
+}
+
 /// Where a text stands relative to its point.
 #[derive(Debug, Clone, Copy)]
-pub enum Anchor {
+pub enum Align {
     Start,
     Middle,
     End,
+    /// Read from bottom to top, its middle at the point.
+    Upward,
 }
 
-/// The shape of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Mark {
+pub enum Shape {
     Disc,
     Square,
     Diamond,
     Triangle,
+    /// Diagonal, without a filling.
+    Cross,
 }
 
+/// A point's look, about 7 pixels wide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Symbol {
+    pub shape: Shape,
+    pub fill: &'static str,
+    pub outline: &'static str,
+}
+
+impl Symbol {
+    pub const fn new(shape: Shape, fill: &'static str, outline: &'static str) -> Symbol {
+        Symbol {
+            shape,
+            fill,
+            outline,
+        }
+    }
+}
+
+pub const WHITE: &str = "#ffffff";
 /// Dark grey of text.
 pub const INK: &str = "#222222";
 /// Grey of what stands back: axes, notes.
 pub const FAINT: &str = "#6b6b6b";
-/// Light grey of grid lines.
-pub const GRID: &str = "#e4e4e4";
 
 /// A drawing under way; pixels, y downward.
 #[derive(Default)]
@@ -58,28 +86,15 @@ impl Canvas {
         if data.is_empty() {
             return;
         }
-        let dash = match stroke.dash {
-            "" => String::new(),
-            dash => format!(r#" stroke-dasharray="{dash}""#),
-        };
         // Dashes with round caps would close their own gaps.
-        let cap = if stroke.dash.is_empty() {
-            "round"
-        } else {
-            "butt"
+        let (cap, dash) = match stroke.dash {
+            "" => ("round", String::new()),
+            dash => ("butt", format!(r#" stroke-dasharray="{dash}""#)),
         };
         self.push(&format!(
             r#"<path d="{data}" fill="none" stroke="{}" stroke-width="{}" stroke-linejoin="round" stroke-linecap="{cap}"{dash}/>"#,
             stroke.colour,
             px(stroke.width),
-        ));
-    }
-
-    /// A rectangle with an outline and no filling.
-    pub fn frame(&mut self, corner: [f64; 2], size: [f64; 2]) {
-        let ([x, y], [w, h]) = (corner.map(px), size.map(px));
-        self.push(&format!(
-            r#"<rect x="{x}" y="{y}" width="{w}" height="{h}" fill="none" stroke="{FAINT}"/>"#
         ));
     }
 
@@ -92,38 +107,29 @@ impl Canvas {
         }
     }
 
-    /// A square around `centre`, filled.
-    pub fn square(&mut self, centre: [f64; 2], half: f64, colour: &str) {
-        let [x, y] = centre.map(|c| px(c - half));
-        let side = px(2.0 * half);
+    pub fn rectangle(&mut self, corner: [f64; 2], size: [f64; 2], fill: &str, outline: &str) {
+        let ([x, y], [w, h]) = (corner.map(px), size.map(px));
         self.push(&format!(
-            r#"<rect x="{x}" y="{y}" width="{side}" height="{side}" fill="{colour}"/>"#
+            r#"<rect x="{x}" y="{y}" width="{w}" height="{h}" fill="{fill}" stroke="{outline}"/>"#
         ));
     }
 
-    pub fn circle(&mut self, centre: [f64; 2], radius: f64, fill: &str, outline: &str) {
-        let [x, y] = centre.map(px);
-        self.push(&format!(
-            r#"<circle cx="{x}" cy="{y}" r="{}" fill="{fill}" stroke="{outline}"/>"#,
-            px(radius)
-        ));
-    }
-
-    /// A diagonal cross: a run that ended early.
-    pub fn cross(&mut self, centre: [f64; 2], half: f64, colour: &str) {
-        let [x, y] = centre;
-        self.line([x - half, y - half], [x + half, y + half], colour, 2.0);
-        self.line([x - half, y + half], [x + half, y - half], colour, 2.0);
-    }
-
-    /// A point of a line, about 7 pixels wide.
-    pub fn mark(&mut self, centre: [f64; 2], mark: Mark, fill: &str, outline: &str) {
-        let [x, y] = centre;
-        let corners: &[[f64; 2]] = match mark {
-            Mark::Disc => return self.circle(centre, 3.3, fill, outline),
-            Mark::Square => &[[-3.0, -3.0], [3.0, -3.0], [3.0, 3.0], [-3.0, 3.0]],
-            Mark::Diamond => &[[0.0, -4.3], [4.3, 0.0], [0.0, 4.3], [-4.3, 0.0]],
-            Mark::Triangle => &[[0.0, -4.0], [3.8, 2.8], [-3.8, 2.8]],
+    pub fn symbol(&mut self, centre: [f64; 2], symbol: Symbol) {
+        let ([x, y], fill, outline) = (centre, symbol.fill, symbol.outline);
+        let corners: &[[f64; 2]] = match symbol.shape {
+            Shape::Disc => {
+                let [x, y] = centre.map(px);
+                return self.push(&format!(
+                    r#"<circle cx="{x}" cy="{y}" r="3.3" fill="{fill}" stroke="{outline}"/>"#
+                ));
+            }
+            Shape::Cross => {
+                self.line([x - 3.8, y - 3.8], [x + 3.8, y + 3.8], outline, 2.0);
+                return self.line([x - 3.8, y + 3.8], [x + 3.8, y - 3.8], outline, 2.0);
+            }
+            Shape::Square => &[[-3.0, -3.0], [3.0, -3.0], [3.0, 3.0], [-3.0, 3.0]],
+            Shape::Diamond => &[[0.0, -4.3], [4.3, 0.0], [0.0, 4.3], [-4.3, 0.0]],
+            Shape::Triangle => &[[0.0, -4.0], [3.8, 2.8], [-3.8, 2.8]],
         };
         let corner = |[dx, dy]: &[f64; 2]| format!("{} {}", px(x + dx), px(y + dy));
         let corners: Vec<String> = corners.iter().map(corner).collect();
@@ -134,23 +140,19 @@ impl Canvas {
     }
 
     /// `size` in pixels.
-    pub fn text(&mut self, at: [f64; 2], anchor: Anchor, size: f64, fill: &str, text: &str) {
+    pub fn text(&mut self, at: [f64; 2], align: Align, size: f64, fill: &str, text: &str) {
         let [x, y] = at.map(px);
+        let place = match align {
+            Align::Start => format!(r#"x="{x}" y="{y}" text-anchor="start""#),
+            Align::Middle => format!(r#"x="{x}" y="{y}" text-anchor="middle""#),
+            Align::End => format!(r#"x="{x}" y="{y}" text-anchor="end""#),
+            Align::Upward => {
+                format!(r#"transform="translate({x} {y}) rotate(-90)" text-anchor="middle""#)
+            }
+        };
+        let (size, text) = (px(size), escape(text));
         self.push(&format!(
-            r#"<text x="{x}" y="{y}" text-anchor="{}" font-size="{}" fill="{fill}">{}</text>"#,
-            anchor_word(anchor),
-            px(size),
-            escape(text)
-        ));
-    }
-
-    /// Text read from bottom to top, centred on `at`.
-    pub fn text_upward(&mut self, at: [f64; 2], size: f64, fill: &str, text: &str) {
-        let [x, y] = at.map(px);
-        self.push(&format!(
-            r#"<text transform="translate({x} {y}) rotate(-90)" text-anchor="middle" font-size="{}" fill="{fill}">{}</text>"#,
-            px(size),
-            escape(text)
+            r#"<text {place} font-size="{size}" fill="{fill}">{text}</text>"#
         ));
     }
 
@@ -162,54 +164,26 @@ impl Canvas {
     /// The whole file: white behind everything, so that dark pages show it too.
     pub fn finish(self, width: f64, height: f64, title: &str) -> String {
         let (width, height) = (px(width.ceil()), px(height.ceil()));
-        let mut svg = String::with_capacity(self.body.len() + 512);
-        // Writing to a String cannot fail.
-        let _ = write!(
-            svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" role=\"img\" \
-             font-family=\"Helvetica, Arial, sans-serif\">\n<title>{}</title>\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            escape(title),
-            self.body
-        );
-        svg
-    }
-}
-
-fn anchor_word(anchor: Anchor) -> &'static str {
-    match anchor {
-        Anchor::Start => "start",
-        Anchor::Middle => "middle",
-        Anchor::End => "end",
+        let (title, body) = (escape(title), self.body);
+        format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" role="img" font-family="Helvetica, Arial, sans-serif">
+<title>{title}</title>
+<rect width="{width}" height="{height}" fill="{WHITE}"/>
+{body}</svg>
+"#
+        )
     }
 }
 
 /// A coordinate with at most one decimal, never `-0`.
 pub fn px(value: f64) -> String {
-    let text = format!("{value:.1}");
-    let text = text.strip_suffix(".0").unwrap_or(&text);
-    if text == "-0" {
-        "0".into()
-    } else {
-        text.into()
-    }
+    // Adding 0 takes the sign from -0.
+    ((10.0 * value).round() / 10.0 + 0.0).to_string()
 }
 
-/// Text as XML carries it; characters XML 1.0 forbids are left out.
-pub fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            '\'' => escaped += "&#39;",
-            '\u{fffe}' | '\u{ffff}' => {}
-            c if c.is_control() => {}
-            c => escaped.push(c),
-        }
-    }
-    escaped
+/// Text as XML carries it between tags; characters XML 1.0 forbids are left out.
+fn escape(text: &str) -> String {
+    let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    let text = text.replace(forbidden, "").replace('&', "&amp;");
+    text.replace('<', "&lt;").replace('>', "&gt;")
 }

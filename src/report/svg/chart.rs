@@ -1,128 +1,331 @@
-//! Curves over time, one panel per timestep, with a label at each line's end.
+//! The grammar of every figure: a chart is a title, a legend and panels in rows; a panel is two axes,
+//! marks, and labels beside them. Figures say in values what there is to see; its place is decided here.
 
-use super::canvas::{Anchor, Canvas, INK};
-use super::frame::{BELOW, Frame, LEFT};
-use super::labels::{self, Label, PITCH};
-use super::line::{self, Window};
-use super::palette;
-use super::panels::{Panel, budget, panels};
-use super::range;
-use super::scale::Axis;
-use super::{TRUTH_NAME, WIDTH, heading, name};
-use crate::outcome::{Curves, Report, Status, TruthCurves};
+use super::WIDTH;
+use super::axis::Axis;
+use super::canvas::{Align, Canvas, FAINT, INK, Stroke, Symbol};
+use super::marks::{Anchor, Frame, Mark, Window};
 
-/// Which curves, and how their axis looks.
-pub struct Chart<'a> {
+/// Pixels left of the first panel, for tick labels and the axis title.
+const LEFT: f64 = 84.0;
+/// Pixels below a panel, for the same.
+const BELOW: f64 = 46.0;
+/// Points the lines of a chart have together: the file stays below 300 kB.
+const POINTS: usize = 20_000;
+/// Pixels from one label's baseline to the next.
+const PITCH: f64 = 16.0;
+/// Pixels from a panel's edge to the labels beside it, crossed by the thin lines that lead there.
+const LEADER: f64 = 16.0;
+/// Pixels of the piece of line before a text, and of a character, on the wide side.
+const SWATCH: f64 = 24.0;
+const CHARACTER: f64 = 6.9;
+/// Smallest size of a panel with equal scales.
+const SMALLEST: [f64; 2] = [240.0, 160.0];
+
+/// A figure.
+#[derive(Default)]
+pub struct Chart {
     pub title: String,
-    pub y_title: String,
-    /// The series of a run, as long as its `t`; shorter ones end early.
-    pub series: fn(&Curves) -> &[f64],
-    /// The truth's, where it has this curve.
-    pub truth: fn(&TruthCurves) -> &[f64],
-    /// The vertical axis of a panel.
-    pub axis: &'a dyn Fn(&Panel) -> Axis,
+    /// Below the title, in as many lines as it takes.
+    pub legend: Vec<Key>,
+    /// Titles of x and y: beside each panel in a single column, else once for all.
+    pub titles: [String; 2],
+    /// In rows of [`Chart::columns`]; with more than one, the panels of a column share their x axis.
+    pub panels: Vec<Panel>,
+    pub columns: usize,
+    /// Whether each panel of a row has a y axis of its own, or all have the first one's.
+    pub own_y: bool,
+    /// Below everything; may be empty.
+    pub note: String,
 }
 
-/// The chart as an SVG file.
-pub fn chart(report: &Report, chart: &Chart) -> String {
-    let panels = panels(report);
-    let names = panels.iter().flat_map(|p| &p.runs).map(|(o, _)| name(o));
-    let names: Vec<String> = names.chain([TRUTH_NAME.to_owned()]).collect();
-    let right = WIDTH - labels::margin(names.iter().map(String::as_str));
-    let rows = panels.iter().map(|p| p.runs.len() + 1).max().unwrap_or(0);
-    let tall = if panels.len() > 1 { 230.0 } else { 340.0 };
-    let height = f64::max(tall, (rows as f64 + 0.5) * PITCH);
-    let points = budget(names.len());
+/// Marks on two axes.
+pub struct Panel {
+    /// May be empty.
+    pub title: String,
+    /// Pixels, at most; infinite for as many as there are.
+    pub width: f64,
+    /// Pixels, at least; more where the labels need it.
+    pub height: f64,
+    /// Along x and y.
+    pub axes: [Axis; 2],
+    /// Whether a unit is as long along both axes; the axes then grow, or the panel is smaller.
+    pub equal_scales: bool,
+    /// Whether it stands close below the panel before and has the same x axis.
+    pub joined: bool,
+    /// In the order they are painted.
+    pub marks: Vec<Mark>,
+    /// Stand beside the panel from the top down. Not to be confused with the labels of lines, which
+    /// stand at their lines' ends.
+    pub keys: Vec<Key>,
+}
 
-    let mut canvas = Canvas::default();
-    let title = heading(report, &chart.title);
-    canvas.text([LEFT, 24.0], Anchor::Start, 15.0, INK, &title);
-    let mut top = 40.0;
-    for panel in &panels {
-        if !panel.title.is_empty() {
+/// What stands before a text to say what it is about.
+#[derive(Clone, Copy)]
+pub enum Look {
+    /// Nothing: the text is a remark.
+    Remark,
+    Line(Stroke),
+    /// A line whose points are marked.
+    Marked(Stroke, Symbol),
+    Symbol(Symbol),
+    Fill(&'static str),
+}
+
+/// A text and the look of what it stands for.
+pub struct Key {
+    pub text: String,
+    pub look: Look,
+}
+
+impl Key {
+    pub fn new(text: impl Into<String>, look: Look) -> Key {
+        let text = text.into();
+        Key { text, look }
+    }
+
+    /// The look within `wide` pixels from `at` on, and the text after it.
+    fn draw(&self, canvas: &mut Canvas, at: [f64; 2], wide: f64) {
+        let [x, y] = at;
+        let (middle, piece) = ([x + wide / 2.0, y], format!("M{x:.1} {y:.1}h{wide}"));
+        let mut colour = INK;
+        match self.look {
+            Look::Remark => colour = FAINT,
+            Look::Line(stroke) => canvas.path(&piece, stroke),
+            Look::Marked(stroke, symbol) => {
+                canvas.path(&piece, stroke);
+                canvas.symbol(middle, symbol);
+            }
+            Look::Symbol(symbol) => canvas.symbol(middle, symbol),
+            Look::Fill(fill) => canvas.rectangle([x, y - 6.0], [12.0, 12.0], fill, FAINT),
+        }
+        let at = [x + wide + 6.0, y + 4.0];
+        canvas.text(at, Align::Start, 12.0, colour, &self.text);
+    }
+
+    /// Pixels of the text, and of the gaps before and after it.
+    fn width(&self) -> f64 {
+        6.0 + CHARACTER * self.text.chars().count() as f64 + 10.0
+    }
+}
+
+impl Chart {
+    /// The SVG file.
+    pub fn draw(mut self) -> String {
+        let mut canvas = Canvas::default();
+        canvas.text([LEFT, 24.0], Align::Start, 15.0, INK, &self.title);
+        let mut top = self.legend(&mut canvas);
+        let columns = self.columns.max(1);
+        // Between panels of one row: more where each has tick labels.
+        let gap = if self.own_y { 56.0 } else { 18.0 };
+        let labels = self.panels.iter().flat_map(Panel::labels).map(Key::width);
+        let labels = labels.fold(0.0, |most, text| f64::max(most, LEADER + SWATCH + text));
+        let gaps = gap * (columns - 1) as f64;
+        let room = (WIDTH - LEFT - f64::max(12.0, labels) - gaps) / columns as f64;
+        for panel in &mut self.panels {
+            panel.fit(room);
+        }
+        let lines = self.panels.iter().flat_map(|panel| &panel.marks);
+        let lines = lines.filter(|mark| matches!(mark, Mark::Line(_))).count();
+        let budget = (POINTS / lines.max(1)).clamp(16, 1_000);
+
+        let stacks: Vec<&[Panel]> = self.panels.chunk_by(|_, next| next.joined).collect();
+        // What has axis titles: each stack of a single column, or all together.
+        let mut titled: Vec<Window> = Vec::new();
+        for (row, in_row) in stacks.chunks(columns).enumerate() {
+            if in_row.iter().any(|stack| !stack[0].title.is_empty()) {
+                top += 16.0;
+            }
+            let (mut left, mut end) = (LEFT, top);
+            for (column, stack) in in_row.iter().enumerate() {
+                let mut w = Window::at([left, top]);
+                for (at, panel) in stack.iter().enumerate() {
+                    let start = if at == 0 { top } else { w.bottom + 8.0 };
+                    (w.right, w.bottom) = (left + panel.width, start + panel.height);
+                    let window = Window { top: start, ..w };
+                    let has_below = (row + 1) * columns + column < stacks.len() && columns > 1;
+                    let ticks = Ticks {
+                        left: column == 0 || self.own_y,
+                        below: !has_below && at + 1 == stack.len(),
+                        overhang: gap / 3.0,
+                    };
+                    end = end.max(panel.draw(&mut canvas, window, ticks, budget) - BELOW);
+                }
+                end = end.max(w.bottom);
+                left = w.right + gap;
+                match titled.last_mut().filter(|_| columns > 1) {
+                    Some(all) => (all.right, all.bottom) = (all.right.max(w.right), w.bottom),
+                    None => titled.push(w),
+                }
+            }
+            let is_last = (row + 1) * columns >= stacks.len();
+            top = end + if columns == 1 || is_last { BELOW } else { 12.0 };
+        }
+        for w in titled {
+            let [x, y] = [(w.left + w.right) / 2.0, (w.top + w.bottom) / 2.0];
+            let (below, beside) = ([x, w.bottom + 34.0], [w.left - 66.0, y]);
+            canvas.text(below, Align::Middle, 12.0, FAINT, &self.titles[0]);
+            canvas.text(beside, Align::Upward, 12.0, FAINT, &self.titles[1]);
+        }
+        if !self.note.is_empty() {
+            canvas.text([LEFT, top + 8.0], Align::Start, 11.0, FAINT, &self.note);
             top += 16.0;
         }
-        let window = Window {
-            left: LEFT,
-            top,
-            right,
-            bottom: top + height,
-        };
-        let times = panel.runs.iter().flat_map(|(_, curves)| &curves.t);
-        let x = range::range(times.copied()).unwrap_or([0.0, 1.0]);
-        let frame = Frame {
-            window,
-            x: Axis::linear(x),
-            y: (chart.axis)(panel),
-        };
-        frame.ground(&mut canvas, &panel.title, "time (s)", &chart.y_title);
-        draw(&mut canvas, report, panel, &frame, chart, points);
-        frame.outline(&mut canvas);
-        top += height + BELOW;
+        canvas.finish(WIDTH, top + 2.0, &self.title)
     }
-    canvas.finish(WIDTH, top + 2.0, &title)
-}
 
-fn draw(
-    canvas: &mut Canvas,
-    report: &Report,
-    panel: &Panel,
-    frame: &Frame,
-    chart: &Chart,
-    points: usize,
-) {
-    let mut runs = panel.runs.clone();
-    runs.sort_by_key(|(outcome, _)| palette::layer(report, outcome));
-    let mut notes = Vec::new();
-    let w = frame.window;
-    if let Some(truth) = &report.figures.truth {
-        let pixels = pixels(frame, &truth.t, (chart.truth)(truth));
-        let drawn = line::draw(&thinned(&pixels, points), w);
-        canvas.path(&drawn.data, palette::TRUTH);
-        notes.extend(pixels.last().map(|last| {
-            let [x, y] = drawn.end.unwrap_or(*last);
-            Label {
-                text: TRUTH_NAME.to_owned(),
-                stroke: palette::TRUTH,
-                mark: None,
-                exit: (drawn.end.is_some() && x > w.right - 3.0).then_some(y),
-                wish: y.clamp(w.top, w.bottom),
+    /// Returns where the panels start.
+    fn legend(&self, canvas: &mut Canvas) -> f64 {
+        let (mut x, mut y) = (LEFT, 46.0);
+        for key in &self.legend {
+            let look = match key.look {
+                Look::Line(_) | Look::Marked(..) => SWATCH,
+                Look::Symbol(_) | Look::Fill(_) => 12.0,
+                Look::Remark => 0.0,
+            };
+            if x > LEFT && x + look + key.width() > WIDTH {
+                (x, y) = (LEFT, y + 20.0);
             }
-        }));
-    }
-    for (outcome, curves) in runs {
-        let stroke = palette::stroke(report, outcome);
-        let mut pixels = pixels(frame, &curves.t, (chart.series)(curves));
-        let Some(&last) = pixels.last() else { continue };
-        if palette::is_wild(outcome) {
-            pixels = line::until_far(pixels, w);
+            key.draw(canvas, [x, y], look);
+            x += look + key.width() + 8.0;
         }
-        let drawn = line::draw(&thinned(&pixels, points), w);
-        canvas.path(&drawn.data, stroke);
-        if outcome.status != Status::Completed && drawn.end == Some(last) {
-            canvas.cross(last, 4.0, stroke.colour);
-        }
-        let [x, y] = drawn.end.unwrap_or(last);
-        notes.push(Label {
-            text: name(outcome),
-            stroke,
-            mark: None,
-            exit: (drawn.end.is_some() && x > w.right - 3.0).then_some(y),
-            wish: y.clamp(w.top, w.bottom),
-        });
+        y + if self.legend.is_empty() { -6.0 } else { 21.0 }
     }
-    labels::draw(canvas, notes, w.right, w.top, w.bottom);
 }
 
-fn pixels(frame: &Frame, t: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
-    let points = t.iter().zip(values).map(|(&t, &v)| [t, v]);
-    let finite = points.filter(|p| p.iter().all(|c| c.is_finite()));
-    finite.map(|p| frame.place(p)).collect()
+/// Which sides of a panel have tick labels, and how many pixels those below may stand over.
+struct Ticks {
+    left: bool,
+    below: bool,
+    overhang: f64,
 }
 
-/// Thinned by the extremes of the height alone: time only runs on.
-fn thinned(pixels: &[[f64; 2]], points: usize) -> Vec<[f64; 2]> {
-    let heights: Vec<[f64; 1]> = pixels.iter().map(|p| [p[1]]).collect();
-    let kept = line::thinned(&heights, points);
-    kept.into_iter().map(|i| pixels[i]).collect()
+impl Panel {
+    /// As wide as there is room, without keys.
+    pub fn new(title: String, height: f64, axes: [Axis; 2], marks: Vec<Mark>) -> Panel {
+        Panel {
+            title,
+            width: f64::INFINITY,
+            height,
+            axes,
+            equal_scales: false,
+            joined: false,
+            marks,
+            keys: Vec::new(),
+        }
+    }
+
+    /// Everything that stands beside it.
+    fn labels(&self) -> impl Iterator<Item = &Key> {
+        let labels = self.marks.iter().filter_map(Mark::label);
+        labels.chain(&self.keys)
+    }
+
+    /// Gives the panel its final size, at most `room` pixels wide.
+    fn fit(&mut self, room: f64) {
+        self.width = self.width.min(room);
+        let lines = self.labels().count() - self.keys.len();
+        self.height = self.height.max((lines as f64 + 0.5) * PITCH);
+        if !self.equal_scales {
+            return;
+        }
+        let (space, ranges) = ([self.width, self.height], self.axes.map(|axis| axis.range));
+        let spans = ranges.map(|[lo, hi]| hi - lo);
+        let scale = f64::min(space[0] / spans[0], space[1] / spans[1]);
+        let size = [0, 1].map(|a| (spans[a] * scale).max(SMALLEST[a]).min(space[a]));
+        let grown = |a: usize| {
+            let ([lo, hi], half) = (ranges[a], size[a] / scale / 2.0);
+            let middle = lo / 2.0 + hi / 2.0;
+            Axis::linear([middle - half, middle + half])
+        };
+        ([self.width, self.height], self.axes) = (size, [grown(0), grown(1)]);
+    }
+
+    /// Returns where its labels end, which is below the window where more stand than fit.
+    fn draw(&self, canvas: &mut Canvas, window: Window, ticks: Ticks, budget: usize) -> f64 {
+        if !self.title.is_empty() {
+            let size = if self.width < 300.0 { 11.0 } else { 12.0 };
+            let at = [window.left, window.top - 7.0];
+            canvas.text(at, Align::Start, size, INK, &self.title);
+        }
+        let axes = self.axes;
+        let frame = Frame { window, axes };
+        ground(canvas, &frame, ticks);
+        let mut notes: Vec<(&Key, Option<Anchor>)> = Vec::new();
+        for mark in &self.marks {
+            let anchor = frame.draw(canvas, mark, budget);
+            let label = mark.label().filter(|_| anchor.is_some());
+            notes.extend(label.map(|key| (key, anchor)));
+        }
+        notes.extend(self.keys.iter().map(|key| (key, None)));
+        let corner = [window.left, window.top];
+        canvas.rectangle(corner, window.size(), "none", FAINT);
+        beside(canvas, notes, window)
+    }
+}
+
+/// Grid lines and ticks along both axes.
+fn ground(canvas: &mut Canvas, frame: &Frame, ticks: Ticks) {
+    let (w, [width, height]) = (frame.window, frame.window.size());
+    let grid = |value| if value == 0.0 { "#b4b4b4" } else { "#e4e4e4" };
+    // Small panels have their ticks closer together.
+    let apart = (width / 8.0).clamp(42.0, 75.0);
+    for (value, label) in frame.axes[0].ticks((width / apart) as usize) {
+        let [x, _] = frame.place([value, 0.0]);
+        canvas.line([x, w.top], [x, w.bottom], grid(value), 1.0);
+        canvas.line([x, w.bottom], [x, w.bottom + 4.0], FAINT, 1.0);
+        if ticks.below {
+            // Pushed inward at the edges, where the next panel's labels begin.
+            let half = 3.3 * label.chars().count() as f64 - ticks.overhang;
+            let x = x.max(w.left + half).min(w.right - half);
+            canvas.text([x, w.bottom + 16.0], Align::Middle, 11.0, INK, &label);
+        }
+    }
+    let apart = (height / 5.0).clamp(17.0, 32.0);
+    for (value, label) in frame.axes[1].ticks((height / apart) as usize) {
+        let [_, y] = frame.place([0.0, value]);
+        canvas.line([w.left, y], [w.right, y], grid(value), 1.0);
+        canvas.line([w.left - 4.0, y], [w.left, y], FAINT, 1.0);
+        if ticks.left {
+            canvas.text([w.left - 7.0, y + 4.0], Align::End, 11.0, INK, &label);
+        }
+    }
+}
+
+/// Labels right of a window, each as near to its point as the others allow, those without a point from
+/// the top down. Returns where they end, which is below the window where more stand than fit.
+fn beside(canvas: &mut Canvas, mut notes: Vec<(&Key, Option<Anchor>)>, w: Window) -> f64 {
+    let wish = |anchor: &Option<Anchor>| anchor.map_or(w.top, |anchor| anchor.point[1]);
+    notes.sort_by(|(_, a), (_, b)| wish(a).total_cmp(&wish(b)));
+    let wishes: Vec<f64> = notes.iter().map(|(_, anchor)| wish(anchor)).collect();
+    let places = spread(&wishes, w.top + PITCH / 2.0, w.bottom - PITCH / 2.0);
+    let start = w.right + LEADER;
+    for ((key, anchor), place) in notes.iter().zip(&places) {
+        if let Some(Anchor { point, .. }) = anchor.filter(|anchor| anchor.led) {
+            let [x, y] = point;
+            if x + 5.0 < w.right {
+                canvas.line([x + 5.0, y], [w.right, y], FAINT, 0.3);
+            }
+            canvas.line([w.right + 1.0, y], [start, *place], FAINT, 0.6);
+        }
+        key.draw(canvas, [start, *place], SWATCH);
+    }
+    places.last().map_or(w.top, |last| last + PITCH)
+}
+
+/// Sorted wishes, moved apart to at least [`PITCH`] and into the bounds, as little as a pass down
+/// and a pass up manage. More than fit run over the lower bound.
+fn spread(wishes: &[f64], top: f64, bottom: f64) -> Vec<f64> {
+    let mut places = wishes.to_vec();
+    let mut limit = top;
+    for place in &mut places {
+        *place = place.max(limit);
+        limit = *place + PITCH;
+    }
+    let mut limit = bottom.max(top + PITCH * wishes.len().saturating_sub(1) as f64);
+    for place in places.iter_mut().rev() {
+        *place = place.min(limit);
+        limit = *place - PITCH;
+    }
+    places
 }

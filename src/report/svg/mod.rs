@@ -1,25 +1,18 @@
 //! Figures as SVG, written by hand: no network, no fonts, equal bytes for equal input.
 
-mod admissible;
+mod axis;
 mod canvas;
 mod chart;
 mod cost_panels;
-mod energy;
-mod frame;
-mod grid;
-mod heat;
-mod labels;
-mod line;
+mod marks;
 mod palette;
-mod panels;
-mod plot;
 mod precision;
-mod range;
-mod scale;
-mod trajectories;
+mod runs;
+mod stability;
 
-use super::words;
+use super::{view, words};
 use crate::outcome::{Outcome, Report};
+use chart::Chart;
 
 /// Pixels; what a page of text is wide.
 const WIDTH: f64 = 880.0;
@@ -33,81 +26,89 @@ pub struct Figure {
     pub file: &'static str,
     /// What the picture shows, for those who do not see it.
     pub description: &'static str,
-    /// Whether the report has what it takes.
-    pub wanted: fn(&Report) -> bool,
-    /// The whole SVG file.
-    pub draw: fn(&Report) -> String,
+    /// What there is to draw; `None` where the report does not have what it takes.
+    chart: fn(&Report) -> Option<Chart>,
 }
 
-/// Every figure there is, in the order reports show them.
-pub const FIGURES: &[Figure] = &[
+impl Figure {
+    /// Whether the report has what it takes.
+    pub fn wanted(&self, report: &Report) -> bool {
+        (self.chart)(report).is_some()
+    }
+}
+
+/// Of `run` and `compare`.
+pub(super) static OF_RUNS: &[Figure] = &[
     Figure {
         file: "plot.svg",
         description: "the curve the scene asks for",
-        wanted: plot::wanted,
-        draw: plot::draw,
+        chart: runs::plot,
     },
     Figure {
         file: "energy.svg",
         description: "energy balance over time",
-        wanted: energy::wanted,
-        draw: energy::draw,
+        chart: runs::energy,
     },
     Figure {
         file: "trajectories.svg",
         description: "trajectories",
-        wanted: trajectories::wanted,
-        draw: trajectories::draw,
+        chart: runs::trajectories,
     },
+];
+
+/// Of `stability`.
+pub(super) static OF_STABILITY: &[Figure] = &[
     Figure {
         file: "stability_map.svg",
         description: "what becomes of a run at each timestep, engine by engine",
-        wanted: heat::wanted,
-        draw: heat::draw,
+        chart: stability::map,
     },
     Figure {
         file: "admissible.svg",
         description: "from where a step does not enlarge the spring's force",
-        wanted: admissible::wanted,
-        draw: admissible::draw,
+        chart: stability::admissible,
     },
+];
+
+/// Of `cost`.
+pub(super) static OF_COST: &[Figure] = &[
     Figure {
         file: "cost_time.svg",
         description: "work-precision diagram: error over wall time",
-        wanted: |report| precision::wanted(report, precision::TIME),
-        draw: |report| precision::draw(report, precision::TIME),
+        chart: |report| precision::chart(report, precision::TIME),
     },
     Figure {
         file: "cost_evaluations.svg",
         description: "work-precision diagram: error over force evaluations",
-        wanted: |report| precision::wanted(report, precision::EVALUATIONS),
-        draw: |report| precision::draw(report, precision::EVALUATIONS),
+        chart: |report| precision::chart(report, precision::EVALUATIONS),
     },
     Figure {
         file: "cost_energy.svg",
         description: "work-precision diagram: energy error over cost",
-        wanted: |report| precision::wanted(report, precision::energy(report)),
-        draw: |report| precision::draw(report, precision::energy(report)),
+        chart: precision::energy,
     },
     Figure {
         file: "cost_panels.svg",
         description: "each integrator at a few steps beside the truth, and the difference below",
-        wanted: cost_panels::wanted,
-        draw: cost_panels::draw,
+        chart: cost_panels::chart,
     },
 ];
 
-/// The figures this report has data for: file name and SVG.
+/// The figures this report has data for.
+pub(super) fn wanted(report: &Report) -> impl Iterator<Item = &'static Figure> {
+    let figures = view(report).figures().iter();
+    figures.filter(|figure| figure.wanted(report))
+}
+
+/// Those figures: file name and SVG.
 pub fn figures(report: &Report) -> Vec<(&'static str, String)> {
-    let wanted = FIGURES.iter().filter(|figure| (figure.wanted)(report));
-    wanted
-        .map(|figure| (figure.file, (figure.draw)(report)))
-        .collect()
+    let drawn = |figure: &Figure| Some((figure.file, (figure.chart)(report)?.draw()));
+    view(report).figures().iter().filter_map(drawn).collect()
 }
 
 /// A figure's title: the scene, then what is shown.
 fn heading(report: &Report, shown: &str) -> String {
-    let scene = shortened(&words::one_line(&report.scene.name), 45);
+    let scene = shortened(&words::one_line(&report.header.scene.name), 45);
     format!("{scene}: {}", shortened(&words::one_line(shown), 50))
 }
 
@@ -118,6 +119,15 @@ fn name(outcome: &Outcome) -> String {
         Some(t) => format!("{name}, to {} s", words::short(t)),
         None => name,
     }
+}
+
+/// A panel's title where each engine has one; the scene's own integrator is pointed at.
+fn panel_title(report: &Report, engine: &str) -> String {
+    let name = shortened(&words::one_line(engine), NAME);
+    if engine == report.header.scene.own_integrator {
+        return format!("▸ {name}");
+    }
+    name
 }
 
 fn shortened(text: &str, characters: usize) -> String {

@@ -14,6 +14,7 @@ const GAP: usize = 2;
 const NAME: usize = 28;
 
 /// One column, built whole.
+#[derive(Clone)]
 pub struct Column {
     /// Lines separated by `\n`.
     pub header: String,

@@ -1,18 +1,13 @@
-//! The terminal's report: what ran, a table of outcomes that fits [`WIDTH`] columns, what is
-//! notable about them, and whether the harness proved itself.
+//! The terminal's report: what ran, what holds of the whole scene, the verb's own part, what is notable
+//! about single engines, and whether the harness proved itself. No line exceeds [`WIDTH`] columns.
 
 pub(in crate::report) mod columns;
 pub(in crate::report) mod fit;
 pub(in crate::report) mod paint;
-mod table;
 
-use super::cost;
-use super::identity;
-use super::notes::notes;
-use super::stability;
-use super::verdict;
-use super::words;
-use crate::outcome::{Check, CheckStatus, EffectUse, Report};
+use super::notes::{Note, grouped};
+use super::{verdict, view, words};
+use crate::outcome::{Check, CheckStatus, Report};
 use fit::{clip, pad, width, wrap};
 use paint::{Tone, mark, paint};
 
@@ -22,28 +17,15 @@ pub const WIDTH: usize = 100;
 /// The report with ANSI colours, which the caller's stream strips where they are not wanted. Ends
 /// with the verdict and a newline.
 pub fn render(report: &Report) -> String {
-    if stability::is_alone(report) {
-        return stability::terminal::render(report);
-    }
-    if cost::is_alone(report) {
-        return cost::terminal::render(report);
-    }
+    let view = view(report);
     let mut lines = scene(report);
-    let truth = words::one_line(&words::truth(&report.truth));
-    lines.extend(wrap(&format!("truth    {truth}"), WIDTH, "         "));
-    if report.fault.is_none() {
-        lines.extend(ledger(&report.scene.effects));
-    }
-    lines.push(String::new());
-    lines.extend(table::table(report));
-    lines.extend(remarks(report));
-    lines.extend(checks(&report.checks));
-    lines.extend(fault(report));
-    finished(report, lines)
-}
-
-/// The lines and the verdict, painted.
-pub(in crate::report) fn finished(report: &Report, mut lines: Vec<String>) -> String {
+    let facts = view.facts(report).into_iter();
+    let facts = facts.map(|(label, text)| (label, words::one_line(&text)));
+    lines.extend(labelled(facts.collect()));
+    lines.extend(view.lines(report));
+    lines.extend(apart(notes(&view.notes(report))));
+    lines.extend(apart(checks(&report.header.checks)));
+    lines.extend(apart(labelled(view.last(report))));
     lines.push(String::new());
     let verdict = wrap(&verdict::within(report, WIDTH), WIDTH, "");
     lines.extend(verdict.iter().map(|line| mark(Tone::Strong, line)));
@@ -52,16 +34,24 @@ pub(in crate::report) fn finished(report: &Report, mut lines: Vec<String>) -> St
     text
 }
 
+/// The lines below an empty one, if there are any.
+fn apart(mut lines: Vec<String>) -> Vec<String> {
+    if !lines.is_empty() {
+        lines.insert(0, String::new());
+    }
+    lines
+}
+
 /// Its name and size, and what its file says of it.
-pub(in crate::report) fn scene(report: &Report) -> Vec<String> {
-    let scene = &report.scene;
+fn scene(report: &Report) -> Vec<String> {
+    let scene = &report.header.scene;
     let facts = format!(
         "  {}, {}, {} s at h = {}, {}",
         words::plural(scene.particles, "particle"),
         words::plural(scene.springs, "spring"),
         words::short(scene.duration),
         words::timestep(report),
-        clip(&words::one_line(&scene.own_method), 28),
+        clip(&words::one_line(&scene.own_integrator), 28),
     );
     let room = WIDTH.saturating_sub(width(&facts)).max(12);
     let name = clip(&words::one_line(&scene.name), room);
@@ -72,108 +62,57 @@ pub(in crate::report) fn scene(report: &Report) -> Vec<String> {
     lines
 }
 
-/// One line an effect: whom it acts on, how often it ran, what one evaluation costs.
-fn ledger(effects: &[EffectUse]) -> Vec<String> {
-    let longest = effects
-        .iter()
-        .map(|e| width(e.id))
-        .max()
-        .unwrap_or(0)
-        .min(24);
-    let lines = effects.iter().enumerate().map(|(i, effect)| {
-        let label = if i == 0 { "effects" } else { "" };
-        let id = pad(&clip(effect.id, longest), longest);
-        let on = format!("on {}", words::count(effect.members as u64));
-        let evaluations = words::count(effect.evaluations);
-        let cost = effect
-            .nanoseconds
-            .map(|ns| format!(", {} each", words::seconds(ns * 1e-9)))
-            .unwrap_or_default();
-        format!("{label:<7}  {id}  {on:<8}  {evaluations} evaluations{cost}")
+/// Texts beside their labels.
+fn labelled(facts: Vec<(&str, String)>) -> Vec<String> {
+    let line = |(label, text)| wrap(&format!("{label:<9}{text}"), WIDTH, "         ");
+    facts.into_iter().flat_map(line).collect()
+}
+
+fn notes(notes: &[Note]) -> Vec<String> {
+    let note = |Note { subject, sentence }: &Note| {
+        let text = if sentence.starts_with(subject.as_str()) {
+            sentence.clone()
+        } else {
+            format!("{subject}: {sentence}")
+        };
+        wrap(&format!("- {text}"), WIDTH, "  ")
+    };
+    notes.iter().flat_map(note).collect()
+}
+
+fn checks(checks: &[Check]) -> Vec<String> {
+    let ids = checks.iter().map(|c| width(&words::one_line(&c.id))).max();
+    let ids = ids.unwrap_or(0).min(24);
+    let groups = grouped(checks.iter().map(|check| {
+        let why = (check.status != CheckStatus::Pass).then(|| reason(check));
+        (check, (&check.id, check.status, why))
+    }));
+    let lines = groups.iter().flat_map(|((id, _, why), group)| {
+        let head = head(group[0], ids);
+        let mut lines = match group.as_slice() {
+            // An expectation that is met.
+            met if *id == "expect" && why.is_none() => together(&head, counted(met), ids),
+            [check] => alone(&head, check, ids),
+            several => together(&head, several.iter().map(measured), ids),
+        };
+        let message = match group.as_slice() {
+            [check] => why.map(|_| check.message.as_str()),
+            _ => *why,
+        };
+        if let Some(message) = message.filter(|message| !message.is_empty()) {
+            let message = format!("      {}", words::one_line(message));
+            lines.extend(wrap(&message, WIDTH, "      "));
+        }
+        lines
     });
     lines.collect()
 }
 
-fn remarks(report: &Report) -> Vec<String> {
-    let mut lines = Vec::new();
-    for note in notes(report) {
-        let text = if note.sentence.starts_with(&note.subject) {
-            note.sentence
-        } else {
-            format!("{}: {}", note.subject, note.sentence)
-        };
-        lines.extend(wrap(&format!("- {text}"), WIDTH, "  "));
-    }
-    if !lines.is_empty() {
-        lines.insert(0, String::new());
-    }
-    lines
-}
-
-fn fault(report: &Report) -> Vec<String> {
-    let mut lines = Vec::new();
-    for (at, line) in identity::fault(report).iter().enumerate() {
-        let label = if at == 0 { "fault    " } else { "         " };
-        lines.extend(wrap(&format!("{label}{line}"), WIDTH, "         "));
-    }
-    if !lines.is_empty() {
-        lines.insert(0, String::new());
-    }
-    lines
-}
-
-pub(in crate::report) fn checks(checks: &[Check]) -> Vec<String> {
-    if checks.is_empty() {
-        return Vec::new();
-    }
-    let ids = checks.iter().map(|c| width(&words::one_line(&c.id))).max();
-    let ids = ids.unwrap_or(0).min(24);
-    let mut groups: Vec<Vec<&Check>> = Vec::new();
-    for check in checks {
-        let alike = |group: &&mut Vec<&Check>| {
-            let first = group[0];
-            let pass = check.status == CheckStatus::Pass;
-            first.id == check.id
-                && first.status == check.status
-                && (pass || reason(first) == reason(check))
-        };
-        match groups.iter_mut().find(alike) {
-            Some(group) => group.push(check),
-            None => groups.push(vec![check]),
-        }
-    }
-    let mut lines = vec![String::new()];
-    for group in &groups {
-        match group.as_slice() {
-            met if is_met(met[0]) => lines.extend(counted(met, ids)),
-            [check] => lines.extend(alone(check, ids)),
-            several => lines.extend(together(several, ids)),
-        }
-    }
-    lines
-}
-
-/// An expectation of the scene that is met.
-fn is_met(check: &Check) -> bool {
-    check.id == "expect" && check.status == CheckStatus::Pass
-}
-
-/// How many of each engine's keys are as expected: `symplectic_euler 3, explicit_euler 1`.
-fn counted(checks: &[&Check], ids: usize) -> Vec<String> {
-    let mut counts: Vec<(&str, usize)> = Vec::new();
-    for check in checks {
-        let engine = check.subject.split(' ').next().unwrap_or_default();
-        match counts.iter_mut().find(|(known, _)| *known == engine) {
-            Some((_, count)) => *count += 1,
-            None => counts.push((engine, 1)),
-        }
-    }
-    let texts: Vec<String> = counts
-        .iter()
-        .map(|(engine, count)| format!("{} {count}", words::one_line(engine)))
-        .collect();
-    let line = format!("{}  {}", head(checks[0], ids), texts.join(", "));
-    wrap(&line, WIDTH, &" ".repeat(8 + ids))
+/// How many of each engine's keys are as expected: `symplectic_euler 3`, `explicit_euler 1`.
+fn counted(checks: &[&Check]) -> impl Iterator<Item = String> {
+    let engine = |check: &&Check| check.subject.split(' ').next().map(words::one_line);
+    let counts = grouped(checks.iter().map(|check| ((), engine(check)))).into_iter();
+    counts.map(|(engine, keys)| format!("{} {}", engine.unwrap_or_default(), keys.len()))
 }
 
 /// What a check says, without whom it is about.
@@ -195,34 +134,24 @@ fn head(check: &Check, ids: usize) -> String {
     format!("{}  {id}", mark(tone, word))
 }
 
-fn alone(check: &Check, ids: usize) -> Vec<String> {
+/// What was measured beside its bound.
+fn alone(head: &str, check: &Check, ids: usize) -> Vec<String> {
     let measured = words::measured(check);
     let room = WIDTH - 4 - ids - width(&measured) - 6;
     let subject = clip(&words::one_line(&check.subject), room);
-    let mut lines = vec![format!("{}  {subject}  {measured}", head(check, ids))];
-    if check.status != CheckStatus::Pass && !check.message.is_empty() {
-        let message = format!("      {}", words::one_line(&check.message));
-        lines.extend(wrap(&message, WIDTH, "      "));
-    }
-    lines
+    vec![format!("{head}  {subject}  {measured}")]
 }
 
-/// Several with the same result: whom it is about, what was measured, and what there is to say.
-fn together(checks: &[&Check], ids: usize) -> Vec<String> {
-    let first = checks[0];
-    let texts: Vec<String> = checks
-        .iter()
-        .map(|check| {
-            let measured = check.measured.map(words::quantity).unwrap_or_default();
-            let text = format!("{} {measured}", words::one_line(&check.subject));
-            text.trim_end().to_owned()
-        })
-        .collect();
-    let line = format!("{}  {}", head(first, ids), texts.join(", "));
-    let mut lines = wrap(&line, WIDTH, &" ".repeat(8 + ids));
-    if first.status != CheckStatus::Pass {
-        let message = format!("      {}", words::one_line(reason(first)));
-        lines.extend(wrap(&message, WIDTH, "      "));
-    }
-    lines
+/// Of one check among several with the same result: whom it is about and what was measured.
+fn measured(check: &&Check) -> String {
+    let measured = check.measured.map(words::quantity).unwrap_or_default();
+    let text = format!("{} {measured}", words::one_line(&check.subject));
+    text.trim_end().to_owned()
+}
+
+/// Several texts after their head.
+fn together(head: &str, texts: impl Iterator<Item = String>, ids: usize) -> Vec<String> {
+    let texts: Vec<String> = texts.collect();
+    let line = format!("{head}  {}", texts.join(", "));
+    wrap(&line, WIDTH, &" ".repeat(8 + ids))
 }

@@ -6,7 +6,7 @@
 
 use anstyle::{AnsiColor, Style};
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tone {
     Good,
     Warn,

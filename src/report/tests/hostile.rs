@@ -1,6 +1,6 @@
 //! Reports made to break a renderer.
 
-use super::samples::{oscillator, outcome};
+use super::samples::{Reach, oscillator, outcome};
 use crate::outcome::*;
 
 const NASTY: &str =
@@ -10,22 +10,22 @@ const NASTY: &str =
 pub fn hostile() -> Report {
     let mut report = oscillator(&[0.01, 0.15], 40.0, 7);
     let long = NASTY.repeat(6);
-    report.scene.name = long.clone();
-    report.scene.file = long.clone();
-    report.scene.description = Some(long.repeat(3) + &"x".repeat(300));
-    report.scene.energy_scale_j = None;
-    report.scene.own_method = long.clone();
-    report.truth.reason = Some(long.clone());
-    report.outcomes[0].engine = long.clone();
-    report.outcomes[0].position_error_m = Some(Spread {
+    report.header.scene.name = long.clone();
+    report.header.scene.file = long.clone();
+    report.header.scene.description = Some(long.repeat(3) + &"x".repeat(300));
+    report.header.scene.energy_scale_j = None;
+    report.header.scene.own_integrator = long.clone();
+    report.header.truth.reason = Some(long.clone());
+    report.outcomes_mut()[0].engine = long.clone();
+    report.outcomes_mut()[0].position_error_m = Some(Spread {
         last: 0.0,
         max: 1e-17,
         rms: 0.0,
     });
-    report.truth.error_bound_m = Some(1e-15);
-    report.outcomes[1].remarks = (0..40).map(|i| format!("{i} {long}")).collect();
-    report.outcomes[2].deviation_m.clear();
-    report.outcomes[3].work = Work {
+    report.header.truth.error_bound_m = Some(1e-15);
+    report.outcomes_mut()[1].remarks = (0..40).map(|i| format!("{i} {long}")).collect();
+    report.outcomes_mut()[2].deviation_m.clear();
+    report.outcomes_mut()[3].work = Work {
         steps: u64::MAX,
         force_evaluations: Some(u64::MAX),
         linear_solves: None,
@@ -34,7 +34,7 @@ pub fn hostile() -> Report {
     let mut unsupported = outcome(&long, Kind::Rapier, f64::MIN_POSITIVE);
     unsupported.status = Status::Unsupported;
     unsupported.reason = Some(long.clone());
-    report.outcomes.push(unsupported);
+    report.outcomes_mut().push(unsupported);
     for (i, values) in [
         [f64::MAX, -f64::MAX],
         [0.0, 0.0],
@@ -45,29 +45,30 @@ pub fn hostile() -> Report {
     .enumerate()
     {
         report
-            .outcomes
+            .outcomes_mut()
             .push(outcome(&format!("odd{i}"), Kind::External, 0.01));
-        report.figures.curves.push(Curves {
-            outcome: report.outcomes.len() - 1,
+        let outcome = report.outcomes().len() - 1;
+        report.figures_mut().curves.push(Curves {
+            outcome,
             t: vec![0.0, f64::MAX],
             energy: values.into(),
             plot: values.into(),
             paths: vec![vec![values, values], vec![values], vec![]],
         });
     }
-    report.figures.curves.push(Curves {
+    report.figures_mut().curves.push(Curves {
         outcome: 9_999,
         t: vec![],
         energy: vec![],
         plot: vec![],
         paths: vec![],
     });
-    report.figures.plane = [7, 2];
-    report.figures.plot = Some(PlotAxis {
+    report.figures_mut().plane = [7, 2];
+    report.figures_mut().plot = Some(PlotAxis {
         label: long.clone(),
         y_range: Some([1.0, 1.0]),
     });
-    report.checks.push(Check {
+    report.header.checks.push(Check {
         id: long.clone(),
         subject: long.clone(),
         status: CheckStatus::Fail,
@@ -82,7 +83,7 @@ pub fn hostile() -> Report {
 /// Nothing ran, and every number and name is as wide as it gets.
 pub fn extreme() -> Report {
     let mut report = oscillator(&[0.01, 0.05], 1.0, 3);
-    for outcome in &mut report.outcomes {
+    for outcome in report.outcomes_mut() {
         let least = Deviation {
             last: 1e-300,
             max: 1e-300,
@@ -98,10 +99,10 @@ pub fn extreme() -> Report {
             rms: 1e-300,
         });
     }
-    report.scene.particles = usize::MAX;
-    report.scene.springs = usize::MAX;
-    report.scene.timestep = f64::MIN_POSITIVE;
-    report.scene.duration = 1.234567e-300;
-    report.scene.own_method = "symplectic_euler_drift_first".into();
+    report.header.scene.particles = usize::MAX;
+    report.header.scene.springs = usize::MAX;
+    report.header.scene.timestep = f64::MIN_POSITIVE;
+    report.header.scene.duration = 1.234567e-300;
+    report.header.scene.own_integrator = "symplectic_euler_drift_first".into();
     report
 }

@@ -1,27 +1,37 @@
 use super::samples::{empty, oscillator};
-use crate::report::json;
+use crate::outcome::Report;
+use crate::report::json::{self, Tool};
+
+fn render(reports: &[Report]) -> String {
+    json::render(&Tool::this(), reports)
+}
 
 #[test]
 fn json_has_the_contract_s_keys() {
     let report = oscillator(&[0.01], 1.0, 8);
-    let value: serde_json::Value = serde_json::from_str(&json::render(&report)).unwrap();
+    let document: serde_json::Value = serde_json::from_str(&render(&[report])).unwrap();
+    let value = &document["reports"][0];
     let keys = |value: &serde_json::Value| -> Vec<String> {
         let mut keys: Vec<String> = value.as_object().unwrap().keys().cloned().collect();
         keys.sort();
         keys
     };
+    assert_eq!(keys(&document), ["reports", "schema_version", "tool"]);
+    assert_eq!(keys(&document["tool"]), ["name", "platform", "version"]);
     assert_eq!(
-        keys(&value),
-        ["checks", "outcomes", "scene", "schema_version", "truth"]
+        keys(value),
+        ["checks", "outcomes", "scene", "series", "truth", "verb"]
     );
     assert_eq!(
         keys(&value["scene"]),
         [
+            "description",
             "duration",
             "effects",
             "energy_scale_j",
             "file",
             "name",
+            "own_integrator",
             "particles",
             "springs",
             "timestep"
@@ -29,7 +39,7 @@ fn json_has_the_contract_s_keys() {
     );
     assert_eq!(
         keys(&value["scene"]["effects"][0]),
-        ["evaluations", "id", "members"]
+        ["evaluations", "id", "members", "wall_ns"]
     );
     assert_eq!(
         keys(&value["truth"]),
@@ -47,6 +57,7 @@ fn json_has_the_contract_s_keys() {
             "momentum",
             "position_error_m",
             "reason",
+            "remarks",
             "status",
             "stopped_at_s",
             "substep",
@@ -81,21 +92,25 @@ fn json_has_the_contract_s_keys() {
 }
 
 #[test]
-fn json_is_an_array_for_several() {
-    let reports = [empty("a"), empty("b")];
-    assert!(json::render_all(&reports).starts_with("[\n"));
-    assert_eq!(json::render_all(&reports[..1]), json::render(&reports[0]));
-    assert_eq!(json::render_all(&[]), "[]\n");
-    assert!(json::render(&reports[0]).ends_with("}\n"));
+fn json_is_one_object_for_any_number() {
+    for count in 0..3 {
+        let reports = vec![empty("a"); count];
+        let text = render(&reports);
+        assert!(text.starts_with("{\n") && text.ends_with("}\n"));
+        let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(value["schema_version"], 2);
+        assert_eq!(value["reports"].as_array().map(Vec::len), Some(count));
+    }
 }
 
 #[test]
 fn json_floats_round_trip() {
     let mut report = empty("floats");
     for value in [0.1, 1.0 / 3.0, f64::MAX, 5e-324, -0.0, 1e22] {
-        report.scene.energy_scale_j = Some(value);
-        let read: serde_json::Value = serde_json::from_str(&json::render(&report)).unwrap();
-        let read = read["scene"]["energy_scale_j"].as_f64().unwrap();
+        report.header.scene.energy_scale_j = Some(value);
+        let text = render(std::slice::from_ref(&report));
+        let (_, read) = json::read(text.as_bytes()).unwrap();
+        let read = read[0].header.scene.energy_scale_j.unwrap();
         assert_eq!(read.to_bits(), value.to_bits());
     }
 }
@@ -105,7 +120,7 @@ fn json_floats_round_trip() {
 #[should_panic(expected = "NaN")]
 fn json_refuses_nan() {
     let mut report = empty("\"NaN\\");
-    json::render(&report);
-    report.scene.energy_scale_j = Some(f64::NAN);
-    json::render(&report);
+    render(std::slice::from_ref(&report));
+    report.header.scene.energy_scale_j = Some(f64::NAN);
+    render(std::slice::from_ref(&report));
 }

@@ -2,25 +2,27 @@ mod cost;
 mod hostile;
 mod json;
 mod motion;
+mod read;
 mod samples;
 mod stability;
 
+use super::json::Tool;
 use super::{FORMATS, format, markdown, svg, terminal, verdict};
 use crate::outcome::*;
 use hostile::{extreme, hostile};
-use samples::{crowd, empty, oscillator, outcome, twin, upright};
+use samples::{Reach, crowd, empty, oscillator, outcome, twin, upright};
 use unicode_width::UnicodeWidthStr;
 
 /// Reports of every kind the renderers meet.
 fn all() -> Vec<Report> {
     let mut bare = empty("bare");
-    bare.checks.clear();
-    bare.scene.effects.clear();
+    bare.header.checks.clear();
+    bare.header.scene.effects.clear();
     let mut unsupported = empty("unsupported");
     let mut rapier = outcome("rapier", Kind::Rapier, 0.01);
     rapier.status = Status::Unsupported;
     rapier.reason = Some("isotropic damping has no joint".into());
-    unsupported.outcomes.push(rapier);
+    unsupported.outcomes_mut().push(rapier);
     vec![
         extreme(),
         bare,
@@ -75,8 +77,8 @@ fn rendering_is_repeatable() {
         let reports = [report];
         for format in FORMATS {
             assert_eq!(
-                (format.render)(&reports),
-                (format.render)(&reports),
+                (format.render)(&Tool::this(), &reports),
+                (format.render)(&Tool::this(), &reports),
                 "{}",
                 format.id
             );
@@ -107,7 +109,7 @@ fn figures_are_well_formed_and_small() {
 #[test]
 fn long_series_stay_small_and_keep_their_peak() {
     let mut report = oscillator(&[0.01], 5.0, 8);
-    for curves in &mut report.figures.curves {
+    for curves in &mut report.figures_mut().curves {
         curves.t = (0..2_000).map(|i| f64::from(i) / 400.0).collect();
         curves.energy = curves.t.iter().map(|t| (9_973.0 * t).sin()).collect();
         curves.plot = curves.energy.clone();
@@ -119,7 +121,7 @@ fn long_series_stay_small_and_keep_their_peak() {
             .collect();
         curves.paths = vec![path; 12];
     }
-    report.figures.plot.as_mut().unwrap().y_range = Some([-7.0, 7.0]);
+    report.figures_mut().plot.as_mut().unwrap().y_range = Some([-7.0, 7.0]);
     for (file, svg) in svg::figures(&report) {
         assert!(svg.len() < 300_000, "{file}: {} bytes", svg.len());
         // The panel's upper edge, y = 40, is where 7 lies: the one sample there was not thinned out.
@@ -156,7 +158,10 @@ fn markdown_links_the_figures_and_keeps_its_tables() {
 fn verdict_names_a_failed_proof_first() {
     let mut report = oscillator(&[0.01], 5.0, 8);
     insta::assert_snapshot!(verdict(&report), @r"symplectic_euler stays bounded (7.1e-3); growing: explicit_euler; dissipating: implicit_euler; 5 others bounded; twin proof holds (2 of 2).");
-    report.checks.push(twin("twin_forces", CheckStatus::Fail));
+    report
+        .header
+        .checks
+        .push(twin("twin_forces", CheckStatus::Fail));
     assert!(verdict(&report).starts_with("THE TWIN PROOF FAILS"));
 }
 

@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 /// The oscillator under the first `engines` schemes at every timestep.
 pub fn oscillator(timesteps: &[f64], duration: f64, engines: usize) -> Report {
     let mut report = empty("circle");
-    report.scene.timestep = timesteps[0];
-    report.scene.duration = duration;
-    report.figures.plot = Some(PlotAxis {
+    report.header.scene.timestep = timesteps[0];
+    report.header.scene.duration = duration;
+    report.figures_mut().plot = Some(PlotAxis {
         label: "particle 1, x (m)".into(),
         y_range: None,
     });
@@ -34,17 +34,22 @@ pub fn oscillator(timesteps: &[f64], duration: f64, engines: usize) -> Report {
                 outcome.reason =
                     Some("kinetic and elastic energy passed 1e12 times the scale".into());
             }
-            report.figures.curves.push(Curves {
-                outcome: report.outcomes.len(),
+            let at = report.outcomes().len();
+            report.figures_mut().curves.push(Curves {
+                outcome: at,
                 plot: run.path.iter().map(|p| p[0]).collect(),
                 t: run.t,
                 energy: run.energy,
                 paths: vec![run.path],
             });
-            report.outcomes.push(outcome);
+            report.outcomes_mut().push(outcome);
         }
     }
-    for outcome in report.outcomes.iter_mut().filter(|o| o.engine == "rapier") {
+    for outcome in report
+        .outcomes_mut()
+        .iter_mut()
+        .filter(|o| o.engine == "rapier")
+    {
         outcome.remarks.push(
             "its spring joint is linearly implicit Euler at h = dt/4 and dissipates by design; \
              symplectic_euler does not."
@@ -72,7 +77,7 @@ fn judged(run: &Run) -> Energy {
         fluctuation: Some(1e-3),
         class: Some(class),
         kinetic_final_j: Some(1.0),
-        potential_final_j: BTreeMap::from([("springs", 3.0)]),
+        potential_final_j: BTreeMap::from([("springs".to_owned(), 3.0)]),
         dissipated_j: Some(0.0),
         injected_j: Some(0.0),
     }
@@ -95,12 +100,12 @@ fn deviation(a: &Run, b: &Run) -> Deviation {
 /// Motion along a vertical line, a range for the plot, and no particle that never moves.
 pub fn upright() -> Report {
     let mut report = oscillator(&[0.02], 5.0, 8);
-    for curves in &mut report.figures.curves {
+    for curves in &mut report.figures_mut().curves {
         let path = curves.plot.iter().map(|x| [0.0, 2.0 + x]).collect();
         curves.paths = vec![path];
     }
-    report.figures.fixed.clear();
-    report.figures.plot.as_mut().unwrap().y_range = Some([-0.3, 0.6]);
+    report.figures_mut().fixed.clear();
+    report.figures_mut().plot.as_mut().unwrap().y_range = Some([-0.3, 0.6]);
     report
 }
 
@@ -109,17 +114,17 @@ pub fn crowd() -> Report {
     let mut report = oscillator(&[0.02], 5.0, 8);
     for round in 1..3 {
         for i in 0..8 {
-            let mut outcome = report.outcomes[i].clone();
+            let mut outcome = report.outcomes()[i].clone();
             outcome.engine += &format!("_{round}");
-            let mut curves = report.figures.curves[i].clone();
-            curves.outcome = report.outcomes.len();
+            let mut curves = report.figures().curves[i].clone();
+            curves.outcome = report.outcomes().len();
             let shift = 1.2 * f64::from(round);
             let moved = |[x, z]: &[f64; 2]| [x + shift, *z];
             curves
                 .paths
                 .push(curves.paths[0].iter().map(moved).collect());
-            report.outcomes.push(outcome);
-            report.figures.curves.push(curves);
+            report.outcomes_mut().push(outcome);
+            report.figures_mut().curves.push(curves);
         }
     }
     report
@@ -158,46 +163,92 @@ pub fn outcome(engine: &str, kind: Kind, timestep: f64) -> Outcome {
 /// A report with facts, checks and no outcome.
 pub fn empty(name: &str) -> Report {
     Report {
-        schema_version: SCHEMA_VERSION,
-        scene: SceneFacts {
-            name: name.into(),
-            file: format!("scenes/oscillator/{name}.yml"),
-            particles: 2,
-            springs: 1,
-            effects: vec![EffectUse {
-                id: "springs",
-                members: 1,
-                evaluations: 70_000,
-                nanoseconds: Some(11.4),
-            }],
-            timestep: 0.01,
-            duration: 5.0,
-            energy_scale_j: Some(10.75),
-            description: Some(
-                "A spring of rest length 0, started sideways: the truth is an ellipse.".into(),
-            ),
-            own_method: "symplectic_euler".into(),
+        header: Header {
+            scene: SceneFacts {
+                name: name.into(),
+                file: format!("scenes/oscillator/{name}.yml"),
+                particles: 2,
+                springs: 1,
+                effects: vec![EffectUse {
+                    id: "springs".into(),
+                    members: 1,
+                    evaluations: 70_000,
+                    wall_ns: Some(11.4),
+                }],
+                timestep: 0.01,
+                duration: 5.0,
+                energy_scale_j: Some(10.75),
+                description: Some(
+                    "A spring of rest length 0, started sideways: the truth is an ellipse.".into(),
+                ),
+                own_integrator: "symplectic_euler".into(),
+            },
+            truth: Truth {
+                kind: TruthKind::None,
+                method: None,
+                error_bound_m: None,
+                horizon_s: None,
+                reason: Some("not asked for".into()),
+            },
+            checks: vec![
+                twin("twin_forces", CheckStatus::Pass),
+                twin("twin_converged", CheckStatus::Pass),
+            ],
         },
-        truth: Truth {
-            kind: TruthKind::None,
-            method: None,
-            error_bound_m: None,
-            horizon_s: None,
-            reason: Some("not asked for".into()),
+        body: Body::Run {
+            outcomes: Vec::new(),
         },
-        outcomes: Vec::new(),
-        checks: vec![
-            twin("twin_forces", CheckStatus::Pass),
-            twin("twin_converged", CheckStatus::Pass),
-        ],
-        fault: None,
-        stability: None,
-        cost: None,
-        figures: Figures {
+        beside: Beside::Here(Series::Curves(Figures {
             plane: [0, 2],
             fixed: vec![[0.0, 0.0]],
             ..Figures::default()
-        },
+        })),
+    }
+}
+
+/// Into the parts of a report that its verb has.
+pub trait Reach {
+    fn outcomes_mut(&mut self) -> &mut Vec<Outcome>;
+    fn stability_mut(&mut self) -> &mut Stability;
+    fn cost_mut(&mut self) -> &mut Cost;
+    fn figures_mut(&mut self) -> &mut Figures;
+    fn panels_mut(&mut self) -> &mut CostPanels;
+}
+
+impl Reach for Report {
+    fn outcomes_mut(&mut self) -> &mut Vec<Outcome> {
+        match &mut self.body {
+            Body::Run { outcomes } | Body::Compare { outcomes, .. } => outcomes,
+            _ => panic!("no outcomes"),
+        }
+    }
+
+    fn stability_mut(&mut self) -> &mut Stability {
+        match &mut self.body {
+            Body::Stability { stability, .. } => stability,
+            _ => panic!("no stability"),
+        }
+    }
+
+    fn cost_mut(&mut self) -> &mut Cost {
+        match &mut self.body {
+            Body::Cost { cost, .. } => cost,
+            _ => panic!("no cost"),
+        }
+    }
+
+    fn figures_mut(&mut self) -> &mut Figures {
+        match &mut self.beside {
+            Beside::Here(Series::Curves(figures)) => figures,
+            _ => panic!("no figures"),
+        }
+    }
+
+    fn panels_mut(&mut self) -> &mut CostPanels {
+        match &mut self.beside {
+            Beside::Here(Series::Panels(panels)) => panels,
+            _ => panic!("no panels"),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Reports of limits, maps and admissible places.
 
 use super::plain;
-use super::samples::empty;
+use super::samples::{Reach, empty};
 use crate::outcome::*;
 use crate::report::{markdown, stem, svg, terminal, verdict};
 
@@ -28,7 +28,7 @@ fn row(engine: &str, predicted: Option<f64>, measured: Option<f64>) -> Stability
 /// The oscillator's limits: z < 2 and z < 2 sqrt(2) over w = 7.071 rad/s.
 pub fn limits() -> Report {
     let mut report = empty("circle");
-    report.checks.clear();
+    report.header.checks.clear();
     let mut rapier = row("rapier", None, None);
     rapier.kind = Kind::Rapier;
     rapier.unconditional = false;
@@ -36,7 +36,7 @@ pub fn limits() -> Report {
     for row in [&mut material, &mut rapier] {
         row.remarks.push("its sweeps are not converged".into());
     }
-    report.stability = Some(Stability {
+    let stability = Stability {
         omega_max_rad_s: Some(50_f64.sqrt()),
         unsure: false,
         horizon_s: 5.0,
@@ -53,7 +53,12 @@ pub fn limits() -> Report {
         ],
         map: None,
         admissible: None,
-    });
+    };
+    report.body = Body::Stability {
+        outcomes: [],
+        stability,
+    };
+    report.beside = Beside::Nothing;
     report
 }
 
@@ -92,10 +97,11 @@ pub fn mapped() -> Report {
             .map(|i| 10_f64.powf(first + step * f64::from(i)))
             .collect()
     };
-    if let Some(stability) = &mut report.stability {
+    {
+        let stability = report.stability_mut();
         stability.map = Some(StabilityMap {
             vary: "springs.stiffness".into(),
-            unit: "N/m",
+            unit: "N/m".into(),
             values: powers(2.0, 0.3),
             timesteps_s: powers(-4.0, 0.2),
             steps_per_cell: 2_042,
@@ -117,7 +123,8 @@ pub fn pair() -> Report {
         share: 0.5,
         admitted: vec!["110011001100".into(); 12],
     });
-    if let Some(stability) = &mut report.stability {
+    {
+        let stability = report.stability_mut();
         stability.admissible = Some(Admissible {
             engine: "explicit_euler".into(),
             timestep_s: 0.5,
@@ -135,9 +142,7 @@ pub fn pair() -> Report {
 pub fn odd() -> Report {
     let mut report = pair();
     let nasty = "a|b<c>&\"d\" `e` \u{1b}[31m 漢字 ".repeat(8);
-    let Some(stability) = &mut report.stability else {
-        return report;
-    };
+    let stability = report.stability_mut();
     stability.timestep_s = f64::MIN_POSITIVE;
     stability.linear = false;
     stability.omega_max_rad_s = None;
@@ -160,7 +165,7 @@ pub fn odd() -> Report {
     ragged.predicted_limit_s = vec![Some(1e300), None];
     stability.map = Some(StabilityMap {
         vary: nasty.clone(),
-        unit: "N/m",
+        unit: "N/m".into(),
         values: vec![0.0, 1e18],
         timesteps_s: vec![1e-30, 1.0, 1e12],
         steps_per_cell: u64::MAX,
@@ -223,7 +228,7 @@ fn only_what_was_asked_for_is_drawn() {
 #[test]
 fn the_map_shows_each_cell_in_its_colour() {
     let mut report = mapped();
-    let map = report.stability.as_mut().unwrap().map.as_mut().unwrap();
+    let map = report.stability_mut().map.as_mut().unwrap();
     map.engines.truncate(1);
     let cells = map.engines[0].cells.clone();
     let count = |wanted| {
@@ -294,14 +299,14 @@ fn grey(colour: &str) -> f64 {
 fn the_verdict_puts_the_scenes_own_step_first() {
     let mut report = limits();
     assert!(verdict(&report).starts_with("symplectic_euler is stable up to h = 0.2827 s"));
-    report.stability.as_mut().unwrap().timestep_s = 0.3;
+    report.stability_mut().timestep_s = 0.3;
     let text = verdict(&report);
     assert!(
         text.starts_with("symplectic_euler IS UNSTABLE at h = 0.3 s"),
         "{text}"
     );
     // The limit itself, known to a thousandth, is inside.
-    report.stability.as_mut().unwrap().timestep_s = 0.2828;
+    report.stability_mut().timestep_s = 0.2828;
     assert!(verdict(&report).contains("is inside"));
 }
 

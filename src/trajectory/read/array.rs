@@ -105,21 +105,17 @@ impl Header {
 
     /// From the first index fastest to the last index fastest.
     fn to_c_order(&self, numbers: &[f64]) -> Vec<f64> {
-        let mut index = vec![0; self.shape.len()];
-        let mut ordered = Vec::with_capacity(numbers.len());
-        for _ in 0..numbers.len() {
-            let pairs = index.iter().zip(&self.shape).rev();
-            let at = pairs.fold(0, |at, (i, size)| at * size + i);
-            ordered.extend(numbers.get(at));
-            for (i, size) in index.iter_mut().zip(&self.shape).rev() {
-                *i += 1;
-                if *i < *size {
-                    break;
-                }
-                *i = 0;
+        let stored = |mut at: usize| {
+            // Neighbours along an axis lie the product of all sizes before it apart.
+            let (mut apart, mut stored) = (numbers.len(), 0);
+            for size in self.shape.iter().rev() {
+                apart /= size;
+                stored += at % size * apart;
+                at /= size;
             }
-        }
-        ordered
+            numbers[stored]
+        };
+        (0..numbers.len()).map(stored).collect()
     }
 }
 
@@ -167,13 +163,9 @@ impl Number {
         // Sign and value in the highest bytes: shifting down extends the sign.
         let mut bytes = [0; 8];
         let size = self.bytes;
-        for (place, byte) in stored.iter().enumerate().take(size) {
-            let significance = if self.big_endian {
-                size - 1 - place
-            } else {
-                place
-            };
-            bytes[8 - size + significance] = *byte;
+        bytes[8 - size..].copy_from_slice(stored);
+        if self.big_endian {
+            bytes[8 - size..].reverse();
         }
         let shift = 8 * (8 - size as u32);
         match self.kind {

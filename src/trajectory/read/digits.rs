@@ -217,11 +217,11 @@ impl Sample {
     }
 }
 
-/// Numbers of which none needs so many digits are rounded ones, as doubles or as singles.
+/// Where no number needs so many digits they were rounded: doubles, and singles.
 const DOUBLE: u32 = 16;
 const SINGLE: u32 = 7;
 
-/// Numbers with all their decimals, at least.
+/// Where at least this share of the numbers has all its decimals, or digits, they were rounded to them.
 const MOST: f64 = 0.7;
 
 /// Numbers other than 0 that changed since the state before, evenly spread in a fixed irregular

@@ -26,19 +26,62 @@ mod csv;
 mod digits;
 mod error;
 mod expected;
-mod layout;
-pub mod limits;
 mod npz;
 mod shape;
 mod times;
 
 pub use error::{Place, ReadError};
 pub use expected::{Expected, FreeAxis, free_axis};
-pub use layout::Layout;
 
 use super::{Precision, Rows};
 use digits::Written;
 use error::Wrong;
+
+/// How large a trajectory file may be.
+///
+/// Single numbers have no bound but finiteness: the last row of a run that diverged, which
+/// `run --save` writes too, may hold any.
+pub mod limits {
+    /// The largest file read, in bytes: 2 GiB.
+    pub const FILE_BYTES: usize = 2 << 30;
+
+    /// The most numbers read from one file, in text, in arrays, or after unpacking: 2 GiB as doubles.
+    pub const NUMBERS: usize = 1 << 28;
+
+    /// The longest header of an array, in bytes. NumPy writes 118 for what is read here, and stops at
+    /// 10,000 itself.
+    pub const ARRAY_HEADER: usize = 10_000;
+}
+
+/// How a trajectory file is laid out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    /// Text: `t,id,x,y,z[,vx,vy,vz]`, or `t,x[,v]`.
+    Csv,
+    /// NumPy's archive of arrays `t`, `x` and, if wanted, `v`.
+    Npz,
+    /// One NumPy array: the positions.
+    Npy,
+}
+
+impl Layout {
+    /// By the first bytes, whatever the name says; by the name's extension where they say nothing,
+    /// and text where that says nothing either.
+    pub fn guess(name: &str, bytes: &[u8]) -> Self {
+        let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
+        if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06") {
+            Self::Npz
+        } else if bytes.starts_with(b"\x93NUMPY") {
+            Self::Npy
+        } else if extension.eq_ignore_ascii_case("npz") {
+            Self::Npz
+        } else if extension.eq_ignore_ascii_case("npy") {
+            Self::Npy
+        } else {
+            Self::Csv
+        }
+    }
+}
 
 /// What a file says, before its times are counted in steps.
 struct Table {

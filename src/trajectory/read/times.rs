@@ -1,9 +1,8 @@
 //! Times as step numbers.
 
 use super::super::Precision;
-use super::csv;
 use super::digits::{FULL, Float, Sample, Written};
-use super::error::{Place, ReadError, Wrong};
+use super::error::{Place, ReadError, Wrong, of_field};
 use crate::scene::limits::STEPS;
 
 /// The times of all instants, s, and where they stand in the file.
@@ -157,10 +156,7 @@ impl Times {
         if steps > STEPS {
             let message =
                 format!("expected at most {STEPS:e} steps of {timestep:?} s, found t = {t:?}");
-            return Wrong::new(
-                message,
-                "--timestep tells the step the rows were computed with",
-            );
+            return Wrong::new(message, OTHER);
         }
         // Nine decimals show a thousandth of what is allowed.
         let found = format!("{steps:.9}");
@@ -182,7 +178,7 @@ impl Times {
         match &self.source {
             Source::Text { starts, field } => {
                 let start = starts.get(k).copied().unwrap_or_default();
-                csv::place_of_field(bytes, start, *field)
+                of_field(bytes, start, *field)
             }
             Source::Array => Place::Array {
                 name: "t".to_owned(),

@@ -1,7 +1,7 @@
 //! Proof that springs on a line keep their length above 0, up to which they are linear.
 
 use super::mode::Mode;
-use super::modes::{Link, Modes};
+use super::modes::Modes;
 use super::part::Axis;
 
 /// A length may shrink to this share of itself in one step of the proof.
@@ -27,8 +27,8 @@ pub(super) struct Bounds {
     pub fastest: f64,
 }
 
-/// Bounds for each of these links, whose lengths at the start are given, or None if a length may
-/// come to `closest` or below before `until`.
+/// Bounds for each of these springs, of which the ends, in their order along the axis, and the length at the
+/// start are given. None if a length may come to `closest` or below before `until`.
 ///
 /// Marches in time. At each instant the energies of the modes bound every later length, which ends
 /// the proof as soon as it is enough; until then the length, its rate and a bound on its
@@ -36,16 +36,16 @@ pub(super) struct Bounds {
 pub(super) fn bounds(
     modes: &Modes,
     axis: &Axis,
-    links: &[(Link, f64)],
+    springs: &[([Option<usize>; 2], f64)],
     until: f64,
     closest: f64,
 ) -> Option<Vec<Bounds>> {
-    let lengths: Vec<Length> = links
+    let lengths: Vec<Length> = springs
         .iter()
-        .map(|(link, start)| Length {
-            start: *start,
+        .map(|&(ends, start)| Length {
+            start,
             stretch: (0..modes.modes.len())
-                .map(|j| modes.stretch(j, link))
+                .map(|j| modes.stretch(j, ends))
                 .collect(),
         })
         .collect();

@@ -1,7 +1,8 @@
 //! Whether all motion of a group stays on one line.
 
 use super::problem::{Group, Problem};
-use super::vector::{across, dot, norm, scaled, sub, unit};
+use super::vector::{across, norm, unit};
+use nalgebra::Vector3;
 
 /// Rounding of numbers in a file: a point meant to be on a line lies this many eps off it.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -10,7 +11,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 #[derive(Debug, Clone)]
 pub(super) struct Line {
     /// Unit vector; exact along an axis.
-    pub direction: [f64; 3],
+    pub direction: Vector3<f64>,
     /// Motion across the line, common to all particles.
     pub drift: Drift,
     /// What the file's rounding leaves across the line.
@@ -20,15 +21,15 @@ pub(super) struct Line {
 /// u'' = pull - rate u', from 0 at this velocity.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Drift {
-    pub velocity: [f64; 3],
-    pub pull: [f64; 3],
+    pub velocity: Vector3<f64>,
+    pub pull: Vector3<f64>,
     /// Drag over mass, 1/s.
     pub rate: f64,
 }
 
 impl Drift {
     pub fn is_still(&self) -> bool {
-        self.velocity == [0.0; 3] && self.pull == [0.0; 3]
+        self.velocity == Vector3::zeros() && self.pull == Vector3::zeros()
     }
 }
 
@@ -52,17 +53,17 @@ impl Line {
     pub fn of(problem: &Problem, group: &Group) -> Option<Self> {
         let velocities: Vec<_> = group.free.iter().map(|&i| problem.velocity(i)).collect();
         let pulls: Vec<_> = group.free.iter().map(|&i| problem.constant(i)).collect();
-        let ends = group.springs.iter().flat_map(|s| s.ends);
+        let ends = group.links.iter().flat_map(|l| l.spring.ends);
         let points: Vec<_> = ends
             .chain(group.free.iter().copied())
             .map(|i| problem.position(i))
             .collect();
         let origin = *points.first()?;
-        let apart: Vec<_> = points.iter().map(|&p| sub(p, origin)).collect();
+        let apart: Vec<_> = points.iter().map(|p| p - origin).collect();
         let along = [&apart, &velocities, &pulls]
             .into_iter()
             .find_map(|vectors| longest(vectors))
-            .unwrap_or([1.0, 0.0, 0.0]);
+            .unwrap_or(Vector3::x());
         let direction = unit(along)?;
         let extent = points.iter().map(|&p| norm(p)).fold(0.0, f64::max);
         let position = apart.iter().map(|&p| across(p, along)).fold(0.0, f64::max);
@@ -107,35 +108,32 @@ impl Line {
 }
 
 /// The longest of some vectors, unless all are 0.
-fn longest(vectors: &[[f64; 3]]) -> Option<[f64; 3]> {
+fn longest(vectors: &[Vector3<f64>]) -> Option<Vector3<f64>> {
     let longest = vectors
         .iter()
         .copied()
         .max_by(|&a, &b| norm(a).total_cmp(&norm(b)));
-    longest.filter(|&v| v != [0.0; 3])
+    longest.filter(|&v| v != Vector3::zeros())
 }
 
 /// What these vectors have in common across the line, and how far they are from it at most: nothing
 /// if they lie along it, the first one's part if nothing is anchored and all agree.
 fn common(
-    vectors: &[[f64; 3]],
-    along: [f64; 3],
-    direction: [f64; 3],
+    vectors: &[Vector3<f64>],
+    along: Vector3<f64>,
+    direction: Vector3<f64>,
     anchored: bool,
-) -> Option<([f64; 3], f64)> {
+) -> Option<(Vector3<f64>, f64)> {
     let most = vectors.iter().map(|&v| norm(v)).fold(0.0, f64::max);
-    let off = |from: [f64; 3]| {
-        let each = vectors.iter().map(|&v| across(sub(v, from), along));
+    let off = |from: Vector3<f64>| {
+        let each = vectors.iter().map(|&v| across(v - from, along));
         each.fold(0.0, f64::max)
     };
-    let alone = off([0.0; 3]);
+    let alone = off(Vector3::zeros());
     if alone <= ROUNDING * most {
-        return Some(([0.0; 3], alone));
+        return Some((Vector3::zeros(), alone));
     }
     let first = *vectors.first().filter(|_| !anchored)?;
     let together = off(first);
-    (together <= ROUNDING * most).then(|| {
-        let along = scaled(direction, dot(first, direction));
-        (sub(first, along), together)
-    })
+    (together <= ROUNDING * most).then(|| (first - direction * first.dot(&direction), together))
 }

@@ -23,8 +23,8 @@ mod words;
 pub use pendulum::Pendulum;
 
 use super::{Motion, States};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
 use part::Part;
 use problem::Problem;
 

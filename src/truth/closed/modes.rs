@@ -2,18 +2,11 @@
 
 use super::jacobi::singular;
 use super::mode::Mode;
+use super::problem::{Group, Link, Problem};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// The most free particles one decomposition takes; the time grows with the cube.
 pub(super) const MOST: usize = 300;
-
-/// A spring and damper between two of the free particles; None is a fixed end.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Link {
-    pub ends: [Option<usize>; 2],
-    pub stiffness: f64,
-    pub damping: f64,
-}
 
 /// M u'' + C u' + K u = f, decoupled: u_i = sum over j of shape_ij q_j.
 #[derive(Debug, Clone)]
@@ -32,8 +25,12 @@ pub(super) struct Modes {
 
 impl Modes {
     /// None if damping and stiffness have no modes in common (C M⁻¹ K is not symmetric), or if there
-    /// are more than [`MOST`] particles. `drag` is the coefficient of each particle.
-    pub fn new(masses: &[f64], links: &[Link], drag: &[f64]) -> Option<Self> {
+    /// are more than [`MOST`] particles.
+    pub fn new(problem: &Problem, group: &Group) -> Option<Self> {
+        let particles = || group.free.iter().map(|&i| &problem.scene.particles[i]);
+        let masses: Vec<f64> = particles().map(|p| p.mass).collect();
+        let drag: Vec<f64> = particles().map(|p| p.drag).collect();
+        let links = &group.links;
         let n = masses.len();
         if n > MOST {
             return None;
@@ -44,7 +41,7 @@ impl Modes {
         for (row, link) in links.iter().enumerate() {
             for (end, sign) in link.ends.iter().zip([-1.0, 1.0]) {
                 if let Some(i) = *end {
-                    b[(row, i)] += sign * link.stiffness.sqrt() / roots[i];
+                    b[(row, i)] += sign * link.spring.stiffness.sqrt() / roots[i];
                 }
             }
         }
@@ -59,22 +56,23 @@ impl Modes {
         let mut found = Self {
             modes: w.into_iter().map(|w| Mode { w, g: 0.0 }).collect(),
             shapes: shapes(&vectors, &roots),
-            masses: masses.to_vec(),
+            masses,
             leak: 0.0,
             spread: 0.0,
         };
         if n == 1 {
             // The root of a sum of k / m has fewer roundings than the norm of a column.
-            let all: f64 = links.iter().map(|l| l.stiffness).sum();
-            let damping: f64 = links.iter().map(|l| l.damping).chain(drag.to_vec()).sum();
+            let mass = found.masses[0];
+            let all: f64 = links.iter().map(|l| l.spring.stiffness).sum();
+            let damping = links.iter().map(|l| l.spring.damping).chain(drag);
             found.modes[0] = Mode {
-                w: (all / masses[0]).sqrt(),
-                g: damping / (2.0 * masses[0]),
+                w: (all / mass).sqrt(),
+                g: damping.sum::<f64>() / (2.0 * mass),
             };
             return Some(found);
         }
-        let damped = links.iter().any(|l| l.damping > 0.0) || drag.iter().any(|&b| b > 0.0);
-        (!damped || found.damp(&vectors, &roots, links, drag)).then_some(found)
+        let damped = links.iter().any(|l| l.spring.damping > 0.0) || drag.iter().any(|&b| b > 0.0);
+        (!damped || found.damp(&vectors, &roots, links, &drag)).then_some(found)
     }
 
     /// Decay rates, and shapes that suit the damping too where a frequency repeats. False if damping
@@ -131,9 +129,9 @@ impl Modes {
                 }
             }
         };
-        for link in links.iter().filter(|l| l.damping > 0.0) {
-            let row: Vec<f64> = (0..n).map(|j| self.stretch(j, link)).collect();
-            add(&row, link.damping);
+        for link in links.iter().filter(|l| l.spring.damping > 0.0) {
+            let row: Vec<f64> = (0..n).map(|j| self.stretch(j, link.ends)).collect();
+            add(&row, link.spring.damping);
         }
         for (i, &b) in drag.iter().enumerate().filter(|(_, b)| **b > 0.0) {
             let row: Vec<f64> = (0..n).map(|j| self.shape(j)[i]).collect();
@@ -148,9 +146,9 @@ impl Modes {
         &self.shapes[j * n..(j + 1) * n]
     }
 
-    /// How much longer a link gets per unit of mode `j`.
-    pub fn stretch(&self, j: usize, link: &Link) -> f64 {
-        let [a, b] = link.ends.map(|end| end.map_or(0.0, |i| self.shape(j)[i]));
+    /// How much farther apart two ends get per unit of mode `j`, along its axis; None is a fixed end.
+    pub fn stretch(&self, j: usize, ends: [Option<usize>; 2]) -> f64 {
+        let [a, b] = ends.map(|end| end.map_or(0.0, |i| self.shape(j)[i]));
         b - a
     }
 

@@ -4,13 +4,14 @@ use super::line::Drift;
 use super::mode::{Mode, Response};
 use super::modes::Modes;
 use super::sideways::Sideways;
-use super::vector::{norm, scaled};
+use super::vector::norm;
+use nalgebra::Vector3;
 
 /// What the modes do along one axis.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     /// Unit vector.
-    pub direction: [f64; 3],
+    pub direction: Vector3<f64>,
     /// Initial velocity of each mode.
     pub velocity: Vec<f64>,
     /// Initial acceleration of each mode, without damping.
@@ -74,7 +75,7 @@ impl Part {
         let n = self.particles.len();
         let (mut all, mut swing) = (vec![0.0_f64; n], vec![0.0_f64; n]);
         let drift = drifting(&self.drift);
-        let drifted = scaled(self.drift.velocity, drift.impulse_bound(t));
+        let drifted = self.drift.velocity * drift.impulse_bound(t);
         all.fill(norm(drifted) + norm(self.drift.pull) * drift.step_bound(t));
         for axis in &self.axes {
             let (mut each, mut swinging) = (vec![0.0; n], vec![0.0; n]);

@@ -2,7 +2,8 @@
 
 use super::super::{Motion, States};
 use super::elliptic::{Jacobi, Modulus};
-use super::vector::{across, dot, norm, scaled, sub, unit};
+use super::vector::{across, norm, unit};
+use nalgebra::Vector3;
 
 /// A bob on a rigid rod, swinging in a plane or going round in it; no damping.
 ///
@@ -12,10 +13,10 @@ use super::vector::{across, dot, norm, scaled, sub, unit};
 /// have no rods.
 #[derive(Debug, Clone)]
 pub struct Pendulum {
-    pivot: [f64; 3],
+    pivot: Vector3<f64>,
     /// Unit vectors: along gravity, and across it in the plane of motion.
-    down: [f64; 3],
-    side: [f64; 3],
+    down: Vector3<f64>,
+    side: Vector3<f64>,
     /// m.
     length: f64,
     /// w, rad/s.
@@ -63,41 +64,27 @@ impl Pendulum {
         let cancelled = (cos * cos + r * r) / beyond.abs();
         let complement = beyond.abs().sqrt();
         let (round, modulus, start) = if beyond >= 0.0 {
+            let (k, dn) = (energy, cos);
             let (sn, cn) = if energy > 0.0 {
                 (sin / energy, r / energy)
             } else {
                 (0.0, 1.0)
             };
-            let modulus = Modulus {
-                k: energy,
-                complement,
-            };
-            (Round::No, modulus, Jacobi { sn, cn, dn: cos })
+            (Round::No, Modulus { k, complement }, Jacobi { sn, cn, dn })
         } else {
-            let modulus = Modulus {
-                k: 1.0 / energy,
-                complement: complement / energy,
-            };
-            let forward = if r > 0.0 {
+            let (k, complement) = (1.0 / energy, complement / energy);
+            let (sn, cn, dn) = (sin, cos, r.abs() / energy);
+            let way = if r > 0.0 {
                 Round::Forward
             } else {
                 Round::Backward
             };
-            let dn = r.abs() / energy;
-            (
-                forward,
-                modulus,
-                Jacobi {
-                    sn: sin,
-                    cn: cos,
-                    dn,
-                },
-            )
+            (way, Modulus { k, complement }, Jacobi { sn, cn, dn })
         };
         Some(Self {
-            pivot: [0.0; 3],
-            down: [0.0, 0.0, -1.0],
-            side: [1.0, 0.0, 0.0],
+            pivot: Vector3::zeros(),
+            down: -Vector3::z(),
+            side: Vector3::x(),
             length,
             w,
             round,
@@ -118,28 +105,24 @@ impl Pendulum {
         velocity: [f64; 3],
         gravity: [f64; 3],
     ) -> Option<Self> {
-        let rod = sub(position, pivot);
+        let [pivot, position, velocity, gravity] =
+            [pivot, position, velocity, gravity].map(Vector3::from);
+        let rod = position - pivot;
         let (length, speed) = (norm(rod), norm(velocity));
         let (down, along) = (unit(gravity)?, unit(rod)?);
-        let out = |v: [f64; 3]| sub(v, scaled(down, dot(v, down)));
+        let out = |v: Vector3<f64>| v - down * v.dot(&down);
         // The plane is the rod's, or the velocity's where the rod hangs or stands straight.
         let side = if across(rod, down) > ROUNDING * length {
             unit(out(along))?
         } else if speed > 0.0 {
             unit(out(velocity))?
         } else {
-            let thin = (0..3).min_by(|&a, &b| down[a].abs().total_cmp(&down[b].abs()))?;
-            let mut axis = [0.0; 3];
-            axis[thin] = 1.0;
-            unit(out(axis))?
+            unit(out(Vector3::ith(down.iamin(), 1.0)))?
         };
-        let angle = dot(along, side).atan2(dot(along, down));
-        let ahead = sub(
-            scaled(side, dot(along, down)),
-            scaled(down, dot(along, side)),
-        );
-        let forward = dot(velocity, ahead);
-        if norm(sub(velocity, scaled(ahead, forward))) > ROUNDING * speed {
+        let angle = along.dot(&side).atan2(along.dot(&down));
+        let ahead = side * along.dot(&down) - down * along.dot(&side);
+        let forward = velocity.dot(&ahead);
+        if norm(velocity - ahead * forward) > ROUNDING * speed {
             return None;
         }
         let found = Self::new(length, norm(gravity), angle, forward / length)?;
@@ -194,19 +177,15 @@ impl Pendulum {
 /// The motion of the bob alone: states of three coordinates.
 impl Motion for Pendulum {
     fn states(&self, times: &[f64]) -> States {
-        let mut states = States {
-            dim: 3,
-            ..States::default()
-        };
+        let mut states = States::with_room(3, times.len());
         for &t in times {
             let (sin, cos, rate) = self.half(t);
             // Of the whole angle.
             let (sin, cos) = (2.0 * sin * cos, (cos - sin) * (cos + sin));
-            for c in 0..3 {
-                let (down, side) = (self.length * self.down[c], self.length * self.side[c]);
-                states.x.push(self.pivot[c] + cos * down + sin * side);
-                states.v.push(rate * (cos * side - sin * down));
-            }
+            let (down, side) = (self.length * self.down, self.length * self.side);
+            let x = self.pivot + cos * down + sin * side;
+            let v = rate * (cos * side - sin * down);
+            states.push(x.as_slice(), v.as_slice());
         }
         states
     }

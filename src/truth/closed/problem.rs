@@ -1,7 +1,8 @@
 //! What a closed form is asked for, and the independent groups it falls into.
 
-use crate::scene::{Scene, Spring};
-use crate::system::{ParticleSystem, State};
+use crate::physics::{ParticleSystem, State};
+use crate::scene::{DampingModel, Scene, Spring};
+use nalgebra::Vector3;
 
 /// A scene from t = 0 to `until`.
 pub(super) struct Problem<'a> {
@@ -11,14 +12,14 @@ pub(super) struct Problem<'a> {
     /// The scene's size, m.
     pub size: f64,
     /// Acceleration of gravity, m/s².
-    gravity: [f64; 3],
+    gravity: Vector3<f64>,
     /// Wind on each free particle, N.
-    wind: [f64; 3],
+    wind: Vector3<f64>,
 }
 
 impl<'a> Problem<'a> {
     pub fn new(scene: &'a Scene, until: f64) -> Self {
-        let mut gravity = [0.0; 3];
+        let mut gravity = Vector3::zeros();
         gravity[scene.up.index()] = scene.solver.gravity;
         let wind = scene.wind.as_ref();
         Self {
@@ -27,23 +28,24 @@ impl<'a> Problem<'a> {
             until,
             size: scene.size(),
             gravity,
-            wind: wind.map_or([0.0; 3], |w| w.direction.map(|d| w.strength * d)),
+            wind: wind.map_or(Vector3::zeros(), |w| {
+                w.strength * Vector3::from(w.direction)
+            }),
         }
     }
 
-    pub fn position(&self, particle: usize) -> [f64; 3] {
-        self.scene.particles[particle].position
+    pub fn position(&self, particle: usize) -> Vector3<f64> {
+        self.scene.particles[particle].position.into()
     }
 
-    pub fn velocity(&self, particle: usize) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.start.v[3 * particle + axis])
+    pub fn velocity(&self, particle: usize) -> Vector3<f64> {
+        Vector3::from_fn(|axis, _| self.start.v[3 * particle + axis])
     }
 
     /// Acceleration of a particle under constant forces alone: the same bits for equal masses, and
     /// without wind for all.
-    pub fn constant(&self, particle: usize) -> [f64; 3] {
-        let mass = self.scene.particles[particle].mass;
-        [0, 1, 2].map(|axis| self.gravity[axis] + self.wind[axis] / mass)
+    pub fn constant(&self, particle: usize) -> Vector3<f64> {
+        self.gravity + self.wind / self.scene.particles[particle].mass
     }
 
     /// Whether this spring or damper can move anything.
@@ -79,7 +81,12 @@ impl<'a> Problem<'a> {
         for spring in springs {
             let [a, b] = spring.ends;
             let root = root(&mut parent, if free(a) { a } else { b });
-            groups[group_of[root]].springs.push(spring);
+            let group = &mut groups[group_of[root]];
+            group.links.push(Link {
+                spring,
+                ends: spring.ends.map(|end| group.free.binary_search(&end).ok()),
+                between: self.position(b) - self.position(a),
+            });
         }
         groups
     }
@@ -99,22 +106,37 @@ fn root(parent: &mut [usize], mut i: usize) -> usize {
 pub(super) struct Group<'a> {
     /// Ascending.
     pub free: Vec<usize>,
-    pub springs: Vec<&'a Spring>,
+    pub links: Vec<Link<'a>>,
+}
+
+/// A spring and damper of a group.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Link<'a> {
+    pub spring: &'a Spring,
+    /// Where in `free` its ends stand; None is a fixed end.
+    pub ends: [Option<usize>; 2],
+    /// From its first end to its second at the start, m.
+    pub between: Vector3<f64>,
 }
 
 impl Group<'_> {
-    /// Where in `free` a particle stands; None for a fixed one.
-    pub fn place(&self, particle: usize) -> Option<usize> {
-        self.free.binary_search(&particle).ok()
-    }
-
     /// Whether a spring ties it to something fixed.
     pub fn is_anchored(&self) -> bool {
-        let fixed = |end: &usize| self.place(*end).is_none();
-        self.springs.iter().any(|s| s.ends.iter().any(fixed))
+        self.links.iter().any(|l| l.ends.contains(&None))
     }
 
-    pub fn is_damped(&self) -> bool {
-        self.springs.iter().any(|s| s.damping > 0.0)
+    /// Whether every force is linear wherever the particles are: no spring has a rest length, and no
+    /// damper a direction.
+    pub fn is_linear(&self, model: DampingModel) -> bool {
+        let damped = self.links.iter().any(|l| l.spring.damping > 0.0);
+        (model == DampingModel::Isotropic || !damped)
+            && !self.links.iter().any(Link::has_rest_length)
+    }
+}
+
+impl Link<'_> {
+    /// Whether the spring pulls towards a length other than 0.
+    pub fn has_rest_length(&self) -> bool {
+        self.spring.stiffness > 0.0 && self.spring.rest_length > 0.0
     }
 }

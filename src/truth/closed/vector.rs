@@ -1,51 +1,34 @@
-//! Three-component vectors, as positions come in scenes.
+//! What [`Vector3`] lacks: lengths and directions whose digits survive whatever their size.
 
-pub(super) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(super) fn scaled(a: [f64; 3], by: f64) -> [f64; 3] {
-    a.map(|a| by * a)
-}
-
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
+use nalgebra::Vector3;
 
 /// Length; exact along an axis, and for components whose squares leave the range of a double.
-pub(super) fn norm(a: [f64; 3]) -> f64 {
-    let most = a.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
+pub(super) fn norm(a: Vector3<f64>) -> f64 {
+    let most = a.amax();
     if most == 0.0 {
         return 0.0;
     }
-    let a = a.map(|a| a / most);
-    most * dot(a, a).sqrt()
+    most * (a / most).norm()
 }
 
 /// Direction, or None of a zero vector.
-pub(super) fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
-    let most = a.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
-    let a = a.map(|a| a / most);
-    let length = dot(a, a).sqrt();
-    (most > 0.0).then(|| a.map(|a| a / length))
+pub(super) fn unit(a: Vector3<f64>) -> Option<Vector3<f64>> {
+    let most = a.amax();
+    (most > 0.0).then(|| (a / most) / (a / most).norm())
 }
 
 /// How far `a` reaches out of the line along `b`: exactly 0 where it does not.
-pub(super) fn across(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let Some(most) = b
-        .iter()
-        .map(|b| b.abs())
-        .reduce(f64::max)
-        .filter(|m| *m > 0.0)
-    else {
+pub(super) fn across(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
+    let most = b.amax();
+    if most == 0.0 {
         return norm(a);
-    };
-    let b = b.map(|b| b / most);
-    let cross = [
+    }
+    let b = b / most;
+    let cross = Vector3::new(
         difference_of_products(a[1], b[2], a[2], b[1]),
         difference_of_products(a[2], b[0], a[0], b[2]),
         difference_of_products(a[0], b[1], a[1], b[0]),
-    ];
+    );
     norm(cross) / norm(b)
 }
 

@@ -12,14 +12,14 @@ pub(super) fn in_space(problem: &Problem, group: &Group, modes: &Modes) -> (Stri
         .first()
         .copied()
         .filter(|_| modes.modes.len() == 1);
-    if let (Some(mode), true) = (one, group.springs.is_empty()) {
+    if let (Some(mode), true) = (one, group.links.is_empty()) {
         return alone(mode);
     }
     let line = one.and_then(|_| Line::of(problem, group));
     let on_line = line.is_some_and(|l| l.off.is_none());
     let where_ = if on_line { "in line" } else { "in space" };
     let subject = subject(group);
-    let of = if group.springs.len() == 1 {
+    let of = if group.links.len() == 1 {
         "whose rest length is 0"
     } else {
         "of rest length 0"
@@ -34,7 +34,7 @@ pub(super) fn in_space(problem: &Problem, group: &Group, modes: &Modes) -> (Stri
 /// Method and reason of a group that moves on one line; `shortest` is what its springs with a rest
 /// length do not fall below.
 pub(super) fn on_line(group: &Group, modes: &Modes, shortest: Option<f64>) -> (String, String) {
-    let while_ = match (shortest, group.springs.len()) {
+    let while_ = match (shortest, group.links.len()) {
         (None, _) => ", where the force is linear".to_owned(),
         (Some(l), 1) => format!(
             ": the force is linear while the spring's length stays above {} m",
@@ -45,7 +45,7 @@ pub(super) fn on_line(group: &Group, modes: &Modes, shortest: Option<f64>) -> (S
             below(l)
         ),
     };
-    let moving = if group.springs.len() == 1 {
+    let moving = if group.links.len() == 1 {
         "moving along it"
     } else {
         "all on one line"
@@ -76,7 +76,7 @@ fn subject(group: &Group) -> String {
         1 => "one free particle".to_owned(),
         n => format!("{n} free particles"),
     };
-    match group.springs.len() {
+    match group.links.len() {
         1 => format!("{particles} on one spring"),
         n => format!("{particles} on {n} springs"),
     }
@@ -85,7 +85,7 @@ fn subject(group: &Group) -> String {
 fn method(group: &Group, modes: &Modes, where_: &str) -> String {
     match modes.modes.as_slice() {
         [mode] => format!("oscillator {where_}, {}", regime(*mode)),
-        [mode, _] if group.springs.len() == 1 => {
+        [mode, _] if group.links.len() == 1 => {
             format!("two bodies on one spring, {}", regime(*mode))
         }
         modes => format!("eigendecomposition of {} modes", modes.len()),

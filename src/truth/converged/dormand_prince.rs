@@ -2,12 +2,11 @@
 
 pub use crate::integrators::adaptive::coefficients::DORMAND_PRINCE_8;
 
-use super::precise::Precise;
-use super::stepper::{Stepper, fit};
+use super::stepper::{Precise, Stepper, fit};
 use crate::integrators::Tableau;
 use crate::integrators::adaptive::coefficients::{ERROR_3, ERROR_5, mixed};
 use crate::integrators::nystrom::{self, LANES, Stage, Weight, sums, weights};
-use crate::system::System;
+use crate::physics::System;
 
 /// Steps of an explicit tableau in Nyström form, of compensated states.
 ///

@@ -1,8 +1,7 @@
 //! Extrapolation of Gragg's explicit midpoint rule, at fixed steps.
 
-use super::precise::Precise;
-use super::stepper::{Stepper, fit};
-use crate::system::System;
+use super::stepper::{Precise, Stepper, fit};
+use crate::physics::System;
 
 /// Numbers of substeps; the error of an even number has an expansion in h², so k of them give order
 /// 2k (Gragg 1965; Hairer, Nørsett, Wanner, Solving ODEs I, II.9, with Deuflhard's harmonic

@@ -1,37 +1,10 @@
 //! How fast neighbouring motions part.
 
 use super::mesh::Mesh;
-use super::precise::Precise;
-use super::rate::scatter;
-use super::samples::Samples;
-use crate::system::System;
 
 /// The neighbour starts this far away, relative to the size: its distance keeps eight digits, and
 /// eight orders of magnitude are left to grow through.
-const OFFSET: f64 = 1e-8;
-
-/// A start beside `start`: every free coordinate is moved, each by a fixed fraction of the offset.
-pub(super) fn neighbour(system: &dyn System, start: &Precise, size: f64) -> Precise {
-    let mut moved = start.clone();
-    let coordinates = moved.x.iter_mut().zip(system.inverse_mass()).enumerate();
-    for (at, (x, inverse_mass)) in coordinates {
-        if *inverse_mass > 0.0 {
-            *x += OFFSET * size * scatter(at);
-        }
-    }
-    moved
-}
-
-/// How far a motion and its neighbour have parted up to each instant, in units of their distance at
-/// the start: at least 1, infinite where one is not finite.
-pub(super) fn amplification(one: &Samples, other: &Samples) -> Vec<f64> {
-    let mut distances = one.apart(other);
-    let first = distances.first().copied().unwrap_or(0.0);
-    for distance in &mut distances {
-        *distance = if first > 0.0 { *distance / first } else { 1.0 };
-    }
-    distances
-}
+pub(super) const OFFSET: f64 = 1e-8;
 
 /// The rate at which neighbours part, 1/s: the slope of ln(amplification) over time, where an
 /// exponential describes the second half of the growth better than a power of time does and where it

@@ -3,10 +3,10 @@
 use super::NotConverged;
 use super::level::{LOST, Level};
 use super::mesh::Mesh;
-use super::precise::Precise;
 use super::rate::fastest_rate;
 use super::reference::STEPS;
-use crate::system::{State, System};
+use super::stepper::Precise;
+use crate::physics::{State, System};
 
 /// Bytes of kept states.
 const MEMORY: usize = 10 << 20;
@@ -47,10 +47,8 @@ pub(super) struct Halved {
     pub size: f64,
     /// How far neighbours have parted, in units of their distance at the start.
     pub amplification: Vec<f64>,
-    /// How far rounding may have led the motion astray, m.
-    pub rounding: Vec<f64>,
-    /// Largest coordinate, m.
-    pub magnitude: Vec<f64>,
+    /// The error bar, m.
+    pub bars: Vec<f64>,
     /// Force evaluations times coordinates that were spent.
     pub spent: u64,
     pub ended: Ended,
@@ -142,8 +140,7 @@ pub(super) fn halve(
     level.gaps = gaps;
     Ok(Halved {
         amplification,
-        rounding,
-        magnitude: level.magnitude(),
+        bars: level.bars(&rounding),
         size,
         spent,
         ended,

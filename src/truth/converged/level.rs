@@ -2,14 +2,14 @@
 
 use super::dormand_prince::DormandPrince;
 use super::gragg::Gragg;
-use super::growth::{amplification, neighbour};
+use super::growth::OFFSET;
 use super::mesh::Mesh;
 use super::noise::{MAGNIFIED, Noisy};
-use super::precise::Precise;
+use super::rate::scatter;
 use super::reference::STEPS;
-use super::samples::{Samples, apart, running_largest};
-use super::stepper::Stepper;
-use crate::system::System;
+use super::stepper::{Precise, Stepper, integrate};
+use crate::physics::System;
+use crate::truth::{States, farthest};
 
 /// Estimates closer than this, relative to the size, have converged; and steps whose own error is
 /// estimated to be smaller need no halving before others.
@@ -18,13 +18,17 @@ const TARGET: f64 = 1e-13;
 /// So have those closer than this many units of rounding of the largest coordinate.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
+/// The bar is this many times what stands between the estimates and what rounding may do: two errors
+/// of one kind and one sign differ by less than either.
+const CAUTION: f64 = 3.0;
+
 /// Estimates that differ by this share of the size have lost the motion.
 pub(super) const LOST: f64 = 0.1;
 
 /// Both estimates on one mesh.
 pub(super) struct Level {
     pub mesh: Mesh,
-    pub first: Samples,
+    pub first: States,
     /// Largest distance of the two up to each instant, m.
     pub gaps: Vec<f64>,
     /// Each piece's own error in position, m, and in velocity, m/s, as estimated.
@@ -34,36 +38,34 @@ pub(super) struct Level {
 impl Level {
     pub fn new(system: &(dyn System + Sync), start: &Precise, mesh: Mesh) -> Self {
         let mut errors = vec![[0.0_f64; 2]; mesh.pieces()];
-        let longest = mesh.interval() / f64::from(STEPS);
-        let lengths: Vec<f64> = mesh
-            .depths()
-            .iter()
-            .map(|depth| longest * 0.5_f64.powi(i32::from(*depth)))
-            .collect();
         let (first, second) = rayon::join(
             || {
                 let mut method = DormandPrince::default();
-                Samples::integrate(&mut method, system, start, &mesh, STEPS, |piece, method| {
-                    for (most, error) in errors[piece]
-                        .iter_mut()
-                        .zip(method.local_error(lengths[piece]))
-                    {
-                        // What is not finite needs halving too.
-                        *most = if error.is_finite() {
-                            most.max(error)
-                        } else {
-                            f64::INFINITY
-                        };
-                    }
-                })
+                integrate(
+                    &mut method,
+                    system,
+                    start,
+                    &mesh,
+                    STEPS,
+                    |piece, h, method| {
+                        for (most, error) in errors[piece].iter_mut().zip(method.local_error(h)) {
+                            // What is not finite needs halving too.
+                            *most = if error.is_finite() {
+                                most.max(error)
+                            } else {
+                                f64::INFINITY
+                            };
+                        }
+                    },
+                )
             },
             || {
                 let mut method = Gragg::default();
-                Samples::integrate(&mut method, system, start, &mesh, 1, |_, _| {})
+                integrate(&mut method, system, start, &mesh, 1, |_, _, _| {})
             },
         );
         Self {
-            gaps: first.apart(&second),
+            gaps: apart(&first, &second),
             mesh,
             first,
             errors,
@@ -109,19 +111,32 @@ impl Level {
     /// is all that is left of their errors, rarely meet the third as well.
     pub fn gaps_of_three(&self, system: &(dyn System + Sync), start: &Precise) -> Vec<f64> {
         let third = self.again(system, start, 2 * STEPS);
-        let gaps = self.first.apart(&third).into_iter().zip(&self.gaps);
+        let gaps = apart(&self.first, &third).into_iter().zip(&self.gaps);
         gaps.map(|(third, second)| third.max(*second)).collect()
     }
 
-    /// How far a neighbour has been up to each instant, in units of the distance it started from.
+    /// How far a motion that starts beside this one has parted from it up to each instant, in units of
+    /// their distance at the start: at least 1, infinite where one is not finite.
     pub fn amplification(
         &self,
         system: &(dyn System + Sync),
         start: &Precise,
         size: f64,
     ) -> Vec<f64> {
-        let beside = neighbour(system, start, size);
-        amplification(&self.first, &self.again(system, &beside, STEPS))
+        // Every free coordinate is moved, each by a fixed fraction of the offset.
+        let mut beside = start.clone();
+        let coordinates = beside.x.iter_mut().zip(system.inverse_mass()).enumerate();
+        for (at, (x, inverse_mass)) in coordinates {
+            if *inverse_mass > 0.0 {
+                *x += OFFSET * size * scatter(at);
+            }
+        }
+        let mut distances = apart(&self.first, &self.again(system, &beside, STEPS));
+        let first = distances.first().copied().unwrap_or(0.0);
+        for distance in &mut distances {
+            *distance = if first > 0.0 { *distance / first } else { 1.0 };
+        }
+        distances
     }
 
     /// How far rounding may have led the first estimate astray up to each instant, m: the farther of
@@ -129,7 +144,7 @@ impl Level {
     pub fn rounding(&self, system: &(dyn System + Sync), start: &Precise) -> Vec<f64> {
         let astray = |seed| {
             let noisy = Noisy::new(system, seed);
-            self.first.apart(&self.again(&noisy, start, STEPS))
+            apart(&self.first, &self.again(&noisy, start, STEPS))
         };
         let (one, other) = rayon::join(|| astray(1), || astray(2));
         let farther = one.iter().zip(&other).map(|(a, b)| a.max(*b));
@@ -137,9 +152,9 @@ impl Level {
     }
 
     /// The first estimate of another system, from another start or with other steps.
-    fn again(&self, system: &dyn System, start: &Precise, each: u32) -> Samples {
+    fn again(&self, system: &dyn System, start: &Precise, each: u32) -> States {
         let mut method = DormandPrince::default();
-        Samples::integrate(&mut method, system, start, &self.mesh, each, |_, _| {})
+        integrate(&mut method, system, start, &self.mesh, each, |_, _, _| {})
     }
 
     /// Values at the instants of a coarser level, each up to that instant, at those of this one.
@@ -152,9 +167,13 @@ impl Level {
             .collect()
     }
 
-    /// Largest coordinate up to each instant, m.
-    pub fn magnitude(&self) -> Vec<f64> {
-        running_largest((0..=self.mesh.intervals()).map(|k| largest(self.first.x(k))))
+    /// The error bar at each instant, m, where rounding may have led the motion astray so far, m.
+    pub fn bars(&self, rounding: &[f64]) -> Vec<f64> {
+        let instants = 0..=self.mesh.intervals();
+        let magnitudes = running_largest(instants.map(|k| largest(self.first.x(k))));
+        let off = self.gaps.iter().zip(rounding).zip(magnitudes);
+        off.map(|((gap, rounding), m)| CAUTION * (gap + rounding) + f64::EPSILON * m)
+            .collect()
     }
 
     /// The factor by which gaps have shrunk from this level to a finer one, as the geometric mean
@@ -184,7 +203,7 @@ impl Level {
             return size;
         }
         let start = self.first.x(0);
-        let distances = (1..=self.mesh.intervals()).map(|k| apart(self.first.x(k), start));
+        let distances = (1..=self.mesh.intervals()).map(|k| farthest(self.first.x(k), start));
         distances.filter(|d| d.is_finite()).fold(0.0, f64::max)
     }
 
@@ -203,4 +222,18 @@ impl Level {
 fn largest(values: &[f64]) -> f64 {
     let magnitudes = values.iter().map(|c| c.abs());
     magnitudes.filter(|c| c.is_finite()).fold(0.0, f64::max)
+}
+
+/// How far apart two motions of the same mesh have been up to each instant, m.
+fn apart(a: &States, b: &States) -> Vec<f64> {
+    running_largest((0..a.len()).map(|k| farthest(a.x(k), b.x(k))))
+}
+
+/// Each element the largest so far.
+fn running_largest(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let largest = values.scan(0.0, |most: &mut f64, value| {
+        *most = most.max(value);
+        Some(*most)
+    });
+    largest.collect()
 }

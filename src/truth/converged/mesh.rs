@@ -1,12 +1,14 @@
 //! Time cut into pieces of unequal length, each a power of two shorter than the longest.
 
+use serde::{Deserialize, Serialize};
+
 /// Halvings below an interval; beyond that a piece is as short as a rounding of the whole.
 const DEEPEST: u8 = 40;
 
 /// A stretch of time from 0 in equal intervals, each halved into pieces as often as it needs.
 ///
 /// All lengths are `until` over a power of two, so that no sum of them rounds.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Mesh {
     until: f64,
     /// How often each piece's interval was halved, in order of time.
@@ -28,6 +30,11 @@ impl Part {
     }
 }
 
+/// Of a piece, in units of its interval.
+fn length(depth: u8) -> f64 {
+    0.5_f64.powi(i32::from(depth))
+}
+
 impl Mesh {
     /// Equal pieces in at most `most` intervals; both powers of two.
     pub fn uniform(until: f64, pieces: u64, most: u64) -> Self {
@@ -41,29 +48,19 @@ impl Mesh {
         }
     }
 
-    /// From its parts, if they fit: each interval is filled exactly.
-    pub fn from_parts(until: f64, depths: Vec<u8>, counts: &[u64]) -> Option<Self> {
-        let mut ends = Vec::with_capacity(counts.len());
-        let mut end = 0_usize;
-        for &count in counts {
-            let start = end;
-            end = end.checked_add(usize::try_from(count).ok()?)?;
-            let pieces = depths.get(start..end)?;
-            let filled: u64 = pieces
-                .iter()
-                .map(|d| 1_u64 << (DEEPEST - d.min(&DEEPEST)))
-                .sum();
-            if filled != 1 << DEEPEST || pieces.iter().any(|d| *d > DEEPEST) {
-                return None;
-            }
-            ends.push(end);
-        }
-        let whole = end == depths.len() && !ends.is_empty();
-        whole.then_some(Self {
-            until,
-            depths,
-            ends,
-        })
+    /// Whether it covers this time and its pieces fill each interval exactly: one that was read may
+    /// not.
+    pub fn fills(&self, until: f64) -> bool {
+        let mut start = 0;
+        let filled = |&end: &usize| {
+            let pieces = self.depths.get(start..end);
+            start = end;
+            let lengths = |pieces: &[u8]| pieces.iter().map(|d| length(*d)).sum::<f64>();
+            pieces.is_some_and(|p| lengths(p) == 1.0 && p.iter().all(|d| *d <= DEEPEST))
+        };
+        self.until.to_bits() == until.to_bits()
+            && self.ends.iter().all(filled)
+            && self.ends.last() == Some(&self.depths.len())
     }
 
     /// Seconds.
@@ -89,11 +86,6 @@ impl Mesh {
         self.depths.len()
     }
 
-    /// The depths of all pieces.
-    pub fn depths(&self) -> &[u8] {
-        &self.depths
-    }
-
     /// Which pieces interval k consists of.
     pub fn range(&self, k: usize) -> std::ops::Range<usize> {
         let start = k.checked_sub(1).map_or(0, |before| self.ends[before]);
@@ -104,7 +96,7 @@ impl Mesh {
     pub fn steps(&self, k: usize, each: u32) -> impl Iterator<Item = Part> {
         let pieces = self.depths[self.range(k)].iter();
         let lengths = pieces.flat_map(move |depth| {
-            let length = 0.5_f64.powi(i32::from(*depth)) / f64::from(each);
+            let length = length(*depth) / f64::from(each);
             std::iter::repeat_n(length, each as usize)
         });
         lengths.scan(0.0, |offset, length| {

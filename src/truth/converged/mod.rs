@@ -10,10 +10,9 @@
 //!
 //! ```text
 //! rate -> mesh -> two estimates -> halving -> bars -> horizon
-//!                  precise sums     noise, growth     reference (states at any time) <-> bytes
+//!                  precise sums     noise, growth     reference (states at any time) <-> saved
 //! ```
 
-mod bytes;
 mod dormand_prince;
 mod gragg;
 mod growth;
@@ -22,40 +21,34 @@ mod key;
 mod level;
 mod mesh;
 mod noise;
-mod precise;
 mod rate;
 mod reference;
-mod samples;
+mod saved;
 mod stepper;
 
 pub use dormand_prince::{DORMAND_PRINCE_8, DormandPrince};
 pub use gragg::{Gragg, SUBSTEPS};
 pub use key::key;
-pub use precise::Precise;
 pub use reference::{Reference, SharedSystem};
-pub use stepper::Stepper;
+pub use stepper::{Precise, Stepper};
 
 use super::Store;
+use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use crate::system::{ParticleSystem, State};
 use halving::{Ended, Halved, Wanted, halve};
 use level::Level;
 use reference::{Record, STEPS};
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// Changes whenever the same scene would get other bits.
-const VERSION: u32 = 2;
+/// Changes whenever the same scene would get other bits, or they would be kept otherwise.
+const VERSION: u32 = 3;
 
 /// What [`find`] may spend on a scene, in force evaluations times coordinates.
 pub const BUDGET: u64 = 1 << 30;
 
 /// The horizon ends where the error bar exceeds this share of the size.
 pub const HORIZON: f64 = 1e-6;
-
-/// The bar is this many times what stands between the estimates and what rounding may do: two errors
-/// of one kind and one sign differ by less than either.
-const CAUTION: f64 = 3.0;
 
 /// A converged reference and what is known of it.
 pub struct Converged {
@@ -76,7 +69,7 @@ pub struct Converged {
 }
 
 /// There is no converged reference, and why.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
 #[error("{reason}")]
 pub struct NotConverged {
     pub reason: String,
@@ -110,8 +103,9 @@ pub fn converge(
         budget,
     };
     let halved = halve(&**system, start, wanted)?;
-    let bars = bars(&halved);
-    let Halved { level, size, .. } = &halved;
+    let Halved {
+        level, size, bars, ..
+    } = &halved;
     let limit = HORIZON * size;
     let within = bars.iter().take_while(|bar| **bar <= limit).count();
     if within < 2 {
@@ -136,7 +130,7 @@ pub fn converge(
             record: Record {
                 mesh: halved.level.mesh,
                 samples: halved.level.first,
-                bars,
+                bars: halved.bars,
             },
         },
     })
@@ -157,22 +151,15 @@ pub fn find(
     let name = key(scene, until);
     let system: SharedSystem = Arc::new(system.clone());
     let saved = store.load(&name);
-    if let Some(found) = saved.and_then(|b| bytes::decode(&b, &name, &system, until)) {
+    if let Some(found) = saved.and_then(|b| saved::decode(&b, &name, &system, until)) {
         return found;
     }
     let start = ParticleSystem::initial_state(scene);
     let found = converge(&system, &start, until, scene.size(), BUDGET);
-    store.save(&name, &bytes::encode(&found, &name));
+    if let Some(bytes) = saved::encode(&found, &name) {
+        store.save(&name, &bytes);
+    }
     found
-}
-
-/// The error bar at each instant, m.
-fn bars(halved: &Halved) -> Vec<f64> {
-    let gaps = halved.level.gaps.iter();
-    let rounding = halved.magnitude.iter().zip(&halved.rounding);
-    gaps.zip(rounding)
-        .map(|(gap, (magnitude, rounding))| CAUTION * (gap + rounding) + f64::EPSILON * magnitude)
-        .collect()
 }
 
 fn reason(halved: &Halved, within: usize, horizon: f64, until: f64, growth: Option<f64>) -> String {

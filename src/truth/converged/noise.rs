@@ -1,6 +1,6 @@
 //! What rounding does to an estimate, measured by making it larger.
 
-use crate::system::{Power, System};
+use crate::physics::{Power, System};
 use std::cell::RefCell;
 
 /// Noise is this many times a last bit: far above rounding, far below everything else.

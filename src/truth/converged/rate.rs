@@ -1,7 +1,7 @@
 //! The fastest rate of a system at one state: what decides how small steps must be.
 
-use super::samples::apart;
-use crate::system::{State, System};
+use crate::physics::{State, System};
+use crate::truth::farthest;
 
 /// More change little: a factor of two in the rate is one halving.
 const ITERATIONS: usize = 20;
@@ -35,7 +35,7 @@ pub(super) fn fastest_rate(system: &dyn System, start: &State, size: f64) -> Opt
             image[at] = (a[at] - at_start[at]) / step;
         }
     });
-    let by_velocity = if system.is_damped() {
+    let by_velocity = if system.kinds().depends_on_velocity() {
         power_iteration(dim, free, |direction, image| {
             system.damping(start.t, &start.x, direction, image);
         })
@@ -59,7 +59,7 @@ fn power_iteration(
     let mut image = vec![0.0; dim];
     let mut largest = 0.0_f64;
     for _ in 0..ITERATIONS {
-        let length = apart(&direction, &zero);
+        let length = farthest(&direction, &zero);
         if length == 0.0 || !length.is_finite() {
             break;
         }
@@ -67,7 +67,7 @@ fn power_iteration(
             *c /= length;
         }
         map(&direction, &mut image);
-        largest = apart(&image, &zero);
+        largest = farthest(&image, &zero);
         std::mem::swap(&mut direction, &mut image);
     }
     largest

@@ -2,12 +2,11 @@
 
 use super::dormand_prince::DormandPrince;
 use super::mesh::Mesh;
-use super::precise::Precise;
-use super::samples::Samples;
-use super::stepper::Stepper;
-use crate::system::System;
+use super::stepper::{Precise, Stepper};
+use crate::physics::System;
 use crate::truth::{Motion, States};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Steps of the reference through each piece of its mesh, to one of the other estimate: both then
@@ -28,13 +27,29 @@ pub struct Reference {
 }
 
 /// All of a reference but its system.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Record {
     pub mesh: Mesh,
     /// States where the mesh's intervals meet.
-    pub samples: Samples,
+    pub samples: States,
     /// The error bar there, m; never falls.
     pub bars: Vec<f64>,
+}
+
+impl Record {
+    /// Whether it is one of so many coordinates up to `until`, s, and holds together.
+    pub fn fits(&self, dim: usize, until: f64) -> bool {
+        let Self {
+            mesh,
+            samples,
+            bars,
+        } = self;
+        let numbers = bars.len().checked_mul(dim);
+        mesh.fills(until)
+            && bars.len() == mesh.intervals() + 1
+            && samples.dim == dim
+            && [&samples.x, &samples.v].map(|c| Some(c.len())) == [numbers; 2]
+    }
 }
 
 impl Reference {
@@ -49,48 +64,36 @@ impl Reference {
         let interval = mesh.interval();
         let finite = bars.iter().take_while(|bar| bar.is_finite()).count();
         let last = finite.saturating_sub(1);
-
-        let mut method = DormandPrince::default();
-        let mut states = States {
-            dim: samples.dim,
-            x: Vec::with_capacity(times.len() * samples.dim),
-            v: Vec::with_capacity(times.len() * samples.dim),
-        };
-        let mut base = Precise::new(samples.x(0), samples.v(0));
-        let mut at = base.clone();
-        let mut from = None;
-        let mut steps = None;
-        for &t in times {
-            let t = t.clamp(0.0, mesh.until());
-            let mut k = ((t / interval) as usize).min(last);
+        let inside = |t: f64| t.clamp(0.0, mesh.until());
+        let interval_of = |t: f64| {
+            let k = ((inside(t) / interval) as usize).min(last);
             // The quotient may have been rounded up.
-            if k > 0 && mesh.time(k) > t {
-                k -= 1;
-            }
-            if from != Some(k) {
-                from = Some(k);
-                base.set(samples.x(k), samples.v(k));
-                let ahead = (k < last).then(|| mesh.steps(k, STEPS));
-                steps = Some(ahead.into_iter().flatten().peekable());
-            }
-            // Rounded once, whatever the time.
-            let since = (-(k as f64)).mul_add(interval, t);
-            at.copy_from(&base);
-            let Some(steps) = &mut steps else { continue };
-            while let Some(step) = steps.next_if(|step| step.end() * interval <= since) {
-                let t = mesh.time(k) + step.offset * interval;
-                method.step(&*self.system, t, step.length * interval, &mut base);
-            }
-            at.copy_from(&base);
-            if let Some(step) = steps.peek() {
-                let rest = (-step.offset).mul_add(interval, since);
-                if rest > 0.0 {
+            k - usize::from(k > 0 && mesh.time(k) > inside(t))
+        };
+        let mut method = DormandPrince::default();
+        let mut states = States::with_room(samples.dim, times.len());
+        for times in times.chunk_by(|a, b| interval_of(*a) == interval_of(*b)) {
+            let k = interval_of(times[0]);
+            let mut base = Precise::new(samples.x(k), samples.v(k));
+            let ahead = (k < last).then(|| mesh.steps(k, STEPS));
+            let mut steps = ahead.into_iter().flatten().peekable();
+            for &t in times {
+                // Rounded once, whatever the time.
+                let since = (-(k as f64)).mul_add(interval, inside(t));
+                while let Some(step) = steps.next_if(|step| step.end() * interval <= since) {
                     let t = mesh.time(k) + step.offset * interval;
-                    method.step(&*self.system, t, rest, &mut at);
+                    method.step(&*self.system, t, step.length * interval, &mut base);
                 }
+                let mut at = base.clone();
+                if let Some(step) = steps.peek() {
+                    let rest = (-step.offset).mul_add(interval, since);
+                    if rest > 0.0 {
+                        let t = mesh.time(k) + step.offset * interval;
+                        method.step(&*self.system, t, rest, &mut at);
+                    }
+                }
+                states.push(&at.x, &at.v);
             }
-            states.x.extend_from_slice(&at.x);
-            states.v.extend_from_slice(&at.v);
         }
         states
     }
@@ -105,10 +108,7 @@ impl Motion for Reference {
             .par_chunks(PART)
             .map(|times| self.integrate(times))
             .collect();
-        let mut all = States {
-            dim: self.record.samples.dim,
-            ..States::default()
-        };
+        let mut all = States::with_room(self.record.samples.dim, times.len());
         for part in parts {
             all.x.extend(part.x);
             all.v.extend(part.v);

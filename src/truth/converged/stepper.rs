@@ -1,7 +1,62 @@
-//! What the two estimates have in common.
+//! What the two estimates have in common: states that remember what rounding took from them, steps that
+//! advance them, and whole integrations.
 
-use super::precise::Precise;
-use crate::system::System;
+use super::mesh::Mesh;
+use crate::physics::{State, System};
+use crate::truth::States;
+
+/// Positions and velocities whose updates are summed with compensation (Kahan 1965, in Knuth's
+/// branch-free form): each coordinate is the unevaluated sum of a double and a small remainder.
+///
+/// Not double-double arithmetic: forces see doubles.
+#[derive(Debug, Clone)]
+pub struct Precise {
+    /// Positions, m.
+    pub x: Vec<f64>,
+    /// Velocities, m/s.
+    pub v: Vec<f64>,
+    /// What belongs to the positions below their last bit, m.
+    pub x_low: Vec<f64>,
+    /// The same of the velocities, m/s.
+    pub v_low: Vec<f64>,
+}
+
+impl Precise {
+    pub fn new(x: &[f64], v: &[f64]) -> Self {
+        Self {
+            x: x.to_vec(),
+            v: v.to_vec(),
+            x_low: vec![0.0; x.len()],
+            v_low: vec![0.0; v.len()],
+        }
+    }
+
+    /// Adds to one coordinate's position and velocity.
+    #[inline(always)]
+    pub fn add(&mut self, at: usize, dx: f64, dv: f64) {
+        (self.x[at], self.x_low[at]) = two_sum(self.x[at], self.x_low[at] + dx);
+        (self.v[at], self.v_low[at]) = two_sum(self.v[at], self.v_low[at] + dv);
+    }
+
+    pub fn is_finite(&self) -> bool {
+        self.x.iter().chain(&self.v).all(|c| c.is_finite())
+    }
+}
+
+impl From<&State> for Precise {
+    fn from(state: &State) -> Self {
+        Self::new(&state.x, &state.v)
+    }
+}
+
+/// a + b as the nearest double and the exact rest (Knuth, TAOCP 2, 4.2.2).
+#[inline(always)]
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let b_seen = sum - a;
+    let rest = (a - (sum - b_seen)) + (b - b_seen);
+    (sum, rest)
+}
 
 /// A one-step method of high order at fixed steps. It keeps scratch memory only.
 ///
@@ -20,4 +75,42 @@ pub(super) fn fit(buffer: &mut Vec<f64>, n: usize) {
     if buffer.len() != n {
         *buffer = vec![0.0; n];
     }
+}
+
+/// Integrates from the start with `each` steps through every piece of the mesh and keeps the states where
+/// its intervals meet. `after` is told which piece each step went through, and its
+/// length, s. From the first state that is
+/// not finite on, all are NaN.
+pub(super) fn integrate<S: Stepper>(
+    stepper: &mut S,
+    system: &dyn System,
+    start: &Precise,
+    mesh: &Mesh,
+    each: u32,
+    mut after: impl FnMut(usize, f64, &S),
+) -> States {
+    let mut state = start.clone();
+    let dim = state.x.len();
+    let instants = mesh.intervals() + 1;
+    let mut samples = States::with_room(dim, instants);
+    samples.push(&state.x, &state.v);
+    let interval = mesh.interval();
+    for k in 0..mesh.intervals() {
+        let first = mesh.range(k).start;
+        for (step, part) in mesh.steps(k, each).enumerate() {
+            let (t, h) = (
+                mesh.time(k) + part.offset * interval,
+                part.length * interval,
+            );
+            stepper.step(system, t, h, &mut state);
+            after(first + step / each as usize, h, stepper);
+        }
+        if !state.is_finite() {
+            samples.x.resize(instants * dim, f64::NAN);
+            samples.v.resize(instants * dim, f64::NAN);
+            break;
+        }
+        samples.push(&state.x, &state.v);
+    }
+    samples
 }

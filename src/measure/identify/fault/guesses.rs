@@ -5,8 +5,8 @@ use super::super::mistakes::{MISTAKES, Wrong};
 use super::spot::Spot;
 use super::words::{rows_lost, spring_name};
 use crate::integrators::REGISTRY;
+use crate::physics::ParticleSystem;
 use crate::scene::{Scene, Spring};
-use crate::system::ParticleSystem;
 
 /// A change that may explain a fault.
 pub(super) struct Guess {
@@ -53,7 +53,7 @@ fn effects(spot: &Spot) -> Vec<Guess> {
             (-1.0, "has the wrong sign"),
             (2.0, "acts twice"),
         ] {
-            let of = |other: &crate::effects::EffectRow| {
+            let of = |other: &crate::physics::effects::EffectRow| {
                 if other.id == row.id { factor } else { 1.0 }
             };
             let wrong = ParticleSystem::scaled(spot.question.scene, &of);

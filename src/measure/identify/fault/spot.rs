@@ -7,7 +7,7 @@ use super::super::transition::Transition;
 use super::NUDGES;
 use super::words;
 use crate::outcome::{Fault, Quantity};
-use crate::system::State;
+use crate::physics::State;
 
 /// Two errors within this share of each other are equally large.
 const TIE: f64 = 1e-3;

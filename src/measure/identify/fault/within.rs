@@ -4,7 +4,7 @@ use super::super::candidate::Candidate;
 use super::super::replay::FIT;
 use super::guesses::{Guess, Way};
 use super::spot::Spot;
-use crate::system::State;
+use crate::physics::State;
 
 /// Coordinates times steps that may be spent on the search.
 const BUDGET: u64 = 30_000_000;

@@ -4,7 +4,7 @@ use crate::integrators::{
     DampingTreatment, Implicit, Integrator, RungeKutta, Scheme, Settings, Splitting, Stage,
     StepError, Tableau,
 };
-use crate::system::{State, System};
+use crate::physics::{State, System};
 
 /// How a step ends.
 type Stepped = Result<(), StepError>;

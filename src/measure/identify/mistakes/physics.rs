@@ -1,8 +1,8 @@
 //! Scenes computed wrongly: forces or masses that are not the scene's. None where it makes no
 //! difference.
 
+use crate::physics::ParticleSystem;
 use crate::scene::{DampingModel, Scene, Wind};
-use crate::system::ParticleSystem;
 
 /// The scene changed by `change`, if `there` is something to change.
 fn changed(scene: &Scene, there: bool, change: impl FnOnce(&mut Scene)) -> Option<ParticleSystem> {

@@ -3,8 +3,8 @@
 use super::{Map, Mistake, Wrong, maps, physics};
 use crate::integrators::DampingTreatment::Explicit;
 use crate::integrators::Stage;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::system::ParticleSystem;
 
 /// A wrong step of one method.
 const fn step(id: &'static str, meant: &'static str, map: Map, says: &'static str) -> Mistake {

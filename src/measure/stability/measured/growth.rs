@@ -62,12 +62,10 @@ impl Maxima {
     /// The value after step `step`, from 1; others may be left out.
     pub fn push(&mut self, step: u64, value: f64) {
         let at = (step.saturating_sub(1) / self.window) as usize;
-        while self.values.len() <= at {
-            self.values.push(f64::NEG_INFINITY);
+        if self.values.len() <= at {
+            self.values.resize(at + 1, f64::NEG_INFINITY);
         }
-        if let Some(largest) = self.values.get_mut(at) {
-            *largest = largest.max(value);
-        }
+        self.values[at] = self.values[at].max(value);
     }
 
     /// Windows four times as long, for a run four times as long.
@@ -80,30 +78,21 @@ impl Maxima {
 
     /// Of the last half. `clear` is the rise of the logarithm from which growth counts.
     pub fn judge(&self, clear: f64) -> Judgement {
-        let from = self.values.len().saturating_sub(TAIL);
-        let tail = self.values.get(from..).unwrap_or(&[]);
+        let tail = &self.values[self.values.len().saturating_sub(TAIL)..];
         let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
-        let (Some(first), Some(last)) = (
-            tail.get(..ENDS),
-            tail.get(tail.len().saturating_sub(ENDS)..),
-        ) else {
-            return Judgement {
-                course: Course::Level,
-                rate: 0.0,
-            };
-        };
-        let rise = mean(last) - mean(first);
+        let ends = tail.first_chunk::<ENDS>().zip(tail.last_chunk::<ENDS>());
+        let rise = ends.map_or(0.0, |(first, last)| mean(last) - mean(first));
         if !rise.is_finite() {
             return Judgement {
                 course: Course::Level,
                 rate: 0.0,
             };
         }
-        let course = if rise > clear && rise > SURE * reversal(tail.iter().copied()) {
+        let course = if rise > clear && rise > SURE * largest_fall(tail) {
             Course::Grows
         } else if rise < -clear {
             Course::Falls
-        } else if rise > FAINT * clear && climbs(tail) {
+        } else if rise > FAINT * clear && tail.is_sorted() {
             Course::Faint
         } else {
             Course::Level
@@ -117,20 +106,16 @@ impl Maxima {
 
 /// Growth must be so many times the largest fall between two windows.
 const SURE: f64 = 4.0;
-/// Share of a clear rise below which there is none.
+/// Fraction of a clear rise below which there is none.
 const FAINT: f64 = 1e-3;
 
 /// The largest fall from one value to a later one.
-fn reversal(values: impl Iterator<Item = f64>) -> f64 {
+fn largest_fall(values: &[f64]) -> f64 {
     let mut highest = f64::NEG_INFINITY;
     let mut fall = 0.0_f64;
     for value in values {
-        highest = highest.max(value);
+        highest = highest.max(*value);
         fall = fall.max(highest - value);
     }
     fall
-}
-
-fn climbs(values: &[f64]) -> bool {
-    values.is_sorted()
 }

@@ -1,39 +1,8 @@
-//! Is this step stable? One run, or one pair of runs, watched until it is clear.
+//! Is this step stable? Runs are watched until it is clear.
 
 use super::growth::{Course, Maxima, WINDOWS};
-use super::shake::scramble;
-use crate::engines::Engine;
-use crate::integrators::StepError;
-
-/// What is watched.
-pub(super) trait Run {
-    /// Engine steps a step costs.
-    const ENGINES: u64;
-
-    fn step(&mut self) -> Result<(), StepError>;
-
-    /// Where the energy is now.
-    fn level(&mut self) -> Level;
-
-    /// Whether what is watched is no larger than rounding.
-    fn drowned(&mut self) -> bool;
-
-    /// Force passes and linear solves so far, where the engine counts them.
-    fn passes(&self) -> u64;
-}
-
-/// An energy, against its start or its scale, as a logarithm.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Level {
-    Log(f64),
-    /// Too high to stay there.
-    High(f64),
-    /// Past all bounds.
-    Exploded(f64),
-    /// Decayed to nothing.
-    Gone,
-    Failed(String),
-}
+use super::perturbation::scramble;
+use super::watched::{Gauge, Level, Runs};
 
 /// How a probe ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,21 +34,18 @@ impl Probed {
         matches!(self.fate, Fate::Grows { .. })
     }
 
-    fn grows(why: &str, rate: f64) -> Self {
+    fn grows(why: impl Into<String>, lost: bool, rate: Option<f64>) -> Self {
         Self {
             fate: Fate::Grows {
-                why: why.to_owned(),
-                lost: false,
+                why: why.into(),
+                lost,
             },
-            rate: Some(rate),
+            rate,
         }
     }
 
-    fn lost(why: String, rate: Option<f64>) -> Self {
-        Self {
-            fate: Fate::Grows { why, lost: true },
-            rate,
-        }
+    fn without_rate(fate: Fate) -> Self {
+        Self { fate, rate: None }
     }
 }
 
@@ -95,34 +61,32 @@ pub(super) struct Watch {
 
 /// Counts steps against a budget.
 pub(super) struct Budget<'a> {
-    pub left: u64,
+    left: u64,
+    /// In all.
     pub taken: u64,
-    pub tick: &'a (dyn Fn(u64) + Sync),
+    tick: &'a (dyn Fn(u64) + Sync),
 }
 
 /// A step that takes more force passes than this counts as several: Newton far from its root.
 const USUAL: u64 = 20;
-/// What a linear solve counts as.
-const SOLVE: u64 = 3;
 
-/// Force passes an engine took, its linear solves turned into such.
-pub(super) fn passes(engine: &dyn Engine) -> u64 {
-    let counts = engine.counts();
-    counts.all_force_passes().unwrap_or(0) + SOLVE * counts.linear_solves.unwrap_or(0)
-}
-
-impl Budget<'_> {
-    /// Steps, and what of them was more work than steps usually are: `passes` in all of them.
-    pub fn spend_on(&mut self, steps: u64, passes: u64) -> bool {
-        let over = (passes / USUAL).saturating_sub(steps);
-        self.left = self.left.saturating_sub(over);
-        self.spend(steps)
+impl<'a> Budget<'a> {
+    /// `tick` is called with steps taken.
+    pub fn new(left: u64, tick: &'a (dyn Fn(u64) + Sync)) -> Self {
+        Self {
+            left,
+            taken: 0,
+            tick,
+        }
     }
 
-    /// False when nothing is left.
-    pub fn spend(&mut self, steps: u64) -> bool {
+    /// Steps, and what of `passes`, all they took, was more work than steps usually are. False when
+    /// nothing is left.
+    pub fn spend(&mut self, steps: u64, passes: u64) -> bool {
         self.taken += steps;
         (self.tick)(steps);
+        let over = (passes / USUAL).saturating_sub(steps);
+        self.left = self.left.saturating_sub(over);
         let enough = self.left >= steps;
         self.left = self.left.saturating_sub(steps);
         enough
@@ -138,14 +102,19 @@ fn stride(step: u64) -> u64 {
 /// Steps are paid for in lots of so many.
 const PAID: u64 = 256;
 
-/// Runs until the answer is clear.
-pub(super) fn probe<R: Run>(run: &mut R, watch: Watch, budget: &mut Budget) -> Probed {
+/// Steps the runs until the answer is clear.
+pub(super) fn probe(
+    runs: &mut Runs,
+    gauge: &mut dyn Gauge,
+    watch: Watch,
+    budget: &mut Budget,
+) -> Probed {
     let mut maxima = Maxima::new(watch.steps);
-    let mut paid = run.passes();
-    let mut pay = |budget: &mut Budget, run: &R, steps: u64| {
-        let passes = run.passes();
-        let since = passes.saturating_sub(std::mem::replace(&mut paid, passes));
-        budget.spend_on(R::ENGINES * steps, since)
+    let mut passes = runs.passes();
+    let mut pay = |runs: &Runs, steps: u64| {
+        let since = runs.passes().saturating_sub(passes);
+        passes = runs.passes();
+        budget.spend(runs.len() as u64 * steps, since)
     };
     let mut step = 0;
     let mut high = 0;
@@ -154,93 +123,86 @@ pub(super) fn probe<R: Run>(run: &mut R, watch: Watch, budget: &mut Budget) -> P
             maxima.widen();
         }
         let end = maxima.steps();
+        let window = end / WINDOWS as u64;
         let mut unpaid = 0;
         let mut look = step + 1;
-        let mut rest = step + end / WINDOWS as u64;
+        let mut rest = step + window;
         high = 0;
         while step < end {
-            if let Err(error) = run.step() {
-                pay(budget, run, unpaid + 1);
-                return Probed::lost(format!("step {step} fails: {error}"), None);
+            unpaid += 1;
+            if let Err(error) = runs.step() {
+                pay(runs, unpaid);
+                return Probed::grows(format!("step {step} fails: {error}"), true, None);
             }
             step += 1;
-            unpaid += 1;
             // Also at the end of every window: what grows is largest there.
             if step >= look || step >= rest {
                 look = step + stride(step);
-                match run.level() {
-                    Level::Log(level) => maxima.push(step, level),
-                    Level::High(level) => {
-                        maxima.push(step, level);
-                        high = step;
-                    }
-                    Level::Exploded(level) => {
-                        pay(budget, run, unpaid);
-                        return Probed::lost(
-                            match step {
-                                1 => "its energy explodes within one step".to_owned(),
-                                step => format!("its energy explodes within {step} steps"),
-                            },
-                            Some(level / step as f64),
-                        );
-                    }
-                    Level::Gone => {
-                        pay(budget, run, unpaid);
-                        return Probed {
-                            fate: Fate::Decays,
-                            rate: None,
-                        };
-                    }
-                    Level::Failed(why) => {
-                        pay(budget, run, unpaid);
-                        return Probed::lost(format!("{why} within {step} steps"), None);
-                    }
+                let level = gauge.level(runs);
+                if let Level::Log(level) | Level::High(level) = level {
+                    maxima.push(step, level);
+                }
+                if let Level::High(_) = level {
+                    high = step;
+                }
+                if let Some(ended) = ended(level, step) {
+                    pay(runs, unpaid);
+                    return ended;
                 }
             }
             if unpaid >= PAID {
-                if !pay(budget, run, unpaid) {
-                    return Probed {
-                        fate: Fate::Impatient,
-                        rate: None,
-                    };
+                if !pay(runs, unpaid) {
+                    return Probed::without_rate(Fate::Impatient);
                 }
                 unpaid = 0;
             }
             if step >= rest {
-                rest = step + end / WINDOWS as u64;
-                if run.drowned() {
-                    pay(budget, run, unpaid);
-                    return Probed {
-                        fate: Fate::Decays,
-                        rate: None,
-                    };
+                rest = step + window;
+                if gauge.is_rounding(runs) {
+                    pay(runs, unpaid);
+                    return Probed::without_rate(Fate::Decays);
                 }
             }
         }
-        if !pay(budget, run, unpaid) {
-            return Probed {
-                fate: Fate::Impatient,
-                rate: None,
-            };
+        if !pay(runs, unpaid) {
+            return Probed::without_rate(Fate::Impatient);
         }
         if maxima.judge(watch.clear).course != Course::Faint {
             break;
         }
     }
     let judged = maxima.judge(watch.clear);
-    if judged.course == Course::Grows {
-        return Probed::grows("its energy keeps growing", judged.rate);
-    }
-    // The last quarter.
-    if high > 0 && high >= step - step / 4 {
-        return Probed::grows("its energy stays far too high", judged.rate);
-    }
-    Probed {
-        fate: match judged.course {
-            Course::Falls => Fate::Decays,
-            Course::Faint => Fate::Creeps,
-            _ => Fate::Steady,
-        },
-        rate: Some(judged.rate),
+    let rate = Some(judged.rate);
+    let fate = match judged.course {
+        Course::Grows => return Probed::grows("its energy keeps growing", false, rate),
+        // In the last quarter.
+        _ if high > 0 && high >= step - step / 4 => {
+            return Probed::grows("its energy stays far too high", false, rate);
+        }
+        Course::Falls => Fate::Decays,
+        Course::Faint => Fate::Creeps,
+        Course::Level => Fate::Steady,
+    };
+    Probed { fate, rate }
+}
+
+/// The answer, if the energy after so many steps leaves no other.
+fn ended(level: Level, step: u64) -> Option<Probed> {
+    match level {
+        Level::Log(_) | Level::High(_) => None,
+        Level::Gone => Some(Probed::without_rate(Fate::Decays)),
+        Level::Exploded(level) => Some(Probed::grows(
+            match step {
+                1 => "its energy explodes within one step".to_owned(),
+                step => format!("its energy explodes within {step} steps"),
+            },
+            true,
+            Some(level / step as f64),
+        )),
+        Level::NotFinite => Some(Probed::grows(
+            format!("it left the range of finite numbers within {step} steps"),
+            true,
+            None,
+        )),
     }
 }

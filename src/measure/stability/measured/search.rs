@@ -1,10 +1,10 @@
 //! Where to probe next: from a guess to the first step that fails, to 5e-4 of itself.
 
-use super::Limit;
-use super::bench::{Bench, STEPS};
 use super::growth::Maxima;
 use super::probe::{Budget, Fate, Probed};
-use crate::engines::Unsupported;
+use super::setup::{STEPS, Setup};
+use crate::measure::stability::Limit;
+use crate::solvers::Unsupported;
 
 /// An answer.
 pub(super) struct Found {
@@ -13,13 +13,13 @@ pub(super) struct Found {
     pub reason: String,
 }
 
-/// Why a search ends without an answer.
+/// Why a search ends before a limit is bracketed.
 pub(super) enum Stop {
+    /// There is none to bracket.
+    Found(Found),
     Unsupported(Unsupported),
-    Impatient {
-        stable: Option<f64>,
-        unstable: Option<f64>,
-    },
+    /// The budget is spent.
+    Impatient,
 }
 
 /// A step and what became of it.
@@ -41,10 +41,12 @@ struct Zone {
 
 /// One search.
 pub(super) struct Search<'a, 'b> {
-    pub bench: &'a Bench<'a>,
+    pub setup: &'a Setup<'a>,
     pub budget: &'a mut Budget<'b>,
     /// The shortest time scale, s.
     pub unit: f64,
+    /// The step found stable and the one found unstable, s, that a spent budget leaves behind.
+    pub known: (Option<f64>, Option<f64>),
 }
 
 /// The answer's relative width, half of what is promised.
@@ -85,91 +87,74 @@ const SAME_POWER: f64 = 0.4;
 impl Search<'_, '_> {
     /// `near` as in [`measure`](super::measure).
     pub fn limit(&mut self, near: Option<f64>) -> Result<Found, Stop> {
-        let mut found = self.found(near)?;
-        if self.bench.steps < STEPS {
-            found.reason += &format!("; seen over {} steps at most", self.bench.steps);
+        let found = self
+            .bracket(near)
+            .and_then(|(stable, unstable)| self.within(stable, unstable));
+        let mut found = match found {
+            Ok(found) | Err(Stop::Found(found)) => found,
+            Err(stop) => return Err(stop),
+        };
+        if self.setup.steps < STEPS {
+            found.reason += &format!("; seen over {} steps at most", self.setup.steps);
         }
         Ok(found)
     }
 
-    fn found(&mut self, near: Option<f64>) -> Result<Found, Stop> {
+    /// A stable step and a larger one that is not.
+    fn bracket(&mut self, near: Option<f64>) -> Result<(Tried, Tried), Stop> {
         let mut first = self.full(near.map_or(2.0 * self.unit, |near| near * (1.0 - BESIDE)))?;
         if let Some(near) = near
             && !first.probed.unstable()
         {
-            let beside = self
-                .full(near * (1.0 + BESIDE))
-                .map_err(|stop| known(stop, Some(first.h), None))?;
+            self.known = (Some(first.h), None);
+            let beside = self.full(near * (1.0 + BESIDE))?;
             if beside.probed.unstable() {
-                return self.below(first, beside);
+                return Ok((first, beside));
             }
             first = beside;
         }
-        let (stable, unstable) = if first.probed.unstable() {
-            match self.down(first)? {
-                Ok(bracket) => bracket,
-                Err(never) => return Ok(never),
-            }
+        if first.probed.unstable() {
+            self.down(first)
         } else {
-            match self.up(first)? {
-                Ok(bracket) => bracket,
-                Err(unconditional) => return Ok(unconditional),
-            }
-        };
-        self.below(stable, unstable)
+            self.up(first)
+        }
     }
 
     fn try_at(&mut self, h: f64, steps: u64, extensions: u32) -> Result<Tried, Stop> {
         let probed = self
-            .bench
+            .setup
             .probe(h, steps, extensions, self.budget)
             .map_err(Stop::Unsupported)?;
         if probed.fate == Fate::Impatient {
-            return Err(Stop::Impatient {
-                stable: None,
-                unstable: None,
-            });
+            return Err(Stop::Impatient);
         }
         Ok(Tried { h, probed })
     }
 
     fn full(&mut self, h: f64) -> Result<Tried, Stop> {
-        self.try_at(h, self.bench.steps, 2)
+        self.try_at(h, self.setup.steps, 2)
     }
 
-    /// From an unstable step to smaller ones. Err is an answer: none is stable.
-    fn down(&mut self, first: Tried) -> Result<Result<(Tried, Tried), Found>, Stop> {
+    /// From an unstable step to smaller ones, until one is stable.
+    fn down(&mut self, first: Tried) -> Result<(Tried, Tried), Stop> {
         let mut unstable = vec![first];
         loop {
             let last = unstable.last().map_or(self.unit, |t| t.h);
             if last < SMALL * self.unit {
-                return Ok(Err(self.never(last)));
+                return Err(never(last));
             }
-            let tried = self
-                .full(0.5 * last)
-                .map_err(|stop| known(stop, None, Some(last)))?;
+            self.known = (None, Some(last));
+            let tried = self.full(0.5 * last)?;
             if tried.probed.unstable() {
                 unstable.push(tried);
                 continue;
             }
+            self.known = (None, None);
             if self.vanishes(&tried, &unstable)? {
-                return Ok(Err(self.never(last)));
+                return Err(never(last));
             }
-            let lowest = unstable.pop();
-            return match lowest {
-                Some(lowest) => Ok(Ok((tried, lowest))),
-                None => Ok(Err(self.never(last))),
-            };
-        }
-    }
-
-    fn never(&self, smallest: f64) -> Found {
-        Found {
-            limit: Limit::Never,
-            reason: format!(
-                "its energy grows at every step tried, down to {smallest:.2e} s, where it grows too \
-                 slowly to see"
-            ),
+            let lowest = unstable.pop().ok_or_else(|| never(last))?;
+            return Ok((tried, lowest));
         }
     }
 
@@ -188,79 +173,61 @@ impl Search<'_, '_> {
 
     /// Whether rates fall like a power of the step, to one too small to be seen at the next.
     fn power_law(&self, unstable: &[Tried]) -> bool {
-        let seen = VISIBLE * self.bench.clear();
-        power_law(unstable).is_some_and(|next| next * Maxima::span(self.bench.steps) < seen)
+        let seen = VISIBLE * self.setup.clear();
+        power_law(unstable).is_some_and(|next| next * Maxima::span(self.setup.steps) < seen)
     }
 
-    /// From a stable step to larger ones. Err is an answer: all are stable.
-    fn up(&mut self, first: Tried) -> Result<Result<(Tried, Tried), Found>, Stop> {
+    /// From a stable step to larger ones, until one is not.
+    fn up(&mut self, first: Tried) -> Result<(Tried, Tried), Stop> {
         let guess = first.h;
         let end = FAR * self.unit.max(0.1 * guess);
         let mut stable = first;
         while stable.h < end {
             let zone = ZONES.iter().find(|zone| stable.h < zone.upto * guess);
             let Some(zone) = zone else { break };
+            self.known = (Some(stable.h), None);
             let h = stable.h * zone.ratio;
-            let tried = match self.try_at(h, self.bench.steps / zone.shorter, 0) {
-                Err(Stop::Unsupported(unsupported)) => {
-                    return Ok(Err(self.unconditional(stable.h, &unsupported.reason, "")));
+            let tried = match self.try_at(h, self.setup.steps / zone.shorter, 0) {
+                Err(Stop::Unsupported(Unsupported { reason })) => {
+                    let ended = format!("; beyond it cannot run: {reason}");
+                    return Err(unconditional(stable.h, &ended));
                 }
-                other => other.map_err(|stop| known(stop, Some(stable.h), None))?,
+                tried => tried?,
             };
             if tried.probed.unstable() {
-                return Ok(Ok((stable, tried)));
+                return Ok((stable, tried));
             }
             stable = tried;
         }
         // Briefly they were; once more at length, where nothing was tried at length yet.
         let last = match self.full(stable.h) {
-            Err(Stop::Impatient { .. }) => {
-                return Ok(Err(self.unconditional(stable.h, "", "looked at briefly")));
-            }
-            other => other?,
+            Err(Stop::Impatient) => return Err(unconditional(stable.h, ", looked at briefly")),
+            last => last?,
         };
         if last.probed.unstable() {
-            return Ok(Ok((
-                Tried {
-                    h: guess,
-                    ..last.clone()
-                },
-                last,
-            )));
+            let first = Tried {
+                h: guess,
+                ..last.clone()
+            };
+            return Ok((first, last));
         }
-        Ok(Err(self.unconditional(stable.h, "", "")))
-    }
-
-    fn unconditional(&self, largest: f64, why: &str, how: &str) -> Found {
-        let ended = match (why, how) {
-            ("", "") => String::new(),
-            ("", how) => format!(", {how}"),
-            (why, _) => format!("; beyond it cannot run: {why}"),
-        };
-        Found {
-            limit: Limit::Unconditional,
-            reason: format!("stable at every step tried, up to {largest:.2e} s{ended}"),
-        }
+        Err(unconditional(stable.h, ""))
     }
 
     /// From a bracket to the answer, once smaller steps have been looked through for a failing one.
-    fn below(&mut self, stable: Tried, unstable: Tried) -> Result<Found, Stop> {
+    fn within(&mut self, stable: Tried, unstable: Tried) -> Result<Found, Stop> {
         let mut lower: Option<Tried> = None;
         for k in (1..=BELOW).rev() {
+            self.known = (Some(stable.h), Some(unstable.h));
             let h = stable.h * 0.5_f64.powf(0.5 * f64::from(k));
-            let tried = self
-                .try_at(h, self.bench.steps.min(STEPS / BRIEF), 0)
-                .map_err(|stop| known(stop, Some(stable.h), Some(unstable.h)))?;
+            let tried = self.try_at(h, self.setup.steps.min(STEPS / BRIEF), 0)?;
             if tried.probed.unstable() {
-                let bracket = match lower {
-                    Some(lower) => Ok((lower, tried)),
+                let (lower, tried) = match lower {
+                    Some(lower) => (lower, tried),
                     // Unstable from there on: what was found stable is a window itself.
                     None => self.down(tried)?,
                 };
-                return match bracket {
-                    Ok((lower, tried)) => self.bisect(lower, tried),
-                    Err(never) => Ok(never),
-                };
+                return self.bisect(lower, tried);
             }
             lower = Some(tried);
         }
@@ -276,9 +243,8 @@ impl Search<'_, '_> {
             } else {
                 0.5 * (low + high.h)
             };
-            let tried = self
-                .full(h)
-                .map_err(|stop| known(stop, Some(low), Some(high.h)))?;
+            self.known = (Some(low), Some(high.h));
+            let tried = self.full(h)?;
             if tried.probed.unstable() {
                 high = tried;
             } else {
@@ -296,12 +262,21 @@ impl Search<'_, '_> {
     }
 }
 
-/// What is known when patience ends.
-fn known(stop: Stop, stable: Option<f64>, unstable: Option<f64>) -> Stop {
-    match stop {
-        Stop::Impatient { .. } => Stop::Impatient { stable, unstable },
-        other => other,
-    }
+fn never(smallest: f64) -> Stop {
+    Stop::Found(Found {
+        limit: Limit::Never,
+        reason: format!(
+            "its energy grows at every step tried, down to {smallest:.2e} s, where it grows too \
+             slowly to see"
+        ),
+    })
+}
+
+fn unconditional(largest: f64, ended: &str) -> Stop {
+    Stop::Found(Found {
+        limit: Limit::Unconditional,
+        reason: format!("stable at every step tried, up to {largest:.2e} s{ended}"),
+    })
 }
 
 /// The rate at half the last step, if the last three go like one power of the step.

@@ -1,12 +1,11 @@
 //! Up to which step nothing changes sign from one step to the next.
 
-use super::difference::Quadratic;
-use super::limit::Make;
+use super::perturbation::Perturbation;
 use super::probe::Budget;
-use super::shake::Shake;
+use super::setup::Setup;
+use crate::measure::stability::Linearised;
+use crate::physics::{ForceKinds, ParticleSystem, System};
 use crate::scene::Scene;
-use crate::system::{Jacobian, Linearization, ParticleSystem, System};
-use nalgebra::{DMatrix, Schur};
 
 /// Differences taken of the run: the k-th multiplies each mode by (R - 1)^k, which leaves the mode
 /// whose R is farthest below 1, the first to turn negative, and costs 2^k roundings.
@@ -22,8 +21,6 @@ const APART: f64 = 1e-8;
 const NOISE: f64 = 1e-6;
 /// Relative width of the answer.
 const WIDTH: f64 = 5e-4;
-/// Iterations after which the spectrum is given up.
-const SWEEPS: usize = 100_000;
 /// Coordinates beyond which the true motion's spectrum is not looked at.
 const LARGEST: usize = 300;
 /// Steps beyond this many shortest time scales are not tried.
@@ -34,21 +31,18 @@ const FAR: f64 = 1e3;
 /// nothing decays, the scene is too large, or, without a limit, no step up to a thousand of the
 /// shortest time scales `unit` changes sign.
 pub(super) fn below(
-    scene: &Scene,
-    system: &ParticleSystem,
-    make: &Make,
+    setup: &Setup,
     unit: f64,
     upto: Option<f64>,
     budget: &mut Budget,
 ) -> Option<f64> {
-    if !system.is_damped() || oscillates(scene, system)? {
+    let decays = setup.system.kinds().has(ForceKinds::DISSIPATIVE);
+    if !decays || may_oscillate(setup.scene, setup.system) {
         return None;
     }
-    let mut quadratic = Quadratic::new(system);
-    let start = Shake::large(scene, system, &mut |dx| quadratic.potential(dx));
     let mut smooth = |h: f64| -> Option<bool> {
-        budget.spend((2 * ROUNDS * (DIFFERENCES + 2)) as u64);
-        sign_kept(scene, system, make, &start, h)
+        budget.spend((2 * ROUNDS * (DIFFERENCES + 2)) as u64, 0);
+        sign_kept(setup, h)
     };
     let end = upto.unwrap_or(FAR * unit);
     let mut low = (unit / 16.0).min(0.5 * end);
@@ -80,25 +74,20 @@ pub(super) fn below(
 
 /// Whether the mode that decays fastest keeps its sign in a step: whether its factor, told from
 /// successive differences of high order, is real and not negative.
-fn sign_kept(
-    scene: &Scene,
-    system: &ParticleSystem,
-    make: &Make,
-    start: &Shake,
-    h: f64,
-) -> Option<bool> {
-    let size = norm(system, start);
-    let mut shape = start.clone();
+fn sign_kept(setup: &Setup, h: f64) -> Option<bool> {
+    let system = setup.system;
+    let mut shape = setup.perturbation.clone();
+    let size = norm(system, &shape);
     let mut kept = None;
     for _ in 0..ROUNDS {
-        let differences = differences(scene, system, make, &shape, h)?;
+        let differences = differences(setup, &shape, h)?;
         let Some(Differences { rows, rounding }) = differences else {
             // Not finite: nothing decays.
             return Some(false);
         };
         let [first, second, third] = &rows;
         let length = norm(system, first);
-        let of = |a: &Shake, b: &Shake| product(system, a, b);
+        let of = |a: &Perturbation, b: &Perturbation| product(system, a, b);
         let (aa, ab, bb) = (of(first, first), of(first, second), of(second, second));
         // Two modes are left where the rows are not parallel: third = sum second - product first, sum
         // and product being those of their factors.
@@ -123,55 +112,33 @@ fn sign_kept(
 
 /// Three successive differences of one order, and what of them is rounding.
 struct Differences {
-    rows: [Shake; 3],
+    rows: [Perturbation; 3],
     rounding: f64,
 }
 
-/// Of the motion's own disturbance `shape`; the inner None where it leaves the finite numbers.
-fn differences(
-    scene: &Scene,
-    system: &ParticleSystem,
-    make: &Make,
-    shape: &Shake,
-    h: f64,
-) -> Option<Option<Differences>> {
-    let mut from = make(scene, h).ok()?;
-    let mut other = make(&shape.apply(scene), h).ok()?;
-    let mut rows: Vec<Shake> = Vec::with_capacity(DIFFERENCES + 3);
+/// Of the perturbation `shape`; the inner None where it leaves the finite numbers.
+fn differences(setup: &Setup, shape: &Perturbation, h: f64) -> Option<Option<Differences>> {
+    let system = setup.system;
+    let mut runs = setup.pair(h, shape).ok()?;
+    let mut rows: Vec<Perturbation> = Vec::with_capacity(DIFFERENCES + 3);
     let mut largest = 0.0_f64;
     for step in 0..DIFFERENCES + 3 {
         if step > 0 {
-            from.step().ok()?;
-            other.step().ok()?;
+            runs.step().ok()?;
         }
-        let (a, b) = (from.state(), other.state());
-        if !a.is_finite() || !b.is_finite() {
+        if !runs.state(0).is_finite() || !runs.state(1).is_finite() {
             return Some(None);
         }
-        largest = largest.max(system.kinetic(&b.v).sqrt());
-        rows.push(
-            Shake {
-                x: b.x.clone(),
-                v: b.v.clone(),
-            }
-            .minus(&Shake {
-                x: a.x.clone(),
-                v: a.v.clone(),
-            }),
-        );
+        largest = largest.max(system.kinetic(&runs.state(1).v).sqrt());
+        rows.push(runs.difference(1));
     }
     let mut rounding = largest * f64::EPSILON * ROUNDINGS;
     for _ in 0..DIFFERENCES {
         rounding *= 2.0;
-        let next: Vec<Shake> = rows
-            .windows(2)
-            .filter_map(|pair| match pair {
-                [a, b] => Some(b.minus(a)),
-                _ => None,
-            })
-            .collect();
+        let pairs = rows.iter().zip(&rows[1..]);
+        let next: Vec<_> = pairs.map(|(a, b)| b.minus(a)).collect();
         // What is left near 1 is differenced away long before any sign is in question.
-        let lost = |row: &Shake| norm(system, row) <= MARGIN * rounding;
+        let lost = |row: &Perturbation| norm(system, row) <= MARGIN * rounding;
         if next.first().is_none_or(lost) {
             break;
         }
@@ -183,7 +150,7 @@ fn differences(
 }
 
 /// Of velocities, weighted by mass, in which modes are orthogonal where they are at all.
-fn product(system: &ParticleSystem, a: &Shake, b: &Shake) -> f64 {
+fn product(system: &ParticleSystem, a: &Perturbation, b: &Perturbation) -> f64 {
     let weights = system.inverse_mass();
     let pairs = a.v.iter().zip(&b.v).zip(weights);
     pairs
@@ -192,45 +159,17 @@ fn product(system: &ParticleSystem, a: &Shake, b: &Shake) -> f64 {
         .sum()
 }
 
-fn norm(system: &ParticleSystem, shape: &Shake) -> f64 {
+fn norm(system: &ParticleSystem, shape: &Perturbation) -> f64 {
     product(system, shape, shape).sqrt()
 }
 
-/// Whether the linearised scene has an eigenvalue that is not real. None where it is too large to
-/// ask.
-fn oscillates(scene: &Scene, system: &ParticleSystem) -> Option<bool> {
-    let weights = system.inverse_mass();
-    let free: Vec<usize> = (0..weights.len()).filter(|i| weights[*i] > 0.0).collect();
-    let n = free.len();
-    if n == 0 || n > LARGEST {
-        return None;
+/// Whether the linearised scene has an eigenvalue that is not real, or is too large to ask.
+fn may_oscillate(scene: &Scene, system: &ParticleSystem) -> bool {
+    let free = system.inverse_mass().iter().filter(|w| **w > 0.0).count();
+    if free == 0 || free > LARGEST {
+        return true;
     }
     let start = ParticleSystem::initial_state(scene);
-    let mut jacobian = Jacobian::default();
-    system.jacobian(0.0, &start.x, &start.v, Linearization::Exact, &mut jacobian);
-    let mut place = vec![None; weights.len()];
-    for (at, i) in free.iter().enumerate() {
-        if let Some(place) = place.get_mut(*i) {
-            *place = Some(at);
-        }
-    }
-    let mut matrix = DMatrix::<f64>::zeros(2 * n, 2 * n);
-    for i in 0..n {
-        matrix[(i, n + i)] = 1.0;
-    }
-    for (offset, triplets) in [(0, &jacobian.position), (n, &jacobian.velocity)] {
-        for (row, column, value) in triplets {
-            let at = |i: &usize| place.get(*i).copied().flatten();
-            if let (Some(r), Some(c), Some(w)) = (at(row), at(column), weights.get(*row)) {
-                matrix[(n + r, offset + c)] += value * w;
-            }
-        }
-    }
-    if !matrix.iter().all(|entry| entry.is_finite()) {
-        return None;
-    }
-    let eigenvalues = Schur::try_new(matrix, f64::EPSILON, SWEEPS)?.complex_eigenvalues();
-    let largest = eigenvalues.iter().map(|e| e.norm()).fold(0.0, f64::max);
-    // A double eigenvalue, as at critical damping, is known to the square root of rounding only.
-    Some(eigenvalues.iter().any(|e| e.im.abs() > 1e-6 * largest))
+    let linearised = Linearised::at(system, start.t, &start.x, &start.v);
+    linearised.is_unsure() || linearised.omega_max().is_some()
 }

@@ -1,21 +1,57 @@
-//! Any method's one-step map as a matrix, where damping couples modes and no theory gives the limit.
+//! Where modes are coupled, by damping or by stiffness a method leaves out: limits from a definite matrix,
+//! or else from the one-step map as a matrix.
 
-use super::assembly::Component;
-use super::composition::phi1;
-use crate::integrators::{DampingTreatment, Stage};
+use super::definite::{self, Definite};
+use super::parts::Part;
+use super::spectrum::Solved;
+use super::verdict::Verdict;
+use super::{Effort, Limit};
+use crate::integrators::{Amplification, Stage, bisect};
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use nalgebra::Complex;
 
-/// What is stepped.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Scheme<'a> {
-    Composition(&'a [Stage], DampingTreatment),
-    MaterialImplicit,
+/// What a method does to a part at `h`, s.
+pub(super) fn verdict(
+    amplification: Amplification,
+    solved: &Solved,
+    h: f64,
+    effort: &Effort,
+) -> Verdict {
+    let part = &solved.part;
+    let n = part.n();
+    let by_theory =
+        Definite::of(amplification).and_then(|kind| definite::limit(kind, part, effort));
+    let map = (n <= effort.map).then(|| Coupled::new(solved)).flatten();
+    let mut verdict = match (by_theory, &map) {
+        (Some(found), None) => found,
+        (Some(found), Some(_)) if part.symmetric => found,
+        // For stiffnesses that are not symmetric the theory is about their symmetric part only.
+        (found, Some(map)) => {
+            let rate = part.stiffness.norm().sqrt().max(part.damping.norm());
+            let mut verdict = found.unwrap_or(Verdict::only(Limit::Unconditional));
+            let guess = match verdict.limit {
+                Limit::At(guess) => guess,
+                _ => 2.0 / rate,
+            };
+            let limit = map.limit(amplification, guess);
+            verdict.limit = limit.map_or(Limit::Unconditional, Limit::At);
+            verdict
+        }
+        (None, None) => {
+            return Verdict::unknown(&format!(
+                "damping couples {n} coordinates: too many for this method's one-step map"
+            ));
+        }
+    };
+    let growth = map.and_then(|map| map.growth(amplification, h));
+    let stable = verdict.limit.allows(h);
+    verdict.growth = growth.map(|growth| if stable { growth.min(0.0) } else { growth });
+    verdict
 }
 
 /// A part in the basis of its damping's eigenvectors, where that is symmetric.
-pub(super) struct Coupled {
+struct Coupled {
     stiffness: Mat<f64>,
     material: Mat<f64>,
     /// Eigenvalues of C, 1/s.
@@ -35,48 +71,45 @@ const CELL: f64 = 0.02;
 
 impl Coupled {
     /// None where the damping is not symmetric.
-    pub(super) fn new(component: &Component, at_rest: bool, unstable: bool) -> Option<Self> {
-        let symmetric = component.damping.skewness() <= 1e-13 * component.damping.norm();
-        if !symmetric {
+    fn new(solved: &Solved) -> Option<Self> {
+        let Part {
+            stiffness,
+            damping,
+            material,
+            ..
+        } = &solved.part;
+        if damping.skewness() > 1e-13 * damping.norm() {
             return None;
         }
-        let n = component.n();
-        let eigen = component
-            .damping
-            .dense()
-            .self_adjoint_eigen(Side::Lower)
-            .ok()?;
+        let eigen = damping.dense().self_adjoint_eigen(Side::Lower).ok()?;
         let u = eigen.U();
         let turned = |m: Mat<f64>| u.transpose() * m * u;
+        let values = eigen.S().column_vector();
         Some(Self {
-            stiffness: turned(component.stiffness.dense()),
-            material: turned(component.material.dense()),
-            damping: (0..n).map(|i| eigen.S().column_vector()[i]).collect(),
-            at_rest,
-            unstable,
+            stiffness: turned(stiffness.dense()),
+            material: turned(material.dense()),
+            damping: (0..damping.n()).map(|i| values[i]).collect(),
+            at_rest: solved.left_out.is_none_or(|left_out| left_out.at_rest > 0),
+            unstable: solved.left_out.is_none_or(|left_out| left_out.unstable > 0),
         })
     }
 
     /// The eigenvalue of one step that is farthest out, of those that count.
-    fn farthest(&self, scheme: Scheme, h: f64) -> Option<Complex<f64>> {
+    fn farthest(&self, amplification: Amplification, h: f64) -> Option<Complex<f64>> {
         let n = self.damping.len();
         let mut x = Mat::<f64>::from_fn(n, 2 * n, |i, j| f64::from(u8::from(i == j)));
         let mut v = Mat::<f64>::from_fn(n, 2 * n, |i, j| f64::from(u8::from(i + n == j)));
-        match scheme {
-            Scheme::Composition(stages, treatment) => {
+        match amplification {
+            // Eigenvalues alone decide, wherever damping couples.
+            Amplification::Rational(_) => return None,
+            Amplification::Composition(stages, treatment) => {
                 for stage in stages {
                     match *stage {
                         Stage::Drift(part) => x += faer::Scale(part * h) * &v,
                         Stage::Kick(part) => {
-                            let step = part * h;
                             let force = &self.stiffness * &x;
                             for (i, c) in self.damping.iter().enumerate() {
-                                let (kept, pushed) = match treatment {
-                                    DampingTreatment::Explicit => (1.0 - step * c, step),
-                                    DampingTreatment::ExactFlow => {
-                                        ((-step * c).exp(), step * phi1(-step * c))
-                                    }
-                                };
+                                let (kept, pushed) = treatment.kick(part * h, *c);
                                 for j in 0..2 * n {
                                     v[(i, j)] = kept * v[(i, j)] - pushed * force[(i, j)];
                                 }
@@ -85,7 +118,7 @@ impl Coupled {
                     }
                 }
             }
-            Scheme::MaterialImplicit => {
+            Amplification::MaterialImplicit => {
                 let mut matrix = faer::Scale(h * h) * &self.material;
                 for (i, c) in self.damping.iter().enumerate() {
                     matrix[(i, i)] += 1.0 + h * c;
@@ -119,16 +152,16 @@ impl Coupled {
     }
 
     /// ln |eigenvalue| / h; None where the map is not finite.
-    pub(super) fn growth(&self, scheme: Scheme, h: f64) -> Option<f64> {
-        let farthest = self.farthest(scheme, h)?;
+    fn growth(&self, amplification: Amplification, h: f64) -> Option<f64> {
+        let farthest = self.farthest(amplification, h)?;
         Some(farthest.norm().clamp(f64::MIN_POSITIVE, f64::MAX).ln() / h)
     }
 
     /// The limit near `guess`, s: a scan from a twentieth of it upwards. None where nothing crosses
     /// before a hundred times it.
-    pub(super) fn limit(&self, scheme: Scheme, guess: f64) -> Option<f64> {
+    fn limit(&self, amplification: Amplification, guess: f64) -> Option<f64> {
         let stable = |h: f64| {
-            let farthest = self.farthest(scheme, h);
+            let farthest = self.farthest(amplification, h);
             farthest.is_some_and(|z| z.norm() <= 1.0 + GROWING)
         };
         let mut low = 0.05 * guess;
@@ -145,17 +178,6 @@ impl Coupled {
                 return None;
             }
         }
-        while high - low > 1e-12 * high {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if stable(middle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Some(low)
+        Some(bisect(low, high, 1e-12, stable))
     }
 }

@@ -5,7 +5,8 @@
 //! Large Eigenvalue Problems, 2nd ed., algorithms 6.2 and 6.5.)
 
 use super::Effort;
-use super::matrix::{dot, norm};
+use crate::krylov::Space;
+use crate::measure::stability::matrix::{dot, norm};
 use faer::Mat;
 use nalgebra::Complex;
 
@@ -14,71 +15,63 @@ pub(super) type Product<'a> = &'a dyn Fn(&[f64], &mut [f64]);
 
 /// Up to this size a matrix is formed and solved whole.
 const SMALL: usize = 48;
+/// Residual of an estimate, relative to the spectrum; the eigenvalue is then good to its square, times the
+/// gap.
+const ESTIMATE: f64 = 1e-5;
 
 /// The largest eigenvalue (not magnitude) of a symmetric matrix and its unit vector. None where it
 /// does not converge.
 pub(super) fn top(n: usize, product: Product, effort: &Effort) -> Option<(f64, Vec<f64>)> {
-    if n <= SMALL {
-        let dense = formed(n, product)?;
-        let eigen = dense.self_adjoint_eigen(faer::Side::Lower).ok()?;
-        let value = eigen.S().column_vector()[n - 1];
-        let vector = eigen.U().col(n - 1);
-        return Some((value, (0..n).map(|i| vector[i]).collect()));
-    }
-    let mut start = noise(n);
-    for _ in 0..=effort.restarts {
-        let (value, vector, residual, size) = lanczos(n, product, &start, effort)?;
-        if residual <= effort.found * size {
-            return Some((value, vector));
-        }
-        start = vector;
-    }
-    None
+    let (value, vector, found) = restarted(n, product, effort, effort.found)?;
+    found.then_some((value, vector))
 }
 
 /// As [`top`], but the best there is where it does not converge: an eigenvalue from below.
 pub(super) fn top_estimate(n: usize, product: Product, effort: &Effort) -> Option<(f64, Vec<f64>)> {
-    if n <= SMALL {
-        return top(n, product, effort);
-    }
-    let mut start = noise(n);
-    let mut best = None;
-    for _ in 0..=effort.restarts {
-        let (value, vector, residual, size) = lanczos(n, product, &start, effort)?;
-        start.clone_from(&vector);
-        best = Some((value, vector));
-        if residual <= ESTIMATE * size {
-            break;
-        }
-    }
-    best
+    let (value, vector, _) = restarted(n, product, effort, ESTIMATE)?;
+    Some((value, vector))
 }
 
-/// Residual of an estimate; the eigenvalue is then good to its square, times the gap.
-const ESTIMATE: f64 = 1e-5;
-
-/// Best top pair of one space: value, vector, residual, and the size of the spectrum seen.
-fn lanczos(
+/// The top pair, by Lanczos begun anew from its best vector until the residual is at most `enough` of the
+/// spectrum's size; and whether it is.
+fn restarted(
     n: usize,
     product: Product,
-    start: &[f64],
     effort: &Effort,
-) -> Option<(f64, Vec<f64>, f64, f64)> {
-    let (mut alphas, mut betas) = (Vec::new(), Vec::new());
-    let mut basis = vec![unit(start)?];
+    enough: f64,
+) -> Option<(f64, Vec<f64>, bool)> {
+    if n <= SMALL {
+        let dense = formed(n, product)?;
+        let eigen = dense.self_adjoint_eigen(faer::Side::Lower).ok()?;
+        let vector = eigen.U().col(n - 1);
+        let vector = (0..n).map(|i| vector[i]).collect();
+        return Some((eigen.S().column_vector()[n - 1], vector, true));
+    }
+    let mut start = noise(n);
+    let mut value = 0.0;
+    for _ in 0..=effort.restarts {
+        let (found, vector, residual, size) = lanczos(product, &start, effort)?;
+        (value, start) = (found, vector);
+        if residual <= enough * size {
+            return Some((value, start, true));
+        }
+    }
+    Some((value, start, false))
+}
+
+/// Best top pair of one space: value, vector, residual, and the size of the spectrum seen.
+fn lanczos(product: Product, start: &[f64], effort: &Effort) -> Option<(f64, Vec<f64>, f64, f64)> {
+    let mut space = Space::new(unit(start)?, dot);
+    let mut before = 0.0;
     let mut check = 16;
     loop {
-        let k = basis.len();
-        let mut next = vec![0.0; n];
-        product(&basis[k - 1], &mut next);
-        alphas.push(dot(&next, &basis[k - 1]));
-        orthogonalise(&mut next, &basis);
-        let beta = norm(&next);
-        let last = alphas.last().map_or(0.0, |a: &f64| a.abs());
-        let closed = beta <= 1e-14 * (last + betas.last().copied().unwrap_or(0.0));
-        if closed || k == check || k == n || k >= effort.space {
+        let beta = space.multiply(product);
+        let k = space.basis.len();
+        let closed = beta <= 1e-14 * (space.tridiagonal(k - 1, k - 1).abs() + before);
+        let full = k == start.len() || k >= effort.space;
+        if closed || k == check || full {
             check += check / 2;
-            let (values, vectors) = tridiagonal(&alphas, &betas)?;
+            let (values, vectors) = projected(&space)?;
             let size = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
             let ritz = vectors.col(k - 1);
             let residual = if closed {
@@ -86,9 +79,9 @@ fn lanczos(
             } else {
                 beta * ritz[k - 1].abs()
             };
-            if residual <= effort.found * size || k == n || k >= effort.space {
-                let mut vector = vec![0.0; n];
-                for (i, q) in basis.iter().enumerate() {
+            if residual <= effort.found * size || full {
+                let mut vector = vec![0.0; start.len()];
+                for (i, q) in space.basis.iter().enumerate() {
                     for (sum, q) in vector.iter_mut().zip(q) {
                         *sum += ritz[i] * q;
                     }
@@ -96,9 +89,18 @@ fn lanczos(
                 return Some((*values.last()?, unit(&vector)?, residual, size));
             }
         }
-        betas.push(beta);
-        basis.push(unit(&next)?);
+        before = beta;
+        space.extend()?;
     }
+}
+
+/// Eigenvalues, ascending, and vectors of a symmetric matrix projected onto a space.
+fn projected<D: Fn(&[f64], &[f64]) -> f64>(space: &Space<D>) -> Option<(Vec<f64>, Mat<f64>)> {
+    let m = space.basis.len();
+    let matrix = Mat::from_fn(m, m, |i, j| space.tridiagonal(i, j));
+    let eigen = matrix.self_adjoint_eigen(faer::Side::Lower).ok()?;
+    let values = (0..m).map(|i| eigen.S().column_vector()[i]).collect();
+    Some((values, eigen.U().to_owned()))
 }
 
 /// Nodes θ and weights w, summing to |q|², with qᵀ f(A) q = Σ w f(θ) exactly for polynomials f of a
@@ -114,31 +116,23 @@ pub(super) struct Nodes {
 
 /// Of a symmetric matrix and q: a space of at most `most` vectors.
 pub(super) fn nodes(product: Product, q: &[f64], most: usize) -> Option<Nodes> {
-    let n = q.len();
-    let (mut alphas, mut betas) = (Vec::<f64>::new(), Vec::<f64>::new());
-    let mut basis = vec![unit(q)?];
+    let mut space = Space::new(unit(q)?, dot);
     loop {
-        let k = basis.len();
-        let mut next = vec![0.0; n];
-        product(&basis[k - 1], &mut next);
-        let image = norm(&next);
-        alphas.push(dot(&next, &basis[k - 1]));
-        orthogonalise(&mut next, &basis);
-        let beta = norm(&next);
-        if beta <= 1e-13 * image || k == n || k >= most {
+        let beta = space.multiply(product);
+        let k = space.basis.len();
+        if beta <= 1e-13 * space.image || k == q.len() || k >= most {
             break;
         }
-        betas.push(beta);
-        basis.push(unit(&next)?);
+        space.extend()?;
     }
-    let (nodes, vectors) = tridiagonal(&alphas, &betas)?;
+    let (nodes, vectors) = projected(&space)?;
     let length = norm(q);
     let first = |k: usize| length * length * vectors[(0, k)] * vectors[(0, k)];
     Some(Nodes {
         weights: (0..nodes.len()).map(first).collect(),
         nodes,
         vectors,
-        basis,
+        basis: space.basis,
         length,
     })
 }
@@ -170,46 +164,33 @@ pub(super) fn outermost(
 }
 
 fn arnoldi(n: usize, product: Product, inner: f64, effort: &Effort) -> Option<Vec<Complex<f64>>> {
-    let mut basis = vec![unit(&noise(n))?];
-    let mut columns: Vec<Vec<f64>> = Vec::new();
+    let mut space = Space::new(unit(&noise(n))?, dot);
     let mut check = 32;
     loop {
-        let k = basis.len();
-        let mut next = vec![0.0; n];
-        product(&basis[k - 1], &mut next);
-        let mut column = orthogonalise(&mut next, &basis);
-        let beta = norm(&next);
-        column.push(beta);
-        columns.push(column);
-        let size = columns.iter().map(|c| norm(c)).fold(0.0, f64::max);
+        let beta = space.multiply(product);
+        let k = space.basis.len();
+        let size = space.columns.iter().map(|c| norm(c)).fold(0.0, f64::max);
         let last = beta <= 1e-14 * size || k == n || k >= effort.space;
         if last || k == check {
             check += check / 2;
-            let mut projected = Mat::<f64>::zeros(k, k);
-            for (j, column) in columns.iter().enumerate() {
-                for (i, value) in column.iter().enumerate().take(k) {
-                    projected[(i, j)] = *value;
-                }
-            }
-            let eigen = projected.eigen().ok()?;
-            let mut order: Vec<usize> = (0..k).collect();
-            let value = |i: usize| {
-                let value = eigen.S().column_vector()[i];
-                Complex::new(value.re, value.im)
-            };
-            order.sort_by(|&a, &b| {
-                let (a, b) = (value(a), value(b));
+            let entry = |i: usize, j: usize| space.columns[j].get(i).copied().unwrap_or(0.0);
+            let eigen = Mat::from_fn(k, k, entry).eigen().ok()?;
+            let mut pairs: Vec<_> = (0..k)
+                .map(|i| {
+                    let (value, vector) = (eigen.S().column_vector()[i], eigen.U().col(i));
+                    let length = (0..k).map(|r| vector[r].norm_sqr()).sum::<f64>().sqrt();
+                    let converged = last && k == n
+                        || beta * vector[k - 1].norm() <= effort.found * size * length;
+                    (Complex::new(value.re, value.im), converged)
+                })
+                .collect();
+            pairs.sort_by(|(a, _), (b, _)| {
                 b.norm().total_cmp(&a.norm()).then(b.im.total_cmp(&a.im))
             });
-            let converged = |&&i: &&usize| {
-                let vector = eigen.U().col(i);
-                let length = (0..k).map(|r| vector[r].norm_sqr()).sum::<f64>().sqrt();
-                last && k == n || beta * vector[k - 1].norm() <= effort.found * size * length
-            };
-            let found: Vec<_> = order
-                .iter()
-                .take_while(converged)
-                .map(|&i| value(i))
+            let found: Vec<_> = pairs
+                .into_iter()
+                .take_while(|(_, converged)| *converged)
+                .map(|(value, _)| value)
                 .collect();
             let moduli = found.first().zip(found.last());
             let enough = moduli.is_some_and(|(first, last)| last.norm() <= inner * first.norm());
@@ -218,23 +199,8 @@ fn arnoldi(n: usize, product: Product, inner: f64, effort: &Effort) -> Option<Ve
                 return Some(upper.collect());
             }
         }
-        basis.push(unit(&next)?);
+        space.extend()?;
     }
-}
-
-/// Takes the components along the basis out of `x`, twice; returns them.
-fn orthogonalise(x: &mut [f64], basis: &[Vec<f64>]) -> Vec<f64> {
-    let mut taken = vec![0.0; basis.len()];
-    for _ in 0..2 {
-        for (taken, q) in taken.iter_mut().zip(basis) {
-            let overlap = dot(x, q);
-            *taken += overlap;
-            for (x, q) in x.iter_mut().zip(q) {
-                *x -= overlap * q;
-            }
-        }
-    }
-    taken
 }
 
 fn unit(x: &[f64]) -> Option<Vec<f64>> {
@@ -242,24 +208,8 @@ fn unit(x: &[f64]) -> Option<Vec<f64>> {
     (length.is_finite() && length > 0.0).then(|| x.iter().map(|x| x / length).collect())
 }
 
-/// Eigenvalues, ascending, and vectors of a symmetric tridiagonal matrix.
-fn tridiagonal(alphas: &[f64], betas: &[f64]) -> Option<(Vec<f64>, Mat<f64>)> {
-    let m = alphas.len();
-    let mut matrix = Mat::<f64>::zeros(m, m);
-    for i in 0..m {
-        matrix[(i, i)] = alphas[i];
-        if i + 1 < m {
-            matrix[(i + 1, i)] = betas[i];
-            matrix[(i, i + 1)] = betas[i];
-        }
-    }
-    let eigen = matrix.self_adjoint_eigen(faer::Side::Lower).ok()?;
-    let values = (0..m).map(|i| eigen.S().column_vector()[i]).collect();
-    Some((values, eigen.U().to_owned()))
-}
-
 /// The matrix itself, column by column; None where it is not finite.
-pub(super) fn formed(n: usize, product: Product) -> Option<Mat<f64>> {
+fn formed(n: usize, product: Product) -> Option<Mat<f64>> {
     let mut dense = Mat::zeros(n, n);
     let (mut x, mut y) = (vec![0.0; n], vec![0.0; n]);
     for j in 0..n {

@@ -1,5 +1,6 @@
 //! Each claim of the figures against the data.
 
+use super::super::samples::Reach;
 use super::samples::*;
 use crate::outcome::*;
 use crate::report::svg;
@@ -31,7 +32,7 @@ fn circles(svg: &str, colour: &str) -> Vec<([f64; 2], bool)> {
 #[test]
 fn points_lie_where_their_numbers_are() {
     let report = priced();
-    let curve = &report.cost.as_ref().unwrap().curves[3];
+    let curve = &report.cost().unwrap().curves[3];
     assert_eq!(curve.engine, "rk4");
     let completed = curve.points.iter().filter(|p| p.error_m.is_some());
     let values: Vec<[f64; 2]> = completed
@@ -58,7 +59,7 @@ fn points_lie_where_their_numbers_are() {
 #[test]
 fn fronts_are_filled_and_divergence_is_crossed() {
     let mut report = priced();
-    let cost = report.cost.as_mut().unwrap();
+    let cost = report.cost_mut();
     cost.curves[3].pareto = vec![2, 5];
     let svg = figure(&report, "cost_time.svg");
     let points = circles(&svg, "#cc79a7");
@@ -107,11 +108,11 @@ fn rapier_is_dashed_and_left_out_where_it_does_not_count() {
 fn wide_spreads_have_whiskers() {
     let mut report = priced();
     let whiskers = |report: &Report, file: &str| {
-        let look = r##"stroke="#cc79a7" stroke-width="1" fill="none""##;
+        let look = r##"fill="none" stroke="#cc79a7" stroke-width="1" "##;
         figure(report, file).matches(look).count()
     };
     assert_eq!(whiskers(&report, "cost_time.svg"), 0);
-    let point = &mut report.cost.as_mut().unwrap().curves[3].points[4];
+    let point = &mut report.cost_mut().curves[3].points[4];
     let wall = point.wall_s.as_mut().unwrap();
     (wall.min, wall.mad) = (0.5 * wall.median, Some(wall.median));
     assert_eq!(whiskers(&report, "cost_time.svg"), 1);
@@ -122,7 +123,7 @@ fn wide_spreads_have_whiskers() {
 #[test]
 fn panels_hold_every_step_and_the_truth() {
     let report = classic();
-    let panels = report.cost.as_ref().unwrap().panels.as_ref().unwrap();
+    let panels = report.panels().unwrap();
     let count = panels.panels.len();
     let svg = figure(&report, "cost_panels.svg");
     let lines = |colour: &str, width: &str| {
@@ -159,7 +160,7 @@ fn panels_are_not_scaled_to_what_explodes() {
     // 50, each end rounded to 0.05. What explodes reaches thousands of metres.
     let expected = |height: f64| (height - 110.0 / 2.2).abs() < 0.2;
     assert!(expected(height(&report)), "{}", height(&report));
-    let panels = report.cost.as_mut().unwrap().panels.as_mut().unwrap();
+    let panels = report.panels_mut();
     for [_, x] in &mut panels.panels[1].lines[1].curve {
         *x *= 1e6;
     }
@@ -176,14 +177,14 @@ fn differences_have_an_axis_of_their_own() {
     };
     let mut report = classic();
     let before = lines(&report);
-    let panels = report.cost.as_mut().unwrap().panels.as_mut().unwrap();
+    let panels = report.panels_mut();
     for line in &mut panels.panels[2].lines {
         for [_, difference] in &mut line.difference {
             *difference *= 1e-6;
         }
     }
     assert_eq!(lines(&report), before);
-    let panels = report.cost.as_mut().unwrap().panels.as_mut().unwrap();
+    let panels = report.panels_mut();
     for [_, difference] in &mut panels.panels[2].lines[0].difference {
         *difference *= 0.5;
     }

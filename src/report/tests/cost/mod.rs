@@ -4,8 +4,10 @@ mod figures;
 pub mod samples;
 
 use super::plain;
+use super::samples::Reach;
 use crate::outcome::*;
-use crate::report::{json, markdown, stem, svg, terminal, verdict};
+use crate::report::json::{self, Tool};
+use crate::report::{markdown, stem, svg, terminal, verdict};
 use samples::*;
 
 #[test]
@@ -75,7 +77,6 @@ fn costs_read_at_a_glance() {
     a symplectic_euler  b explicit_euler  c velocity_verlet  d rk4  e pefrl  f dopri5  A rapier
     where several meet, the first of them is shown | ┈ target | ═ floor
 
-    - steps go down to 0.03 ms: the budget ends there
     - symplectic_euler, velocity_verlet, rk4 and pefrl: diverged at h = 0.417 s
     - explicit_euler: diverged at h = 0.417, 0.172 and 0.0725 s
     - rapier: its spring joint is linearly implicit Euler at h = dt/4 and dissipates by design; its
@@ -91,10 +92,10 @@ fn verdict_leads_with_the_hardest_target_somebody_reaches() {
     insta::assert_snapshot!(verdict(&priced()), @r"cheapest to 1e-6 m: pefrl at h = 0.0126 s, 95.5 µs; symplectic_euler, the scene's own, does not reach it; to 1e-2 m: pefrl at h = 0.172 s, 6.96 µs; no integrator reaches 1e-15 m.");
     insta::assert_snapshot!(verdict(&untrue()), @r"nobody can be said to reach 1e-3 and 1e-6 m: there is no truth: it is chaotic from the start.");
     let mut report = priced();
-    report.cost.as_mut().unwrap().targets.remove(2);
-    report.scene.own_method = "velocity_verlet".into();
+    report.cost_mut().targets.remove(2);
+    report.header.scene.own_integrator = "velocity_verlet".into();
     insta::assert_snapshot!(verdict(&report), @r"cheapest to 1e-6 m: pefrl at h = 0.0126 s, 95.5 µs; velocity_verlet, the scene's own, takes 15x the time; to 1e-2 m: pefrl at h = 0.172 s, 6.96 µs.");
-    report.cost.as_mut().unwrap().targets.clear();
+    report.cost_mut().targets.clear();
     assert_eq!(verdict(&report), "no target was asked about.");
 }
 
@@ -133,10 +134,10 @@ fn rankings_keep_the_order_of_the_data() {
     let mut report = priced();
     for turn in 0..2 {
         if turn == 1 {
-            let cost = report.cost.as_mut().unwrap();
+            let cost = report.cost_mut();
             cost.targets[0].ranking.reverse();
         }
-        let ranking = &report.cost.as_ref().unwrap().targets[0].ranking;
+        let ranking = &report.cost().unwrap().targets[0].ranking;
         let names: Vec<&str> = ranking.iter().map(|rank| rank.engine.as_str()).collect();
         let text = paragraph(&report, "1e-2 m");
         let clauses: Vec<&str> = text["1e-2 m: ".len()..].split("; ").collect();
@@ -168,7 +169,7 @@ fn who_does_not_reach_a_target_is_named_with_the_reason_once() {
         1
     );
     let mut report = priced();
-    for rank in &mut report.cost.as_mut().unwrap().targets[2].ranking {
+    for rank in &mut report.cost_mut().targets[2].ranking {
         rank.reason = Some("the budget ended".into());
     }
     let text = paragraph(&report, "1e-15 m");
@@ -194,7 +195,7 @@ fn fewest_evaluations_are_said_where_somebody_else_is_fastest() {
     let mut report = priced();
     let text = paragraph(&report, "1e-6 m");
     assert!(!text.contains("fewest"), "{text}");
-    let target = &mut report.cost.as_mut().unwrap().targets[1];
+    let target = &mut report.cost_mut().targets[1];
     target.fewest_evaluations = target.ranking[1].reached.clone();
     let text = paragraph(&report, "1e-6 m");
     let said =
@@ -227,7 +228,7 @@ fn decades(engine: &str, cost: &[(f64, f64)]) -> CostCurve {
 #[test]
 fn letters_stand_where_the_axes_say() {
     let mut report = priced();
-    let cost = report.cost.as_mut().unwrap();
+    let cost = report.cost_mut();
     (cost.targets, cost.floor_m) = (Vec::new(), None);
     cost.curves = vec![
         decades("rk4", &[(1e-6, 1.0), (1e-3, 1e-4), (1.0, 1e-11)]),
@@ -266,12 +267,14 @@ fn letters_stand_where_the_axes_say() {
 
 #[test]
 fn json_has_the_keys_of_costs_and_no_curves() {
-    let value: serde_json::Value = serde_json::from_str(&json::render(&classic())).unwrap();
-    let cost = &value["cost"];
+    let value: serde_json::Value =
+        serde_json::from_str(&json::render(&Tool::this(), &[classic()])).unwrap();
+    let cost = &value["reports"][0]["cost"];
     for key in ["duration_s", "horizon_s", "floor_m", "targets", "curves"] {
         assert!(!cost[key].is_null(), "{key}");
     }
-    assert!(cost["panels"].is_null() && cost["remarks"].is_null());
+    assert!(cost["panels"].is_null());
+    assert_eq!(value["reports"][0]["series"], true);
     assert_eq!(cost["targets"][1]["cheapest"]["engine"], "pefrl");
     assert!(cost["targets"][2]["cheapest"].is_null());
     assert_eq!(cost["curves"][0]["points"][0]["status"], "diverged");
@@ -282,7 +285,7 @@ fn json_has_the_keys_of_costs_and_no_curves() {
 fn a_failed_check_comes_first() {
     let mut report = priced();
     let check = super::samples::twin("twin_forces", CheckStatus::Fail);
-    report.checks.push(check);
+    report.header.checks.push(check);
     assert!(verdict(&report).starts_with("THE TWIN PROOF FAILS"));
     assert!(plain(&terminal::render(&report)).contains("FAIL"));
     assert!(markdown::render(&report).contains("**fail**"));

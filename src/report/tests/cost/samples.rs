@@ -1,7 +1,7 @@
 //! Reports of costs: lines as theory draws them, with what goes wrong at both ends.
 
 use crate::outcome::*;
-use crate::report::tests::samples::empty;
+use crate::report::tests::samples::{Reach, empty};
 
 /// Below ten times the truth's bar.
 const FLOOR: f64 = 4e-12;
@@ -261,23 +261,23 @@ pub fn target(curves: &[CostCurve], error: f64) -> CostTarget {
 
 fn report(name: &str, curves: Vec<CostCurve>, targets: &[f64]) -> Report {
     let mut report = empty(name);
-    report.checks.clear();
-    report.truth = Truth {
+    report.header.checks.clear();
+    report.header.truth = Truth {
         kind: TruthKind::ClosedForm,
         method: Some("harmonic oscillator".into()),
         error_bound_m: Some(FLOOR / 10.0),
         horizon_s: Some(5.0),
         reason: None,
     };
-    report.cost = Some(Cost {
+    let cost = Cost {
         duration_s: 5.0,
         horizon_s: Some(5.0),
         floor_m: Some(FLOOR),
         targets: targets.iter().map(|e| target(&curves, *e)).collect(),
         curves,
-        panels: None,
-        remarks: Vec::new(),
-    });
+    };
+    report.body = Body::Cost { outcomes: [], cost };
+    report.beside = Beside::Nothing;
     report
 }
 
@@ -285,10 +285,7 @@ fn report(name: &str, curves: Vec<CostCurve>, targets: &[f64]) -> Report {
 pub fn priced() -> Report {
     let mut curves: Vec<CostCurve> = LINES.into_iter().map(curve).collect();
     curves.extend([pair(), rapier("rapier", 3.1e-4), unsupported()]);
-    let mut report = report("circle", curves, &[1e-2, 1e-6, 1e-15]);
-    report.cost.as_mut().unwrap().remarks =
-        vec!["steps go down to 0.03 ms: the budget ends there".into()];
-    report
+    report("circle", curves, &[1e-2, 1e-6, 1e-15])
 }
 
 /// Every integrator there is, and what stands beside them.
@@ -310,7 +307,7 @@ pub fn full() -> Report {
     curves.push(rapier("rapier(dt=0.001,iterations=8,pgs=4)", 1e-5));
     curves.push(rapier("rapier(iterations=16)", 2e-6));
     let mut report = report("circle", curves, &[1e-3, 1e-6, 1e-9]);
-    report.cost.as_mut().unwrap().panels = panels(&report);
+    report.beside = Beside::Here(Series::Panels(panels(&report).unwrap()));
     report
 }
 
@@ -335,8 +332,8 @@ pub fn untrue() -> Report {
         (curve.observed_order, curve.slope_points, curve.pareto) = (None, vec![], vec![]);
     }
     let mut report = report("untrue", curves, &[]);
-    report.truth = empty("untrue").truth;
-    let cost = report.cost.as_mut().unwrap();
+    report.header.truth = empty("untrue").header.truth;
+    let cost = report.cost_mut();
     (cost.horizon_s, cost.floor_m) = (None, None);
     let reason = "there is no truth: it is chaotic from the start";
     cost.targets = [1e-3, 1e-6]
@@ -355,7 +352,7 @@ pub fn untrue() -> Report {
 /// The oscillator at three steps under three methods.
 pub fn classic() -> Report {
     let mut report = priced();
-    report.cost.as_mut().unwrap().panels = panels(&report);
+    report.beside = Beside::Here(Series::Panels(panels(&report).unwrap()));
     report
 }
 
@@ -381,12 +378,7 @@ fn panels(report: &Report) -> Option<CostPanels> {
             curve,
         }
     };
-    let engines = report
-        .cost
-        .as_ref()?
-        .curves
-        .iter()
-        .map(|curve| &curve.engine);
+    let engines = report.cost()?.curves.iter().map(|curve| &curve.engine);
     let panel = |(at, engine): (usize, &String)| CostPanel {
         engine: engine.clone(),
         lines: [0.15, 0.05, 0.01].map(|h| line(at, h)).into(),
@@ -402,14 +394,11 @@ fn panels(report: &Report) -> Option<CostPanels> {
 pub fn odd() -> Report {
     let mut report = classic();
     let nasty = "a|b<c>&\"d\" `e` *f*\n#g \u{1b}[31m \u{e0102}\u{202e} 漢字 ".repeat(8);
-    report.scene.own_method = nasty.clone();
-    let Some(cost) = &mut report.cost else {
-        return report;
-    };
+    report.header.scene.own_integrator = nasty.clone();
+    let cost = report.cost_mut();
     let sizes = [f64::MAX, f64::MIN_POSITIVE, 0.0, 1e-300, 1e300, 5e-324];
     (cost.duration_s, cost.horizon_s) = (f64::MAX, Some(1e-300));
     cost.floor_m = Some(f64::MIN_POSITIVE);
-    cost.remarks = vec![nasty.clone(), nasty.repeat(3)];
     for (at, curve) in cost.curves.iter_mut().enumerate() {
         curve.engine = format!("{at} {nasty}");
         curve.observed_order = Some(sizes[at % sizes.len()]);
@@ -450,7 +439,8 @@ pub fn odd() -> Report {
             }
         }
     }
-    if let Some(panels) = &mut cost.panels {
+    {
+        let panels = report.panels_mut();
         panels.label = nasty.clone();
         panels.truth.truncate(1);
         let lines = |at: usize| panels.panels.get(at).map(|p| p.lines.len());

@@ -1,12 +1,9 @@
 //! Trajectories as text: `t,id,x,y,z[,vx,vy,vz]`, or `t,x[,v]` on a free axis.
 
 mod header;
-mod place;
-
-pub(super) use place::of_field as place_of_field;
 
 use super::digits::Form;
-use super::error::{HALF, ReadError, Wrong};
+use super::error::{HALF, ReadError, Wrong, of_end, of_field, without_mark};
 use super::expected::Expected;
 use super::times::{self, Source, Times};
 use super::{Numbers, Place, Table, limits};
@@ -21,7 +18,7 @@ pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Tabl
         let wrong = Wrong::new("this text is UTF-16", "save it as UTF-8");
         return Err(wrong.at(file, Place::Text { line: 1, column: 1 }));
     }
-    let text = place::without_mark(bytes);
+    let text = without_mark(bytes);
     let mut reader = ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
@@ -35,8 +32,7 @@ pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Tabl
         let start = record.position().map_or(0, ::csv::Position::byte);
         let last = reader.position().byte() >= text.len() as u64;
         let first = record.get(0).unwrap_or_default().trim_ascii_start();
-        let fail =
-            |(field, wrong): (usize, Wrong)| wrong.at(file, place::of_field(bytes, start, field));
+        let fail = |(field, wrong): (usize, Wrong)| wrong.at(file, of_field(bytes, start, field));
         if let Some(comment) = first.strip_prefix(b"#") {
             let fields = std::iter::once(comment).chain(record.iter().skip(1));
             commented = commented.or_else(|| Columns::new(fields, expected).ok());
@@ -64,7 +60,7 @@ pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Tabl
     };
     rows.ok_or_else(nothing)
         .and_then(Rows::finish)
-        .map_err(|wrong| wrong.at(file, place::of_end(bytes)))
+        .map_err(|wrong| wrong.at(file, of_end(bytes)))
 }
 
 /// The states read so far; the last may still lack particles.
@@ -150,13 +146,12 @@ impl<'a> Rows<'a> {
         let missing = |id: &usize| self.given_in[*id] != self.times.len();
         let fixed = self.expected.fixed();
         let ids = 0..fixed.len();
-        if ids.clone().all(|id| missing(&id) == fixed[id]) {
-            return Ok(());
-        }
         let some_fixed_given = ids.clone().any(|id| fixed[id] && !missing(&id));
         let wanted = |id: &usize| missing(id) && (some_fixed_given || !fixed[*id]);
         let mut lacking = ids.filter(wanted);
-        let first = lacking.next().unwrap_or_default();
+        let Some(first) = lacking.next() else {
+            return Ok(());
+        };
         let more = match lacking.count() {
             0 => String::new(),
             n => format!(" and {n} more"),

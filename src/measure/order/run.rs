@@ -1,0 +1,153 @@
+//! One run at one step, held against the truth.
+
+use crate::integrators::Integrator;
+use crate::physics::{State, System};
+use crate::solvers::advance;
+use crate::truth::{Motion, States, farthest};
+
+/// Makes a fresh integrator for each run.
+pub type Build<'a> = &'a (dyn Fn() -> Box<dyn Integrator> + Sync);
+
+/// An error so many times the way the motion goes: the run has diverged (its energy is beyond 1e12
+/// times the motion's).
+const DIVERGED: f64 = 1e6;
+/// Instants at least; odd, so that no power of two of them falls on whole or half periods.
+const FEWEST: u64 = 31;
+/// Numbers of the truth kept at most.
+const MEMORY: u64 = 1 << 22;
+/// Relative size of the disturbance whose response tells how much rounding grows.
+const DISTURBANCE: f64 = 1e-7;
+
+/// What is run: a system from a start, whose truth is known up to a time.
+pub(super) struct Problem<'a> {
+    pub system: &'a (dyn System + Sync),
+    pub start: State,
+    pub motion: &'a dyn Motion,
+    /// Seconds.
+    pub until: f64,
+}
+
+/// The instants errors are taken at, and the truth there.
+pub(super) struct Grid {
+    /// Evenly spaced, the start not counted, the end included. 0 where there is no time to measure in.
+    pub instants: u64,
+    /// Seconds.
+    pub until: f64,
+    truth: States,
+    /// Largest way any particle gets from its start, m.
+    pub reach: f64,
+    /// Largest coordinate, m.
+    pub size: f64,
+}
+
+impl Grid {
+    /// At about `wanted` instants, at most `most`.
+    pub fn new(problem: &Problem, wanted: u64, most: u64) -> Self {
+        let dim = problem.system.dim();
+        let room = (MEMORY / (dim.max(1) as u64)).min(most).max(FEWEST);
+        let instants = (wanted.clamp(FEWEST, room) - 1) | 1;
+        let usable = problem.until > 0.0 && problem.until.is_finite();
+        let instants = if usable { instants } else { 0 };
+        let times: Vec<f64> = (1..=instants)
+            .map(|k| problem.until * (k as f64 / instants as f64))
+            .collect();
+        let truth = problem.motion.states(&times);
+        let each = || (0..times.len()).map(|k| truth.x(k));
+        let reach = each()
+            .map(|x| farthest(x, &problem.start.x))
+            .fold(0.0, f64::max);
+        let size = each().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        Self {
+            instants,
+            until: problem.until,
+            reach,
+            size,
+            truth,
+        }
+    }
+
+    /// Steps of a run that takes `m` between two instants.
+    pub fn steps(&self, m: u64) -> u64 {
+        self.instants.saturating_mul(m)
+    }
+
+    /// Their size, s.
+    pub fn step(&self, m: u64) -> f64 {
+        self.until / self.steps(m) as f64
+    }
+}
+
+/// What a run left.
+pub(super) struct Run {
+    /// Largest distance of any particle from the truth at any instant, m.
+    pub error: f64,
+    /// Positions at the instants.
+    x: Vec<f64>,
+}
+
+impl Problem<'_> {
+    /// Runs `m` steps from instant to instant, from the start or from one disturbed.
+    ///
+    /// # Errors
+    /// Why the run gives no error: it diverged, or a step could not be taken.
+    pub fn run(
+        &self,
+        grid: &Grid,
+        m: u64,
+        build: Build,
+        disturbed: Option<State>,
+    ) -> Result<Run, String> {
+        let h = grid.step(m);
+        let mut integrator = build();
+        let mut state = disturbed.unwrap_or_else(|| self.start.clone());
+        let mut run = Run {
+            error: 0.0,
+            x: Vec::new(),
+        };
+        for instant in 0..grid.instants {
+            for step in instant * m..(instant + 1) * m {
+                // n h, not a running sum, which would drift.
+                state.t = step as f64 * h;
+                advance(integrator.as_mut(), self.system, h, &mut state)
+                    .map_err(|error| format!("failed at {:.3e} s: {error}", step as f64 * h))?;
+            }
+            let error = farthest(&state.x, grid.truth.x(instant as usize));
+            if !error.is_finite() || (grid.reach > 0.0 && error > DIVERGED * grid.reach) {
+                let t = (instant + 1) as f64 * m as f64 * h;
+                return Err(format!("diverged by {t:.3e} s"));
+            }
+            run.error = run.error.max(error);
+            run.x.extend_from_slice(&state.x);
+        }
+        Ok(run)
+    }
+
+    /// How far apart, m, a relative disturbance of the start as large as 1 would carry this run: what
+    /// a rounding, which is a disturbance of eps, grows to. None where it cannot be told.
+    pub fn amplification(&self, grid: &Grid, m: u64, build: Build, run: &Run) -> Option<f64> {
+        let each = self.system.dim().max(1);
+        // The largest magnitude each coordinate reaches.
+        let [x, v] = [&grid.truth.x, &grid.truth.v].map(|values| {
+            let mut most = vec![0.0; each];
+            for state in values.chunks_exact(each) {
+                for (most, value) in most.iter_mut().zip(state) {
+                    *most = f64::max(*most, value.abs());
+                }
+            }
+            most
+        });
+        let mut start = self.start.clone();
+        for (i, inverse_mass) in self.system.inverse_mass().iter().enumerate() {
+            if *inverse_mass > 0.0 {
+                // Neighbouring coordinates in different directions, so that no mode is missed.
+                let sign = if (i + i / 3) % 2 == 0 { 1.0 } else { -1.0 };
+                start.x[i] += sign * DISTURBANCE * x[i];
+                start.v[i] -= sign * DISTURBANCE * v[i];
+            }
+        }
+        let other = self.run(grid, m, build, Some(start)).ok()?;
+        let states = run.x.chunks_exact(each).zip(other.x.chunks_exact(each));
+        let apart = states.map(|(a, b)| farthest(a, b)).fold(0.0, f64::max);
+        Some(apart / DISTURBANCE)
+    }
+}

@@ -1,0 +1,197 @@
+//! What a probe needs: the scene, what solves it, how it is perturbed and what is watched.
+
+use super::Make;
+use super::perturbation::Perturbation;
+use super::probe::{Budget, Fate, Probed, Watch, probe};
+use super::watched::{DifferenceEnergy, ExcessEnergy, Quadratic, Runs};
+use crate::measure::energy_scale;
+use crate::physics::ParticleSystem;
+use crate::scene::Scene;
+use crate::solvers::Unsupported;
+
+/// Times the energy scale at which a run is lost.
+const LOST: f64 = 1e4;
+/// Steps of a full probe, where patience allows.
+pub(super) const STEPS: u64 = 20_000;
+/// Rise of ln(energy) that is growth: where the map is linear a trend is clean, ...
+const CLEAR_LINEAR: f64 = 1e-2;
+/// ... elsewhere energy wanders between motions a method treats differently.
+const CLEAR: f64 = 0.1;
+/// The energy scale, in roundings, below which a kick would drown in them: of a scene that starts next
+/// to equilibrium.
+const SEEN: f64 = 1e8;
+/// Full probes a search is meant to afford.
+const PROBES: u64 = 24;
+/// Steps a full probe takes at least.
+const FEWEST: u64 = 500;
+/// Steps over which a map is seen to be linear or not.
+const LINEAR_STEPS: usize = 4;
+/// Newton's residuals and rounding are far below this, a direction that turns far above.
+const LINEAR: f64 = 1e-7;
+/// Times what grows fastest is run at the coarse step; each multiplies it a millionfold.
+const ROUNDS: usize = 6;
+/// Fraction of the undirected perturbation beside it.
+const TRACE: f64 = 1e-6;
+
+/// One scene and one solver.
+pub(super) struct Setup<'a> {
+    pub scene: &'a Scene,
+    pub system: &'a ParticleSystem,
+    make: &'a Make<'a>,
+    /// Where differences of runs obey a linear map.
+    quadratic: Option<Quadratic>,
+    pub perturbation: Perturbation,
+    /// The energy scale, J.
+    scale: f64,
+    /// Steps of a full probe.
+    pub steps: u64,
+}
+
+impl<'a> Setup<'a> {
+    /// `h`: a step well inside every limit, s. `patience` is in steps of the whole search.
+    pub fn new(
+        scene: &'a Scene,
+        system: &'a ParticleSystem,
+        make: &'a Make<'a>,
+        h: f64,
+        patience: u64,
+    ) -> Result<Self, Unsupported> {
+        let mut quadratic = Quadratic::new(system);
+        let large = Perturbation::large(scene, system, &mut |dx| quadratic.potential(dx));
+        let linear = linear(scene, make, &large, h)?;
+        let scale = energy_scale(scene, system, None).unwrap_or(1.0);
+        let scale = scale.max(SEEN * rounding(scene));
+        Ok(Self {
+            scene,
+            system,
+            make,
+            quadratic: linear.then_some(quadratic),
+            perturbation: if linear {
+                large
+            } else {
+                Perturbation::slight(system, scale)
+            },
+            scale,
+            // Two runs a probe where the map is linear.
+            steps: (patience / PROBES / if linear { 2 } else { 1 }).clamp(FEWEST, STEPS),
+        })
+    }
+
+    /// Whether differences of runs obey a linear map.
+    pub fn is_linear(&self) -> bool {
+        self.quadratic.is_some()
+    }
+
+    /// Rise of ln(energy) over the tail of a probe that is growth.
+    pub fn clear(&self) -> f64 {
+        if self.is_linear() {
+            CLEAR_LINEAR
+        } else {
+            CLEAR
+        }
+    }
+
+    /// Is `h` stable, over `steps`?
+    pub fn probe(
+        &self,
+        h: f64,
+        steps: u64,
+        extensions: u32,
+        budget: &mut Budget,
+    ) -> Result<Probed, Unsupported> {
+        let watch = Watch {
+            steps,
+            extensions,
+            clear: self.clear(),
+        };
+        if let Some(quadratic) = &self.quadratic {
+            let mut runs = self.pair(h, &self.perturbation)?;
+            return Ok(probe_pair(&mut runs, quadratic, watch, budget));
+        }
+        let scene = self.perturbation.apply(self.scene);
+        let mut runs = Runs::new(self.make, h, &[&scene])?;
+        let system = self.system.clone();
+        let never = f64::INFINITY;
+        let mut gauge = ExcessEnergy::new(&runs, system, &scene, self.scale, LOST, never);
+        Ok(probe(&mut runs, &mut gauge, watch, budget))
+    }
+
+    /// Two runs at `h`, the second from a start perturbed by `shape`.
+    pub fn pair(&self, h: f64, shape: &Perturbation) -> Result<Runs, Unsupported> {
+        Runs::new(self.make, h, &[self.scene, &shape.apply(self.scene)])
+    }
+
+    /// ln(amplitude) per second at `h`, once what grows fastest has outgrown the rest: that is
+    /// brought about beforehand at `coarse`, where growth is steep. None where the map is not linear:
+    /// what grows there changes its rate.
+    pub fn growth(
+        &self,
+        h: f64,
+        coarse: f64,
+        budget: &mut Budget,
+    ) -> Result<Option<f64>, Unsupported> {
+        let Some(quadratic) = &self.quadratic else {
+            return Ok(None);
+        };
+        let mut energy_of = quadratic.clone();
+        let wanted = energy_of.energy(&self.perturbation);
+        let mut shape = self.perturbation.clone();
+        let mut watch = Watch {
+            steps: self.steps,
+            extensions: 0,
+            clear: CLEAR_LINEAR,
+        };
+        for _ in 0..ROUNDS {
+            let mut runs = self.pair(coarse, &shape)?;
+            let probed = probe_pair(&mut runs, quadratic, watch, budget);
+            let grown = runs.difference(1);
+            let energy = energy_of.energy(&grown);
+            if !probed.unstable() || !energy.is_finite() || energy <= 0.0 {
+                break;
+            }
+            shape = grown.scaled((wanted / energy).sqrt());
+        }
+        // A trace of everything else, in case something else grows here.
+        let shape = shape.plus(&self.perturbation.scaled(TRACE));
+        watch.steps = STEPS;
+        watch.extensions = 2;
+        let mut runs = self.pair(h, &shape)?;
+        let probed = probe_pair(&mut runs, quadratic, watch, budget);
+        let rate = probed.rate.filter(|_| probed.fate != Fate::Impatient);
+        Ok(rate.map(|rate| 0.5 * rate / h))
+    }
+}
+
+/// Two runs of a linear map.
+fn probe_pair(runs: &mut Runs, quadratic: &Quadratic, watch: Watch, budget: &mut Budget) -> Probed {
+    let mut gauge = DifferenceEnergy::new(runs, quadratic.clone());
+    probe(runs, &mut gauge, watch, budget)
+}
+
+/// One rounding of the weights' potential energy, J.
+fn rounding(scene: &Scene) -> f64 {
+    let gravity = scene.solver.gravity.abs();
+    let heights = scene.particles.iter().filter(|p| !p.fixed).map(|p| {
+        let far = p.position.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+        p.mass * far
+    });
+    f64::EPSILON * gravity * heights.sum::<f64>()
+}
+
+/// Whether twice the perturbation makes twice the difference, to rounding. What the scene is made of
+/// does not tell: some methods are not linear where the forces are.
+fn linear(scene: &Scene, make: &Make, by: &Perturbation, h: f64) -> Result<bool, Unsupported> {
+    let starts = [scene, &by.apply(scene), &by.scaled(2.0).apply(scene)];
+    let mut runs = Runs::new(make, h, &starts)?;
+    if (0..LINEAR_STEPS).any(|_| runs.step().is_err()) {
+        return Ok(false);
+    }
+    let (once, twice) = (runs.difference(1), runs.difference(2));
+    let proportional = |once: &[f64], twice: &[f64]| {
+        let pairs = || once.iter().zip(twice);
+        let off = pairs().fold(0.0_f64, |off, (o, t)| off.max((t - 2.0 * o).abs()));
+        let most = once.iter().fold(0.0_f64, |most, o| most.max(o.abs()));
+        twice.iter().all(|t| t.is_finite()) && off <= LINEAR * most
+    };
+    Ok(proportional(&once.x, &twice.x) && proportional(&once.v, &twice.v))
+}

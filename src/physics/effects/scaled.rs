@@ -1,0 +1,92 @@
+//! An effect with all its forces multiplied: physics that is wrong on purpose.
+
+use super::Effect;
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
+
+/// `factor` times another effect: -1 turns its sign, 2 applies it twice.
+///
+/// Not an effect a scene can ask for: what a replay compares a faulty program with.
+pub struct Scaled {
+    effect: Box<dyn Effect>,
+    factor: f64,
+}
+
+impl Scaled {
+    pub fn new(effect: Box<dyn Effect>, factor: f64) -> Self {
+        Self { effect, factor }
+    }
+
+    /// Adds `factor` times what `add` adds.
+    fn scaled<T>(&self, f: &mut [f64], add: impl FnOnce(&mut [f64]) -> T) -> T {
+        let mut own = vec![0.0; f.len()];
+        let result = add(&mut own);
+        for (f, own) in f.iter_mut().zip(own) {
+            *f += self.factor * own;
+        }
+        result
+    }
+}
+
+impl Effect for Scaled {
+    fn members(&self) -> usize {
+        self.effect.members()
+    }
+
+    fn kinds(&self) -> ForceKinds {
+        let kinds = self.effect.kinds();
+        if self.factor < 0.0 {
+            kinds.turned()
+        } else {
+            kinds
+        }
+    }
+
+    fn add_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
+        let power = self.scaled(f, |own| self.effect.add_force(t, x, v, own));
+        Power {
+            dissipated: self.factor * power.dissipated,
+            injected: self.factor * power.injected,
+        }
+    }
+
+    fn potential(&self, t: f64, x: &[f64]) -> f64 {
+        self.factor * self.effect.potential(t, x)
+    }
+
+    fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
+        self.scaled(f, |own| self.effect.add_damping(x, w, own));
+    }
+
+    fn injected_power(&self, t: f64, v: &[f64]) -> f64 {
+        self.factor * self.effect.injected_power(t, v)
+    }
+
+    fn add_jacobian(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        linearization: Linearization,
+        out: &mut Jacobian,
+    ) {
+        let mut own = Jacobian::default();
+        self.effect.add_jacobian(t, x, v, linearization, &mut own);
+        for (from, to) in [
+            (own.position, &mut out.position),
+            (own.velocity, &mut out.velocity),
+        ] {
+            to.extend(
+                from.into_iter()
+                    .map(|(r, c, slope)| (r, c, self.factor * slope)),
+            );
+        }
+    }
+
+    fn keeps_momentum(&self) -> bool {
+        self.effect.keeps_momentum()
+    }
+
+    fn keeps_angular_momentum(&self) -> bool {
+        self.effect.keeps_angular_momentum()
+    }
+}

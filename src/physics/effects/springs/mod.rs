@@ -1,0 +1,166 @@
+//! Springs with dampers, fused in one loop.
+
+mod dashpot;
+mod jacobian;
+mod kernel;
+mod network;
+mod share;
+
+use super::{Effect, EffectRow, boxed};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
+use crate::scene::{DampingModel, Scene};
+use kernel::Motion;
+use network::Network;
+use pulp::Arch;
+
+pub(super) const ROW: EffectRow = EffectRow {
+    id: "springs",
+    summary: "linear springs with axial or isotropic dampers",
+    source: "f = k (l - L) n + c (v·n) n (axial) or c v (isotropic); U = k (l - L)² / 2",
+    elastic: true,
+    constant: false,
+    build: |scene| Springs::new(scene).map(boxed),
+};
+
+/// Lengths are not taken below this, m: at coincidence the direction d / l is then 0 and so is the
+/// force, with no branch and no NaN. A rest length of 0 stays exactly linear through the point.
+pub(super) const SHORTEST: f64 = 1e-150;
+
+/// All springs of a scene: their linear part, and their dampers. What `cubic` adds is
+/// [`CubicSprings`](super::CubicSprings)'.
+///
+/// Coincident ends: no force from a spring or an axial damper, since neither has a direction there;
+/// an isotropic damper still acts.
+///
+/// Forces have the same bits on every machine and every number of threads: each particle sums its
+/// forces in the order of the scene's springs.
+pub struct Springs {
+    network: Network,
+    damping: Damping,
+    kinds: ForceKinds,
+    /// The machine's vector instructions, asked for once.
+    arch: Arch,
+}
+
+/// Which loop runs; chosen once, so no spring pays for a branch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Damping {
+    None,
+    Axial,
+    Isotropic,
+}
+
+const NONE: u8 = Damping::None as u8;
+const AXIAL: u8 = Damping::Axial as u8;
+const ISOTROPIC: u8 = Damping::Isotropic as u8;
+
+impl Springs {
+    /// None when the scene has no springs but purely cubic ones.
+    pub fn new(scene: &Scene) -> Option<Self> {
+        let springs: Vec<_> = scene
+            .springs
+            .iter()
+            // Between two fixed particles a spring moves nothing, and what is fixed has no energy.
+            .filter(|s| !s.ends.iter().all(|&end| scene.particles[end].fixed))
+            // All that such a spring does is `cubic_springs`'.
+            .filter(|s| s.stiffness != 0.0 || s.damping != 0.0 || s.cubic == 0.0)
+            .collect();
+        let damping = match scene.damping_model {
+            _ if springs.iter().all(|s| s.damping == 0.0) => Damping::None,
+            DampingModel::Axial => Damping::Axial,
+            DampingModel::Isotropic => Damping::Isotropic,
+        };
+        (!springs.is_empty()).then(|| Self {
+            network: Network::new(&springs, scene.particles.len(), damping != Damping::None),
+            damping,
+            kinds: ForceKinds::union(springs.iter().map(|s| ForceKinds::of_damper(s.damping))),
+            arch: Arch::new(),
+        })
+    }
+
+    /// How many tasks the force can be shared among: 1 for a small network, and for one whose
+    /// neighbours are numbered far apart.
+    pub fn parts(&self) -> usize {
+        self.network.parts.len()
+    }
+}
+
+impl Effect for Springs {
+    fn members(&self) -> usize {
+        self.network.members
+    }
+
+    fn kinds(&self) -> ForceKinds {
+        self.kinds
+    }
+
+    fn add_force(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
+        let (arch, parts, at) = (self.arch, &self.network.parts, Motion::new(x, v));
+        let dissipated = match self.damping {
+            Damping::None => share::add::<NONE, true>(arch, parts, at, f),
+            Damping::Axial => share::add::<AXIAL, true>(arch, parts, at, f),
+            Damping::Isotropic => share::add::<ISOTROPIC, true>(arch, parts, at, f),
+        };
+        Power {
+            dissipated,
+            injected: 0.0,
+        }
+    }
+
+    fn potential(&self, _t: f64, x: &[f64]) -> f64 {
+        let mut energy = 0.0;
+        // Parts within parts: an inner iteration is a plain loop.
+        self.network.springs().for_each(|spring| {
+            let [i, j] = spring.ends.map(|end| 3 * end);
+            let d = difference(x, i, j);
+            let stretch = dot(d, d).sqrt() - spring.rest_length;
+            energy += 0.5 * spring.stiffness * stretch * stretch;
+        });
+        energy
+    }
+
+    fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
+        let (arch, parts, at) = (self.arch, &self.network.parts, Motion::new(x, w));
+        match self.damping {
+            Damping::None => 0.0,
+            Damping::Axial => share::add::<AXIAL, false>(arch, parts, at, f),
+            Damping::Isotropic => share::add::<ISOTROPIC, false>(arch, parts, at, f),
+        };
+    }
+
+    fn add_jacobian(
+        &self,
+        _t: f64,
+        x: &[f64],
+        v: &[f64],
+        linearization: Linearization,
+        out: &mut Jacobian,
+    ) {
+        self.network.springs().for_each(|spring| {
+            let (position, velocity) = jacobian::blocks(&spring, self.damping, x, v, linearization);
+            let [i, j] = spring.ends;
+            let velocity = (self.damping != Damping::None).then_some(&velocity);
+            out.add_pair(i, j, Some(&position), velocity);
+        });
+    }
+
+    fn keeps_momentum(&self) -> bool {
+        true
+    }
+
+    fn keeps_angular_momentum(&self) -> bool {
+        self.damping != Damping::Isotropic
+    }
+}
+
+/// From particle at offset `i` to the one at offset `j`.
+#[inline(always)]
+pub(super) fn difference(x: &[f64], i: usize, j: usize) -> [f64; 3] {
+    let (from, to) = (&x[i..i + 3], &x[j..j + 3]);
+    [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
+}
+
+#[inline(always)]
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

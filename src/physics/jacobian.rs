@@ -1,0 +1,193 @@
+//! Force Jacobians as triplets, or, for those who can use them, as blocks of pairs.
+
+use super::System;
+use nalgebra::Matrix3;
+
+/// Entries (row, column, value); repeated places add up.
+pub type Triplets = Vec<(usize, usize, f64)>;
+
+/// Derivatives of the force by position and velocity.
+///
+/// Signs as derived: a stable spring has a *negative* definite `position` block, minus what the
+/// field calls the stiffness matrix. A system emits the same places in the same order at every
+/// call, so solvers may keep the pattern.
+#[derive(Debug, Clone, Default)]
+pub struct Jacobian {
+    /// ∂f/∂x, N/m.
+    pub position: Triplets,
+    /// ∂f/∂v, N s/m.
+    pub velocity: Triplets,
+    /// Where pairs go instead, if they are kept as blocks.
+    pairs: Option<[Vec<PairBlock>; 2]>,
+}
+
+/// ∂f_i/∂(x_j - x_i), or the same by velocities, of an interaction of particles i and j with
+/// f_j = -f_i: -block at (i, i) and (j, j), +block at (i, j) and (j, i).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PairBlock {
+    pub ends: [u32; 2],
+    pub block: Matrix3<f64>,
+}
+
+/// By what the force was differentiated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Slope {
+    Position = 0,
+    Velocity = 1,
+}
+
+/// Which terms of the force's derivative are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Linearization {
+    /// All of them.
+    Exact,
+    /// Springs as k n nᵀ and c n nᵀ only: no geometric stiffness (the turning of the spring), no
+    /// derivative of the damper's direction. What rapier's spring joint solves.
+    Material,
+    /// What of `Exact` makes M - γ C - γ² K symmetric and positive definite whatever the state:
+    /// negative stiffness (of compressed springs across, of attraction along) and the turning of
+    /// dampers are left out. For directions to search in, not for steps.
+    ///
+    /// A system that does not know it may answer as for `Exact`.
+    Definite,
+}
+
+impl Jacobian {
+    /// One that keeps pairs as blocks of nine numbers, where triplets take 36 entries; its
+    /// `position` and `velocity` are then without them.
+    pub(crate) fn in_blocks() -> Self {
+        Self {
+            pairs: Some(Default::default()),
+            ..Self::default()
+        }
+    }
+
+    pub fn clear(&mut self) {
+        self.position.clear();
+        self.velocity.clear();
+        for pairs in self.pairs.iter_mut().flatten() {
+            pairs.clear();
+        }
+    }
+
+    pub(crate) fn triplets(&self, by: Slope) -> &Triplets {
+        match by {
+            Slope::Position => &self.position,
+            Slope::Velocity => &self.velocity,
+        }
+    }
+
+    pub(crate) fn pairs(&self, by: Slope) -> &[PairBlock] {
+        self.pairs.as_ref().map_or(&[], |pairs| &pairs[by as usize])
+    }
+
+    /// out += factor * ∂f w, over all coordinates, fixed ones included.
+    pub(crate) fn add_product(&self, by: Slope, factor: f64, w: &[f64], out: &mut [f64]) {
+        for &(row, column, value) in self.triplets(by) {
+            out[row] += factor * value * w[column];
+        }
+        // In the order of the triplets, so that both ways give the same bits.
+        for pair in self.pairs(by) {
+            let [i, j] = pair.ends.map(|end| 3 * end as usize);
+            for (row, column, sign) in [(i, j, 1.0), (i, i, -1.0), (j, j, -1.0), (j, i, 1.0)] {
+                for r in 0..3 {
+                    for c in 0..3 {
+                        out[row + r] += factor * (sign * pair.block[(r, c)]) * w[column + c];
+                    }
+                }
+            }
+        }
+    }
+
+    /// out += factor * |∂f| |w|, entry by entry: how far relative changes of w may reach.
+    pub(crate) fn add_magnitudes(&self, by: Slope, factor: f64, w: &[f64], out: &mut [f64]) {
+        for &(row, column, value) in self.triplets(by) {
+            out[row] += factor * (value * w[column]).abs();
+        }
+        for pair in self.pairs(by) {
+            let [i, j] = pair.ends.map(|end| 3 * end as usize);
+            let sum = nalgebra::Vector3::from_fn(|a, _| w[j + a].abs() + w[i + a].abs());
+            let reach = pair.block.abs() * sum * factor;
+            for axis in 0..3 {
+                out[i + axis] += reach[axis];
+                out[j + axis] += reach[axis];
+            }
+        }
+    }
+
+    /// Adds the blocks of an interaction that depends on the difference of two particles only:
+    /// `position` and `velocity` are ∂f_i/∂(x_j - x_i) and ∂f_i/∂(v_j - v_i), with f_j = -f_i.
+    pub fn add_pair(
+        &mut self,
+        i: usize,
+        j: usize,
+        position: Option<&Matrix3<f64>>,
+        velocity: Option<&Matrix3<f64>>,
+    ) {
+        if let Some(pairs) = &mut self.pairs {
+            for (block, out) in [position, velocity].into_iter().zip(pairs) {
+                out.extend(block.map(|&block| PairBlock {
+                    ends: [i as u32, j as u32],
+                    block,
+                }));
+            }
+            return;
+        }
+        for (block, out) in [
+            (position, &mut self.position),
+            (velocity, &mut self.velocity),
+        ] {
+            let Some(block) = block else { continue };
+            for (row, column, sign) in [(i, j, 1.0), (i, i, -1.0), (j, j, -1.0), (j, i, 1.0)] {
+                for r in 0..3 {
+                    for c in 0..3 {
+                        out.push((3 * row + r, 3 * column + c, sign * block[(r, c)]));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Dense central differences of the acceleration, times the mass; fixed rows stay empty.
+pub(super) fn central_differences<S: System + ?Sized>(
+    system: &S,
+    t: f64,
+    x: &[f64],
+    v: &[f64],
+    out: &mut Jacobian,
+) {
+    let n = system.dim();
+    let inverse_mass = system.inverse_mass();
+    let mut low = vec![0.0; n];
+    let mut high = vec![0.0; n];
+    let mut columns = |base: &[f64], of_position: bool, triplets: &mut Triplets| {
+        let mut moved = base.to_vec();
+        for column in 0..n {
+            if inverse_mass[column] == 0.0 {
+                continue;
+            }
+            // The cube root of eps balances truncation against rounding.
+            let step = 6e-6 * base[column].abs().max(1.0);
+            for (sign, a) in [(-1.0, &mut low), (1.0, &mut high)] {
+                moved[column] = base[column] + sign * step;
+                if of_position {
+                    system.acceleration(t, &moved, v, a);
+                } else {
+                    system.acceleration(t, x, &moved, a);
+                }
+            }
+            moved[column] = base[column];
+            for row in 0..n {
+                if inverse_mass[row] > 0.0 {
+                    let slope = (high[row] - low[row]) / (2.0 * step * inverse_mass[row]);
+                    triplets.push((row, column, slope));
+                }
+            }
+        }
+    };
+    columns(x, true, &mut out.position);
+    if system.kinds().depends_on_velocity() {
+        columns(v, false, &mut out.velocity);
+    }
+}

@@ -1,0 +1,124 @@
+//! What kinds of forces act: what a method has to know before it takes them.
+
+use std::fmt;
+use std::ops::BitOr;
+
+/// A set of kinds: those of one force, of all forces of a system, or those a method takes.
+///
+/// A force is linear in v where f(t, x, v) = f(t, x, 0) + D(x) v. D is then the sum of a symmetric and
+/// a skew part, each a kind of its own. The empty set is a force of time and position alone, by a
+/// potential or not.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct ForceKinds(u8);
+
+impl ForceKinds {
+    /// Depends on time and position alone.
+    pub const NONE: Self = Self(0);
+    /// Linear in v by a symmetric, negative semidefinite D, which takes energy out: dampers, drag.
+    pub const DISSIPATIVE: Self = Self(1);
+    /// Linear in v by a symmetric D that may feed energy in: drag of the wrong sign.
+    pub const NEGATIVE_DAMPING: Self = Self(2);
+    /// Linear in v by a skew D, which turns the velocity and does no work: a magnetic field.
+    pub const GYROSCOPIC: Self = Self(4);
+    /// Depends on v in any other way: quadratic drag. Also what is not known to be any better.
+    pub const NON_LINEAR: Self = Self(8);
+    /// Does work that neither a potential nor the dependence on v accounts for: wind.
+    pub const DRIVEN: Self = Self(16);
+    /// All of them.
+    pub const ANY: Self = Self(31);
+    /// What needs no more of a force than that D is symmetric.
+    pub const SYMMETRIC: Self =
+        Self(Self::DISSIPATIVE.0 | Self::NEGATIVE_DAMPING.0 | Self::DRIVEN.0);
+
+    const WORDS: [(Self, &str); 5] = [
+        (Self::DISSIPATIVE, "dissipative"),
+        (Self::NEGATIVE_DAMPING, "negatively damped"),
+        (Self::GYROSCOPIC, "gyroscopic"),
+        (Self::NON_LINEAR, "non-linear in the velocity"),
+        (Self::DRIVEN, "driven"),
+    ];
+
+    /// Whether any of these kinds is among them.
+    pub const fn has(self, any_of: Self) -> bool {
+        self.0 & any_of.0 != 0
+    }
+
+    pub const fn depends_on_velocity(self) -> bool {
+        self.has(Self(Self::ANY.0 & !Self::DRIVEN.0))
+    }
+
+    /// Whether a force can do work that no potential accounts for.
+    pub const fn does_work(self) -> bool {
+        self.has(Self(Self::ANY.0 & !Self::GYROSCOPIC.0))
+    }
+
+    /// Those that are not among the others.
+    pub const fn without(self, others: Self) -> Self {
+        Self(self.0 & !others.0)
+    }
+
+    /// Of a linear damper with this coefficient, force over velocity with its sign turned.
+    pub fn of_damper(coefficient: f64) -> Self {
+        if coefficient > 0.0 {
+            Self::DISSIPATIVE
+        } else if coefficient < 0.0 {
+            Self::NEGATIVE_DAMPING
+        } else {
+            Self::NONE
+        }
+    }
+
+    /// Of the same force with its sign turned.
+    pub(crate) fn turned(self) -> Self {
+        let swap = |from: Self, to: Self| if self.has(from) { to } else { Self::NONE };
+        self.without(Self::DISSIPATIVE | Self::NEGATIVE_DAMPING)
+            | swap(Self::DISSIPATIVE, Self::NEGATIVE_DAMPING)
+            | swap(Self::NEGATIVE_DAMPING, Self::DISSIPATIVE)
+    }
+
+    /// Those of several forces together.
+    pub(crate) fn union(kinds: impl Iterator<Item = Self>) -> Self {
+        kinds.fold(Self::NONE, BitOr::bitor)
+    }
+}
+
+impl BitOr for ForceKinds {
+    type Output = Self;
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl fmt::Display for ForceKinds {
+    /// As an adjective: "gyroscopic or driven".
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words = Self::WORDS.iter().filter(|(kind, _)| self.has(*kind));
+        let words: Vec<_> = words.map(|(_, word)| *word).collect();
+        f.write_str(&words.join(" or "))
+    }
+}
+
+/// Forces of a kind that a method does not take: it would step, and be wrong.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{who} takes no force that is {kinds}{}: how it treats velocity needs forces linear in it by a \
+     symmetric matrix, as dampers and drag are; explicit Runge-Kutta methods (rk4), adaptive pairs and \
+     symplectic_euler take any",
+    list(effects)
+)]
+pub struct Refused {
+    /// The method's id, or what it calls itself.
+    pub who: String,
+    /// What is refused.
+    pub kinds: ForceKinds,
+    /// Ids of the effects it comes from, where they are known.
+    pub effects: Vec<&'static str>,
+}
+
+fn list(effects: &[&str]) -> String {
+    if effects.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", effects.join(", "))
+    }
+}

@@ -1,0 +1,87 @@
+//! What an integrator sees: flat vectors and a [`System`] that gives accelerations.
+//!
+//! Nothing here knows of particles or scenes except [`ParticleSystem`], which is built from one.
+
+mod counting;
+pub mod effects;
+mod jacobian;
+mod kinds;
+mod particles;
+mod state;
+
+pub use counting::{Counting, Evaluations};
+pub use jacobian::{Jacobian, Linearization, Triplets};
+pub(crate) use jacobian::{PairBlock, Slope};
+pub use kinds::{ForceKinds, Refused};
+pub use particles::{Effects, ParticleSystem};
+pub use state::{Power, State, Work};
+
+/// A second-order mechanical system M x'' = f(t, x, v) over `dim` coordinates.
+///
+/// Every vector has length [`dim`](System::dim) (for particles 3n: x, y, z of particle 0, then of
+/// particle 1, ...). Fixed coordinates are part of the vectors; their inverse mass is 0, their
+/// acceleration 0.
+///
+/// How the force depends on v is for the system to say ([`kinds`](System::kinds)): some methods treat
+/// it as linear, f(t, x, v) = f(t, x, 0) + D(x) v with D symmetric, and refuse any other.
+pub trait System {
+    /// Number of coordinates.
+    fn dim(&self) -> usize;
+
+    /// 1/m of each coordinate, 1/kg; 0 for a fixed one.
+    fn inverse_mass(&self) -> &[f64];
+
+    /// Overwrites `a` with the acceleration, m/s², and returns the powers at this point, W.
+    ///
+    /// Not to be confused with a force: `a` is already divided by the mass.
+    fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power;
+
+    /// Which kinds of forces act, all together.
+    ///
+    /// A system that does not say is taken for one that depends on velocity in any way, and is refused
+    /// by the methods for which that would be wrong. One without velocity is [`ForceKinds::NONE`].
+    fn kinds(&self) -> ForceKinds {
+        ForceKinds::NON_LINEAR
+    }
+
+    /// Overwrites `a` with M⁻¹ D(x) w, the acceleration due to velocity `w` alone, m/s². Only called
+    /// where the force [depends on velocity](ForceKinds::depends_on_velocity), linearly.
+    fn damping(&self, _t: f64, _x: &[f64], _w: &[f64], a: &mut [f64]) {
+        a.fill(0.0);
+    }
+
+    /// Power at velocity `v`, W, of forces that belong to no potential, other than damping; linear in
+    /// `v`, so handing in a displacement gives joules. Only called for [`ForceKinds::DRIVEN`].
+    fn injected_power(&self, _t: f64, _x: &[f64], _v: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// Potential energy, J.
+    fn potential(&self, t: f64, x: &[f64]) -> f64;
+
+    /// Adds the force Jacobians to `out` (N/m and N s/m), cleared by the caller.
+    ///
+    /// The default takes central differences of [`acceleration`](System::acceleration), dense and
+    /// good to about eight digits: enough for Newton to converge, slowly.
+    fn jacobian(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        _linearization: Linearization,
+        out: &mut Jacobian,
+    ) {
+        jacobian::central_differences(self, t, x, v, out);
+    }
+
+    /// Kinetic energy, J, of the free coordinates.
+    fn kinetic(&self, v: &[f64]) -> f64 {
+        let mut twice = 0.0;
+        for (v, w) in v.iter().zip(self.inverse_mass()) {
+            if *w > 0.0 {
+                twice += v * v / w;
+            }
+        }
+        0.5 * twice
+    }
+}

@@ -1,0 +1,173 @@
+//! The system a scene describes: particles and the effects that act on them.
+
+use super::{ForceKinds, Jacobian, Linearization, Power, Refused, State, System};
+use crate::physics::effects::{self, Effect, EffectRow, Scaled};
+use crate::scene::Scene;
+use crate::vector;
+use std::sync::Arc;
+
+/// The effects a scene calls for, each with its registry row, in registry order.
+pub type Effects = Vec<(&'static EffectRow, Box<dyn Effect>)>;
+
+/// Particles under a scene's effects. Cloning shares the effects; the data is read-only.
+#[derive(Clone)]
+pub struct ParticleSystem {
+    inverse_mass: Arc<[f64]>,
+    effects: Arc<Effects>,
+    kinds: ForceKinds,
+}
+
+impl ParticleSystem {
+    /// Builds only the effects the scene asks for.
+    pub fn new(scene: &Scene) -> Self {
+        Self::scaled(scene, &|_| 1.0)
+    }
+
+    /// The same with the forces of each effect multiplied by this factor, 0 leaving it out: what a
+    /// program computes that forgets an effect, turns its sign or applies it twice.
+    pub fn scaled(scene: &Scene, factor: &dyn Fn(&EffectRow) -> f64) -> Self {
+        let inverse_mass = scene
+            .particles
+            .iter()
+            .flat_map(|p| [if p.fixed { 0.0 } else { 1.0 / p.mass }; 3])
+            .collect();
+        let effects = effects::REGISTRY
+            .iter()
+            .filter_map(|row| {
+                let effect = (row.build)(scene)?;
+                match factor(row) {
+                    0.0 => None,
+                    1.0 => Some((row, effect)),
+                    factor => Some((row, Box::new(Scaled::new(effect, factor)) as _)),
+                }
+            })
+            .collect();
+        Self::of(inverse_mass, effects)
+    }
+
+    /// Of any effects, with 1/m of each coordinate, 1/kg, 0 for a fixed one.
+    pub fn of(inverse_mass: Vec<f64>, effects: Effects) -> Self {
+        Self {
+            kinds: ForceKinds::union(effects.iter().map(|(_, effect)| effect.kinds())),
+            inverse_mass: inverse_mass.into(),
+            effects: Arc::new(effects),
+        }
+    }
+
+    /// Whether a method of that name which takes these kinds takes all forces.
+    ///
+    /// # Errors
+    /// [`Refused`], naming the effects it does not take.
+    pub fn admits(&self, who: &str, taken: ForceKinds) -> Result<(), Refused> {
+        let kinds = self.kinds.without(taken);
+        if kinds == ForceKinds::NONE {
+            return Ok(());
+        }
+        let refused = self.effects.iter().filter(|(_, e)| e.kinds().has(kinds));
+        Err(Refused {
+            who: who.to_owned(),
+            kinds,
+            effects: refused.map(|(row, _)| row.id).collect(),
+        })
+    }
+
+    /// The same forces taken for accelerations: what a program computes that never divides by the
+    /// mass.
+    pub fn undivided(&self) -> Self {
+        let whole = |w: &f64| if *w > 0.0 { 1.0 } else { 0.0 };
+        Self {
+            inverse_mass: self.inverse_mass.iter().map(whole).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The state the scene starts from, at t = 0; fixed particles at rest.
+    pub fn initial_state(scene: &Scene) -> State {
+        let x = scene.particles.iter().flat_map(|p| p.position).collect();
+        let v = scene
+            .particles
+            .iter()
+            .flat_map(|p| if p.fixed { [0.0; 3] } else { p.velocity })
+            .collect();
+        State::new(x, v)
+    }
+
+    /// The effects in force, in registry order.
+    pub fn effects(&self) -> &[(&'static EffectRow, Box<dyn Effect>)] {
+        &self.effects
+    }
+
+    /// Overwrites `f` with the forces, N. On fixed particles they are what effects happen to add,
+    /// such as a spring's pull; they move nothing.
+    pub fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
+        vector::clear(f);
+        let mut power = Power::default();
+        for (_, effect) in self.effects.iter() {
+            power += effect.add_force(t, x, v, f);
+        }
+        power
+    }
+
+    /// Potential energy of the springs alone, J: what the energy scale and the divergence test use.
+    pub fn elastic(&self, t: f64, x: &[f64]) -> f64 {
+        self.effects
+            .iter()
+            .filter(|(row, _)| row.elastic)
+            .map(|(_, effect)| effect.potential(t, x))
+            .sum()
+    }
+}
+
+impl System for ParticleSystem {
+    fn dim(&self) -> usize {
+        self.inverse_mass.len()
+    }
+
+    fn inverse_mass(&self) -> &[f64] {
+        &self.inverse_mass
+    }
+
+    fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
+        let power = self.forces(t, x, v, a);
+        vector::multiply(a, &self.inverse_mass);
+        power
+    }
+
+    fn kinds(&self) -> ForceKinds {
+        self.kinds
+    }
+
+    fn damping(&self, _t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
+        vector::clear(a);
+        for (_, effect) in self.effects.iter() {
+            if effect.kinds().depends_on_velocity() {
+                effect.add_damping(x, w, a);
+            }
+        }
+        vector::multiply(a, &self.inverse_mass);
+    }
+
+    fn injected_power(&self, t: f64, _x: &[f64], v: &[f64]) -> f64 {
+        self.effects
+            .iter()
+            .map(|(_, e)| e.injected_power(t, v))
+            .sum()
+    }
+
+    fn potential(&self, t: f64, x: &[f64]) -> f64 {
+        self.effects.iter().map(|(_, e)| e.potential(t, x)).sum()
+    }
+
+    fn jacobian(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        linearization: Linearization,
+        out: &mut Jacobian,
+    ) {
+        for (_, effect) in self.effects.iter() {
+            effect.add_jacobian(t, x, v, linearization, out);
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! The engines that run integrators of this program, and the one function that takes their steps.
+
+use super::{Counts, Engine};
+use crate::integrators::adaptive::{Adaptive, Pair};
+use crate::integrators::{Integrator, Method, Settings, StepError};
+use crate::physics::{Counting, ParticleSystem, State, System};
+use crate::scene::Scene;
+
+/// Advances a state by a step of `h` seconds, from `state.t` to `state.t + h`.
+///
+/// Every step of an integrator outside of [`conformance`](crate::conformance) is taken here. What acts
+/// within a step (an event) or after it (a correction, which adds what it takes out to `state.work`)
+/// belongs here.
+///
+/// # Errors
+/// [`StepError`] as the integrator's; the state is then as it was.
+pub fn advance(
+    integrator: &mut dyn Integrator,
+    system: &dyn System,
+    h: f64,
+    state: &mut State,
+) -> Result<(), StepError> {
+    integrator.step(system, h, state)
+}
+
+/// An integrator on a scene's particle system at a fixed timestep.
+pub struct IntegratorEngine {
+    system: Counting<ParticleSystem>,
+    integrator: Box<dyn Integrator>,
+    state: State,
+    timestep: f64,
+    steps: u64,
+}
+
+impl IntegratorEngine {
+    /// From a method's row. `timestep` in seconds, positive.
+    pub fn new(
+        scene: &Scene,
+        system: ParticleSystem,
+        method: &Method,
+        settings: &Settings,
+        timestep: f64,
+    ) -> Self {
+        Self::with(scene, system, method.build(settings), timestep)
+    }
+
+    /// With an integrator of the caller's own.
+    pub fn with(
+        scene: &Scene,
+        system: ParticleSystem,
+        integrator: Box<dyn Integrator>,
+        timestep: f64,
+    ) -> Self {
+        Self {
+            system: Counting::new(system),
+            integrator,
+            state: ParticleSystem::initial_state(scene),
+            timestep,
+            steps: 0,
+        }
+    }
+}
+
+impl Engine for IntegratorEngine {
+    fn step(&mut self) -> Result<(), StepError> {
+        // n h, not a running sum, which would drift.
+        self.state.t = self.steps as f64 * self.timestep;
+        advance(
+            self.integrator.as_mut(),
+            &self.system,
+            self.timestep,
+            &mut self.state,
+        )?;
+        self.steps += 1;
+        self.state.t = self.steps as f64 * self.timestep;
+        Ok(())
+    }
+
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn counts(&self) -> Counts {
+        Counts {
+            linear_solves: Some(self.integrator.linear_solves()),
+            newton_iterations: Some(self.integrator.newton_iterations()),
+            ..evaluated(&self.system)
+        }
+    }
+}
+
+/// An adaptive pair on a scene's particle system, from t = 0 to a given time, in steps of its own.
+///
+/// Its state's time is what its steps add up to, and at the end it is `until` to the last bit.
+pub struct AdaptiveEngine {
+    system: Counting<ParticleSystem>,
+    stepper: Adaptive,
+    state: State,
+    until: f64,
+}
+
+impl AdaptiveEngine {
+    /// `tolerance` is relative to the scene's size, as [`Adaptive`] has it; `until` in seconds. Unless
+    /// that is positive and finite there is nothing to do.
+    pub fn new(
+        scene: &Scene,
+        system: ParticleSystem,
+        pair: &Pair,
+        tolerance: f64,
+        until: f64,
+    ) -> Self {
+        Self {
+            system: Counting::new(system),
+            stepper: Adaptive::new(pair, tolerance, scene.size()),
+            state: ParticleSystem::initial_state(scene),
+            until: if until.is_finite() { until } else { 0.0 },
+        }
+    }
+}
+
+impl Engine for AdaptiveEngine {
+    /// One accepted step of its own length; the last ends exactly at `until`, and beyond it nothing
+    /// happens.
+    fn step(&mut self) -> Result<(), StepError> {
+        if self.done() {
+            return Ok(());
+        }
+        self.stepper.step(&self.system, self.until, &mut self.state)
+    }
+
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn counts(&self) -> Counts {
+        Counts {
+            linear_solves: Some(0),
+            newton_iterations: Some(0),
+            ..evaluated(&self.system)
+        }
+    }
+
+    fn done(&self) -> bool {
+        self.state.t >= self.until
+    }
+
+    fn rejected(&self) -> u64 {
+        self.stepper.rejected()
+    }
+}
+
+/// What a counted system was asked for.
+fn evaluated(system: &Counting<ParticleSystem>) -> Counts {
+    let evaluations = system.evaluations();
+    Counts {
+        force_evaluations: Some(evaluations.forces),
+        damping_evaluations: Some(evaluations.damping),
+        ..Counts::default()
+    }
+}

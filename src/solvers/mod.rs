@@ -1,0 +1,77 @@
+//! Whatever can run a scene: the [`catalogue`] of solvers, and the [`Run`] that takes their steps.
+
+pub mod external;
+mod integrator;
+pub mod rapier;
+mod run;
+mod solver;
+
+pub use integrator::{AdaptiveEngine, IntegratorEngine, advance};
+pub use run::{Ended, Limits, Observer, Run, Tally, Unwatched};
+pub use solver::{BuildIntegrator, Setting, Solver, catalogue, find};
+
+use crate::integrators::StepError;
+use crate::physics::{Refused, State};
+
+/// A scene that advances step by step. Only a [`Run`] takes its steps.
+///
+/// Two engines built from the same scene and timestep give the same bits.
+pub trait Engine: Send {
+    /// Advances by one timestep, or by a step of the engine's own where it chooses them.
+    ///
+    /// # Errors
+    /// [`StepError`] when an implicit step cannot be solved, or no step is short enough for a
+    /// tolerance; the state is then the last good one.
+    fn step(&mut self) -> Result<(), StepError>;
+
+    /// The state now: all particles, fixed ones included, and the time.
+    fn state(&self) -> &State;
+
+    /// What has been computed so far.
+    fn counts(&self) -> Counts;
+
+    /// Whether it has come to an end of its own, as an adaptive pair does.
+    fn done(&self) -> bool {
+        false
+    }
+
+    /// Steps it tried in vain; what they cost is counted with the others.
+    fn rejected(&self) -> u64 {
+        0
+    }
+}
+
+/// Work that can be counted; None where an engine does not tell.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Full evaluations of all forces.
+    pub force_evaluations: Option<u64>,
+    /// Evaluations of the velocity-dependent effects alone (inside exact damping flows).
+    pub damping_evaluations: Option<u64>,
+    pub linear_solves: Option<u64>,
+    pub newton_iterations: Option<u64>,
+}
+
+impl Counts {
+    /// What a run's forces cost: full evaluations and passes over damping alone, which cost about
+    /// as much where there is damping at all.
+    pub fn all_force_passes(&self) -> Option<u64> {
+        self.force_evaluations
+            .map(|full| full + self.damping_evaluations.unwrap_or(0))
+    }
+}
+
+/// Why an engine cannot run a scene. An answer, not a fault.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{reason}")]
+pub struct Unsupported {
+    /// What the scene has that the engine cannot mirror.
+    pub reason: String,
+}
+
+impl From<Refused> for Unsupported {
+    fn from(refused: Refused) -> Self {
+        let reason = refused.to_string();
+        Self { reason }
+    }
+}

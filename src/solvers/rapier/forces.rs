@@ -1,0 +1,67 @@
+//! rapier's bodies under forces computed here.
+
+use super::settings::Settings;
+use super::world::World;
+use crate::integrators::StepError;
+use crate::physics::{ParticleSystem, State};
+use crate::scene::Scene;
+use crate::solvers::{Counts, Engine, Unsupported};
+
+/// A rapier world without joints or gravity that is handed all forces of the scene before each
+/// step, one substep a step: symplectic Euler (kick, drift), the same operations in the same order.
+///
+/// It takes every effect that is a force. Not to be confused with what rapier makes of a scene in
+/// its own terms, which is [`RapierEngine`](super::RapierEngine).
+pub struct RapierForces {
+    world: World,
+    system: ParticleSystem,
+    state: State,
+    timestep: f64,
+    steps: u64,
+    /// Scratch: forces, N.
+    forces: Vec<f64>,
+}
+
+impl RapierForces {
+    /// `timestep` in seconds, positive.
+    ///
+    /// # Errors
+    /// [`Unsupported`] for masses outside of what rapier can move.
+    pub fn new(scene: &Scene, system: ParticleSystem, timestep: f64) -> Result<Self, Unsupported> {
+        let state = ParticleSystem::initial_state(scene);
+        Ok(Self {
+            world: World::new(scene, timestep, &Settings::FORCES)?,
+            system,
+            forces: vec![0.0; state.x.len()],
+            state,
+            timestep,
+            steps: 0,
+        })
+    }
+}
+
+impl Engine for RapierForces {
+    fn step(&mut self) -> Result<(), StepError> {
+        let State { t, x, v, .. } = &self.state;
+        let power = self.system.forces(*t, x, v, &mut self.forces);
+        // Where the kick is, as in symplectic Euler, whose work this then is to the last bit.
+        self.state.work.advance(power, self.timestep);
+        self.world.set_forces(&self.forces);
+        self.world.step(&mut self.state);
+        self.steps += 1;
+        self.state.t = self.steps as f64 * self.timestep;
+        Ok(())
+    }
+
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// One evaluation a step.
+    fn counts(&self) -> Counts {
+        Counts {
+            force_evaluations: Some(self.steps),
+            ..Counts::default()
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Which effects rapier has itself, and how they are said to it: one row an effect.
+//!
+//! An effect without a row here is one rapier does not have, and a scene that asks for it is
+//! answered [`Unsupported`].
+
+use super::world::{End, NEGLIGIBLE, World, unsupported};
+use crate::physics::ParticleSystem;
+use crate::scene::{DampingModel, Scene, Spring};
+use crate::solvers::Unsupported;
+use rapier3d::dynamics::{
+    GenericJoint, GenericJointBuilder, JointAxesMask, JointAxis, MotorModel, SpringJointBuilder,
+};
+
+/// One effect in rapier's own terms.
+struct Mirror {
+    /// The effect's id in `effects::REGISTRY`.
+    effect: &'static str,
+    /// Adds it to a world whose substep is the number of seconds given.
+    add: fn(&Scene, f64, &mut World) -> Result<(), Unsupported>,
+}
+
+static MIRRORS: &[Mirror] = &[
+    Mirror {
+        effect: "gravity",
+        add: |scene, _, world| {
+            world.set_gravity(scene.up, scene.solver.gravity);
+            Ok(())
+        },
+    },
+    Mirror {
+        effect: "springs",
+        add: springs,
+    },
+    Mirror {
+        effect: "drag",
+        add: drag,
+    },
+    Mirror {
+        effect: "wind",
+        add: wind,
+    },
+];
+
+/// Adds every effect of the system to the world, in registry order.
+pub(super) fn add_all(
+    scene: &Scene,
+    system: &ParticleSystem,
+    substep: f64,
+    world: &mut World,
+) -> Result<(), Unsupported> {
+    for (row, _) in system.effects() {
+        let Some(mirror) = MIRRORS.iter().find(|mirror| mirror.effect == row.id) else {
+            return Err(unsupported(format!(
+                "rapier has no native `{}`; rapier-forces takes it",
+                row.id
+            )));
+        };
+        (mirror.add)(scene, substep, world)?;
+    }
+    Ok(())
+}
+
+/// A spring joint per spring; its damper in the joint (axial) or beside it (isotropic).
+fn springs(scene: &Scene, substep: f64, world: &mut World) -> Result<(), Unsupported> {
+    for (id, spring) in scene.springs.iter().enumerate() {
+        let [a, b] = spring.ends.map(|end| &scene.particles[end]);
+        if a.fixed && b.fixed {
+            continue;
+        }
+        if spring.rest_length > 0.0 && a.position == b.position {
+            return Err(unsupported(format!(
+                "spring {id} starts with both ends in one place but has a rest length: rapier's \
+                 joint has no direction to push it in"
+            )));
+        }
+        let ends = spring.ends.map(End::Particle);
+        let beside = scene.damping_model == DampingModel::Isotropic;
+        let along = if beside { 0.0 } else { spring.damping };
+        if has_effect(id, spring.stiffness, along, substep)? {
+            world.join(ends, spring_joint(spring, along));
+        }
+        if beside && has_effect(id, 0.0, spring.damping, substep)? {
+            world.join(ends, velocity_motor(spring.damping));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a joint of this stiffness and damping does anything. rapier takes 1/(h² k + h c) for 0
+/// when the sum is not above 1e-20, and the joint is then *rigid*: so no joint at all for 0, and an
+/// answer for what is too soft.
+fn has_effect(id: usize, k: f64, c: f64, h: f64) -> Result<bool, Unsupported> {
+    let softness = h * h * k + h * c;
+    if k == 0.0 && c == 0.0 {
+        Ok(false)
+    } else if softness > NEGLIGIBLE && h * k + c > NEGLIGIBLE {
+        Ok(true)
+    } else {
+        Err(unsupported(format!(
+            "spring {id} is so soft (h² k + h c = {softness:.1e} kg) that rapier would make it rigid"
+        )))
+    }
+}
+
+fn spring_joint(spring: &Spring, damping: f64) -> GenericJoint {
+    SpringJointBuilder::new(spring.rest_length, spring.stiffness, damping)
+        .contacts_enabled(false)
+        .spring_model(MotorModel::ForceBased)
+        .into()
+}
+
+/// A damper of the whole relative velocity, N s/m: three motors with target velocity 0. A joint of
+/// its own, since rapier ignores single-axis motors on the axes a spring joint couples.
+fn velocity_motor(damping: f64) -> GenericJoint {
+    let axes = [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ];
+    let start = GenericJointBuilder::new(JointAxesMask::empty()).contacts_enabled(false);
+    axes.into_iter()
+        .fold(start, |joint, axis| {
+            joint
+                .motor_model(axis, MotorModel::ForceBased)
+                .set_motor(axis, 0.0, 0.0, 0.0, damping)
+        })
+        .into()
+}
+
+/// Motors that hold each particle back against the air. Not rapier's `linear_damping`, which scales
+/// the velocity once a step, whatever the substeps do.
+fn drag(scene: &Scene, substep: f64, world: &mut World) -> Result<(), Unsupported> {
+    for (i, particle) in scene.particles.iter().enumerate() {
+        if particle.fixed || particle.drag <= 0.0 {
+            continue;
+        }
+        if substep * particle.drag <= NEGLIGIBLE {
+            return Err(unsupported(format!(
+                "particle {i}'s drag of {} N s/m is so small that rapier would stop it dead",
+                particle.drag
+            )));
+        }
+        world.join([End::Air, End::Particle(i)], velocity_motor(particle.drag));
+    }
+    Ok(())
+}
+
+/// A constant force: rapier keeps a body's forces until they are reset.
+fn wind(scene: &Scene, _: f64, world: &mut World) -> Result<(), Unsupported> {
+    if let Some(wind) = &scene.wind {
+        world.push_all(wind.direction.map(|d| wind.strength * d));
+    }
+    Ok(())
+}

@@ -1,0 +1,292 @@
+//! A run: advances a solver, hands its states to an observer, and stops what diverges.
+
+use super::solver::Setting;
+use super::{Counts, Engine};
+use crate::integrators::StepError;
+use crate::physics::{ParticleSystem, State, System};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Sees the states of a run.
+pub trait Observer {
+    /// The first step number, at or after `from`, at which it wants the state; None for no more.
+    fn next(&self, from: u64) -> Option<u64>;
+
+    /// The state at step `step` (0 is the start), called at the steps asked for, in order.
+    fn observe(&mut self, step: u64, state: &State);
+
+    /// The state a run diverged in, if it is still finite: the last one of this run.
+    fn observe_diverged(&mut self, step: u64, state: &State) {
+        self.observe(step, state);
+    }
+
+    /// The last state of a run whose number of steps was not known, unless it was observed.
+    fn observe_end(&mut self, _step: u64, _state: &State) {}
+}
+
+/// The observer of a run nobody watches.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Unwatched;
+
+impl Observer for Unwatched {
+    fn next(&self, _from: u64) -> Option<u64> {
+        None
+    }
+    fn observe(&mut self, _step: u64, _state: &State) {}
+}
+
+/// When a run counts as diverged: non-finite, or K + U_elastic beyond a limit.
+#[derive(Clone)]
+pub struct Limits {
+    system: ParticleSystem,
+    /// Joules.
+    limit: Option<f64>,
+    /// Largest mass, kg.
+    heaviest: f64,
+    /// Steps from one look to the next.
+    every: u64,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ended {
+    Completed,
+    /// At the end of this step; the cause in words.
+    Diverged {
+        step: u64,
+        reason: String,
+    },
+    /// In this step, which could not be taken.
+    Failed {
+        step: u64,
+        error: StepError,
+    },
+    /// An adaptive pair that is not there after as many steps as its setting allows.
+    Exhausted,
+}
+
+/// The elastic energy is looked at only when the kinetic energy has passed this share of the limit:
+/// in an exploding run it passes first unless one step alone grows the energy a millionfold.
+const SUSPECT: f64 = 1e-6;
+
+impl Limits {
+    /// `limit` in joules, as [`divergence_limit`](crate::measure::divergence_limit) gives it; None
+    /// leaves only the finiteness test.
+    pub fn new(system: ParticleSystem, limit: Option<f64>) -> Self {
+        let inverse = system.inverse_mass().iter().filter(|w| **w > 0.0);
+        let heaviest = inverse.fold(0.0, |m: f64, w| m.max(1.0 / w));
+        Self {
+            system,
+            limit,
+            heaviest,
+            every: 1,
+        }
+    }
+
+    /// The same, looked at only now and then, which costs a run next to nothing. A run that ends
+    /// early under these ended *about* there: run it again under the exact limits to know where.
+    pub fn now_and_then(&self) -> Self {
+        Self {
+            every: 16,
+            ..self.clone()
+        }
+    }
+
+    /// Why this state counts as diverged, if it does.
+    pub(crate) fn exceeded(&self, state: &State) -> Option<String> {
+        // The squared speeds bound K from above at half its cost.
+        let kinetic = 0.5 * self.heaviest * sum_of_squares(&state.v);
+        let calm = match self.limit {
+            Some(limit) => kinetic <= SUSPECT * limit,
+            None => kinetic.is_finite(),
+        };
+        // NaN is not calm.
+        if calm { None } else { self.examine(state) }
+    }
+
+    /// The definition in full.
+    fn examine(&self, state: &State) -> Option<String> {
+        let bad = |values: &[f64]| values.iter().position(|c| !c.is_finite());
+        if let Some(at) = bad(&state.x).or_else(|| bad(&state.v)) {
+            return Some(format!("particle {} is no longer finite", at / 3));
+        }
+        let energy = self.system.kinetic(&state.v) + self.system.elastic(state.t, &state.x);
+        if !energy.is_finite() {
+            let fastest = fastest(&state.v);
+            return Some(format!(
+                "the energy is no longer finite, fastest at particle {fastest}"
+            ));
+        }
+        let limit = self.limit?;
+        (energy > limit).then(|| {
+            let fastest = fastest(&state.v);
+            format!("its energy passed the limit of {limit:.1e} J, fastest at particle {fastest}")
+        })
+    }
+}
+
+/// Sum of v², in eight running sums: one long chain of additions would cost more than a spring.
+fn sum_of_squares(v: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let blocks = v.chunks_exact(8);
+    let rest: f64 = blocks.remainder().iter().map(|v| v * v).sum();
+    for block in blocks {
+        for lane in 0..8 {
+            sums[lane] += block[lane] * block[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+/// The particle with the largest speed.
+fn fastest(v: &[f64]) -> usize {
+    let speeds = v
+        .chunks_exact(3)
+        .map(|v| v.iter().map(|c| c * c).sum::<f64>());
+    speeds
+        .enumerate()
+        .fold(
+            (0, 0.0),
+            |best, (i, s)| if s > best.1 { (i, s) } else { best },
+        )
+        .0
+}
+
+/// What several runs evaluated together; each adds its own when it is dropped.
+#[derive(Debug, Default)]
+pub struct Tally {
+    forces: AtomicU64,
+    damping: AtomicU64,
+}
+
+impl Tally {
+    /// Full evaluations, passes over damping alone.
+    pub fn evaluations(&self) -> [u64; 2] {
+        [&self.forces, &self.damping].map(|count| count.load(Ordering::Relaxed))
+    }
+}
+
+/// A solver on a scene, at its start or on its way: the only place that takes steps.
+pub struct Run {
+    engine: Box<dyn Engine>,
+    setting: Setting,
+    taken: u64,
+    tally: Option<Arc<Tally>>,
+}
+
+impl Run {
+    pub(super) fn new(engine: Box<dyn Engine>, setting: Setting) -> Self {
+        Self {
+            engine,
+            setting,
+            taken: 0,
+            tally: None,
+        }
+    }
+
+    /// The same, adding to `tally` what it evaluated once it is dropped.
+    #[must_use]
+    pub fn tallied(mut self, tally: &Arc<Tally>) -> Self {
+        self.tally = Some(Arc::clone(tally));
+        self
+    }
+
+    /// The state now.
+    pub fn state(&self) -> &State {
+        self.engine.state()
+    }
+
+    /// What has been computed so far.
+    pub fn counts(&self) -> Counts {
+        self.engine.counts()
+    }
+
+    /// Steps taken; of an adaptive pair those accepted.
+    pub fn taken(&self) -> u64 {
+        self.taken
+    }
+
+    /// Takes some steps that nobody watches, wherever the setting ends.
+    ///
+    /// # Errors
+    /// The first step that could not be taken; the state is then the last good one.
+    pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
+        for _ in 0..steps {
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    fn step(&mut self) -> Result<(), StepError> {
+        self.engine.step()?;
+        self.taken += 1;
+        Ok(())
+    }
+
+    /// Goes to the end of the setting, or until the run diverges, fails or is exhausted; observes step 0
+    /// first. For a run at its start.
+    ///
+    /// `tick` is called now and then with the steps taken since the last call.
+    pub fn finish(
+        &mut self,
+        limits: &Limits,
+        observer: &mut dyn Observer,
+        tick: &dyn Fn(u64),
+    ) -> Ended {
+        let mut due = observer.next(0);
+        let mut ticked = 0;
+        loop {
+            let step = self.taken;
+            if due == Some(step) {
+                observer.observe(step, self.state());
+                due = observer.next(step + 1);
+            }
+            if step - ticked == 1024 {
+                tick(1024);
+                ticked = step;
+            }
+            if let Some(ended) = self.end() {
+                if self.setting.tolerance().is_some() {
+                    observer.observe_end(step, self.state());
+                }
+                tick(step - ticked);
+                return ended;
+            }
+            if let Err(error) = self.step() {
+                return Ended::Failed { step, error };
+            }
+            let step = self.taken;
+            let looked_at = step.is_multiple_of(limits.every) || self.end().is_some();
+            if looked_at && let Some(reason) = limits.exceeded(self.state()) {
+                if self.state().is_finite() {
+                    observer.observe_diverged(step, self.state());
+                }
+                return Ended::Diverged { step, reason };
+            }
+        }
+    }
+
+    /// Whether it is over.
+    fn end(&self) -> Option<Ended> {
+        match self.setting {
+            Setting::Steps { steps, .. } => (self.taken >= steps).then_some(Ended::Completed),
+            Setting::Tolerance { .. } if self.engine.done() => Some(Ended::Completed),
+            Setting::Tolerance { most, .. } => {
+                (self.taken + self.engine.rejected() >= most).then_some(Ended::Exhausted)
+            }
+        }
+    }
+}
+
+impl Drop for Run {
+    fn drop(&mut self) {
+        if let Some(tally) = &self.tally {
+            let counts = self.engine.counts();
+            let add = |sum: &AtomicU64, count: Option<u64>| {
+                sum.fetch_add(count.unwrap_or(0), Ordering::Relaxed);
+            };
+            add(&tally.forces, counts.force_evaluations);
+            add(&tally.damping, counts.damping_evaluations);
+        }
+    }
+}

@@ -1,9 +1,0 @@
-//! Mistakes are named, first faults are found and explained, and what is right is left alone.
-
-#[path = "../common/mod.rs"]
-mod common;
-mod injected;
-mod mistaken;
-mod record;
-mod shipped;
-mod written;

@@ -1,0 +1,22 @@
+//! What acts and what steps, against the laws it has to obey: effects, integrators, pairs that choose
+//! their own steps, and rapier's engines against the methods of ours that they are.
+//!
+//! A new law, a new mutant of an integrator, a new hard scene and a new twin of rapier belong here.
+
+mod adaptive;
+mod coincidence;
+mod conformance;
+mod damping_flow;
+mod effects;
+mod force_kinds;
+mod hard;
+mod kernel;
+mod momentum;
+mod order;
+mod oscillator;
+mod solver;
+mod stiff;
+#[path = "../testkit/mod.rs"]
+mod testkit;
+mod time;
+mod twins;

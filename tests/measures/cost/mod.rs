@@ -1,0 +1,44 @@
+//! What accuracy costs: laws of the sweep and its answers on counts.
+
+mod adaptive;
+mod sweep;
+mod theory;
+
+use springcheck::crosscheck::Quiet;
+use springcheck::crosscheck::cost::{CostChoice, CostPlan};
+use springcheck::integrators::{self, Method};
+use springcheck::outcome::{Cost, CostCurve};
+use springcheck::scene::Scene;
+use springcheck::solvers::Solver;
+use springcheck::truth::Demand;
+
+/// These methods over a small budget, no engines.
+fn choice(methods: Vec<&'static Method>) -> CostChoice {
+    CostChoice {
+        solvers: methods.into_iter().map(Solver::method).collect(),
+        targets: vec![1e-2, 1e-3, 1e-4],
+        settings: 10,
+        budget_s: 1.5,
+        timesteps: None,
+        truth: Demand::Auto,
+    }
+}
+
+fn all() -> Vec<&'static Method> {
+    integrators::REGISTRY.iter().collect()
+}
+
+fn cost(scene: &Scene, choice: &CostChoice) -> Cost {
+    CostPlan::new(scene, choice)
+        .execute(&Quiet)
+        .cost()
+        .expect("the cost of a sweep")
+        .clone()
+}
+
+fn of<'a>(cost: &'a Cost, engine: &str) -> &'a CostCurve {
+    let mut curves = cost.curves.iter();
+    curves
+        .find(|curve| curve.engine == engine)
+        .expect("a curve")
+}

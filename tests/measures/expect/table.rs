@@ -1,0 +1,159 @@
+//! The table of keys holds what an outcome holds, no more and no less.
+
+use super::run;
+use serde_json::Value;
+use springcheck::conformance::systems::free_triangle;
+use springcheck::crosscheck::{Choice, names};
+use springcheck::outcome::{EnergyClass, Status, Undecided};
+use springcheck::scene::{DampingModel, KeyKind};
+use springcheck::solvers;
+use std::collections::BTreeMap;
+
+/// Stated by the expectation itself, different in every run, or lists.
+const LEFT_OUT: &[&str] = &[
+    "engine",
+    "kind",
+    "timestep",
+    "substep",
+    "work.wall_s.min",
+    "work.wall_s.median",
+    "work.wall_s.mad",
+    "energy.drift_per_s_ci",
+    "energy.kinetic_final_j",
+    "energy.potential_final_j.springs",
+    "energy.dissipated_j",
+    "energy.injected_j",
+    "identified.equivalent",
+    "remarks",
+];
+
+/// Every path to a value that is no mapping; a null only where nothing else was seen there.
+fn leaves(path: &str, value: &Value, found: &mut BTreeMap<String, Value>) {
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                let path = if path.is_empty() {
+                    key.clone()
+                } else {
+                    format!("{path}.{key}")
+                };
+                leaves(&path, value, found);
+            }
+        }
+        Value::Null => drop(found.entry(path.to_owned()).or_insert(Value::Null)),
+        value => drop(found.insert(path.to_owned(), value.clone())),
+    }
+}
+
+/// Momentum is kept, everybody is a reference, and there is a truth.
+fn everything() -> BTreeMap<String, Value> {
+    let mut scene = free_triangle(0.0, DampingModel::Axial);
+    scene.duration = 1.0;
+    let mut choice = Choice::default_for(&scene);
+    choice.solvers.extend(solvers::find("rapier-converged"));
+    let mut found = BTreeMap::new();
+    for outcome in run(&scene, &choice).outcomes() {
+        let value = serde_json::to_value(outcome).expect("JSON");
+        leaves("", &value, &mut found);
+    }
+    // A mapping that is null in one outcome is a mapping in another.
+    let inner: Vec<String> = found.keys().cloned().collect();
+    found.retain(|path, value| {
+        !value.is_null() || !inner.iter().any(|p| p.starts_with(&format!("{path}.")))
+    });
+    found
+}
+
+#[test]
+fn the_table_is_what_an_outcome_holds() {
+    let found = everything();
+    let table: Vec<&str> = names().keys.iter().map(|key| key.path.as_str()).collect();
+    for path in found.keys() {
+        let known = table.contains(&path.as_str()) || LEFT_OUT.contains(&path.as_str());
+        assert!(known, "an outcome holds {path}, which is not in the table");
+    }
+    for path in table.iter().chain(LEFT_OUT) {
+        assert!(found.contains_key(*path), "no outcome holds {path}");
+    }
+    // Each once.
+    for (at, path) in table.iter().enumerate() {
+        assert!(!table[..at].contains(path) && !LEFT_OUT.contains(path));
+    }
+}
+
+#[test]
+fn each_kind_is_what_stands_there() {
+    let found = everything();
+    for key in &names().keys {
+        let right = match (&key.kind, &found[&key.path]) {
+            (_, Value::Null) => continue,
+            (KeyKind::Number, value) => value.is_number(),
+            (KeyKind::Text, value) => value.is_string(),
+            (KeyKind::Word(words), Value::String(word)) => words.contains(&word.as_str()),
+            (KeyKind::Word(words), value) => words.contains(&value.to_string().as_str()),
+        };
+        assert!(right, "{}: {:?}", key.path, found[&key.path]);
+    }
+}
+
+/// The successor, so that a variant nobody lists does not compile; None after the last.
+trait Listed: Copy + serde::Serialize {
+    const FIRST: Self;
+    fn next(self) -> Option<Self>;
+}
+
+impl Listed for Status {
+    const FIRST: Self = Self::Completed;
+    fn next(self) -> Option<Self> {
+        match self {
+            Self::Completed => Some(Self::Diverged),
+            Self::Diverged => Some(Self::Failed),
+            Self::Failed => Some(Self::Unsupported),
+            Self::Unsupported => None,
+        }
+    }
+}
+
+impl Listed for EnergyClass {
+    const FIRST: Self = Self::Bounded;
+    fn next(self) -> Option<Self> {
+        match self {
+            Self::Bounded => Some(Self::Drifting),
+            Self::Drifting => Some(Self::Dissipating),
+            Self::Dissipating => Some(Self::Growing),
+            Self::Growing => None,
+        }
+    }
+}
+
+impl Listed for Undecided {
+    const FIRST: Self = Self::SameMap;
+    fn next(self) -> Option<Self> {
+        match self {
+            Self::SameMap => Some(Self::DataTooCoarse),
+            Self::DataTooCoarse => Some(Self::NothingFits),
+            Self::NothingFits => None,
+        }
+    }
+}
+
+fn words<T: Listed>() -> Vec<String> {
+    std::iter::successors(Some(T::FIRST), |word| word.next())
+        .map(|word| serde_json::to_value(word).expect("a word"))
+        .map(|word| word.as_str().expect("a word").to_owned())
+        .collect()
+}
+
+#[test]
+fn the_words_are_those_of_the_report() {
+    let known = |path: &str| {
+        let key = names().keys.iter().find(|key| key.path == path);
+        match &key.expect("a key").kind {
+            KeyKind::Word(words) => words.clone(),
+            kind => panic!("{path}: {kind:?}"),
+        }
+    };
+    assert_eq!(known("status"), words::<Status>());
+    assert_eq!(known("energy.class"), words::<EnergyClass>());
+    assert_eq!(known("identified.undecided"), words::<Undecided>());
+}

@@ -1,0 +1,206 @@
+//! Laws over the registry of mistakes, and over the methods that are none.
+
+use super::record::{PRECISIONS, fault_of, question, rows, run, thinned};
+use crate::testkit::{distance, everything, mutants, part, swinging_triangle};
+use springcheck::integrators::{REGISTRY, Settings};
+use springcheck::measure::identify::{Candidate, MISTAKES, Wrong, first_fault, identify, mistakes};
+use springcheck::physics::{ParticleSystem, State};
+use springcheck::scene::{DampingModel, Scene};
+use springcheck::trajectory::Precision;
+use std::collections::BTreeMap;
+
+/// A step long enough that schemes part, short enough that implicit ones solve.
+fn scene(model: DampingModel) -> Scene {
+    let mut scene = everything(model);
+    scene.solver.timestep = 0.01;
+    scene
+}
+
+fn built(scene: &Scene) -> (ParticleSystem, Vec<Candidate>, Vec<Candidate>) {
+    let system = ParticleSystem::new(scene);
+    let methods = REGISTRY.iter().map(|m| Candidate::method(&system, m, 1));
+    let methods = methods.collect();
+    let wrong = mistakes(scene, &system);
+    (system, methods, wrong)
+}
+
+/// One step from the second state of an RK4 run, whose first is known.
+fn second_step(scene: &Scene, candidate: &Candidate) -> State {
+    let system = ParticleSystem::new(scene);
+    let rk4 = Candidate::method(&system, crate::testkit::method("rk4"), 1);
+    let states = run(scene, 1, |_| &rk4, |_, _| {});
+    let mut state = states[1].clone();
+    let mut replayer = candidate.replayer(&Settings::default());
+    let h = scene.solver.timestep;
+    replayer
+        .advance(1, 1, h, Some(&states[0]), &mut state)
+        .expect("a solvable step");
+    state
+}
+
+/// All schemes of a scene and where they lead.
+fn ends(scene: &Scene) -> Vec<(String, State)> {
+    let (_, methods, wrong) = built(scene);
+    let all = methods.iter().chain(&wrong);
+    all.map(|c| (c.id.clone(), second_step(scene, c))).collect()
+}
+
+/// No two end within `bound` of each other.
+fn all_differ(ends: &[(String, State)], bound: f64) -> Result<(), String> {
+    for (k, (a, first)) in ends.iter().enumerate() {
+        for (b, second) in &ends[k + 1..] {
+            let off = distance(&first.x, &second.x).max(distance(&first.v, &second.v));
+            if a == b || off < bound {
+                return Err(format!("{a} and {b}: {off:e}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn every_mistake_is_a_map_of_its_own() {
+    // The nearest are two methods of order 4 at half the step, 3.8e-9 apart. Numbers of order 1 are
+    // rounded in the sixteenth digit, a million times finer.
+    let bound = 2e-9;
+    for model in [DampingModel::Axial, DampingModel::Isotropic] {
+        let scene = scene(model);
+        let mut ends = ends(&scene);
+        all_differ(&ends, bound).unwrap_or_else(|error| panic!("{error}"));
+        // A second name for a scheme that is there already.
+        let again = Candidate::map(
+            &ParticleSystem::new(&scene),
+            "another_name",
+            "midpoint",
+            "nothing",
+            |system, h, _, state| {
+                mutants::midpoint_drifting_with_the_end_velocity(system, h, state);
+                Ok(())
+            },
+        );
+        ends.push((again.id.clone(), second_step(&scene, &again)));
+        assert!(all_differ(&ends, bound).is_err());
+    }
+}
+
+/// Every row of the registry is made in one scene or the other, and says what to change.
+#[test]
+fn every_mistake_can_be_made_and_speaks() {
+    let ids = |model| {
+        let (_, _, wrong) = built(&scene(model));
+        wrong.into_iter().map(|c| c.id).collect::<Vec<_>>()
+    };
+    let made = [ids(DampingModel::Axial), ids(DampingModel::Isotropic)].concat();
+    for mistake in MISTAKES {
+        let own = |id: &&String| id.split('(').next() == Some(mistake.id);
+        let forms = made.iter().filter(own).count();
+        let least = match mistake.wrong {
+            Wrong::Step { meant, .. } => {
+                assert!(springcheck::integrators::find(meant).is_some(), "{meant}");
+                1
+            }
+            _ => REGISTRY.len(),
+        };
+        assert!(forms >= least, "{}: {forms}", mistake.id);
+        assert!(mistake.says.len() > 40, "{}", mistake.id);
+    }
+}
+
+/// Without gravity, damping and mass there is nothing of them to get wrong.
+#[test]
+fn only_what_the_scene_calls_for_can_be_wrong() {
+    let mut bare = swinging_triangle(0.0, DampingModel::Axial);
+    bare.solver.gravity = 0.0;
+    for particle in &mut bare.particles {
+        particle.mass = 1.0;
+    }
+    let (_, _, wrong) = built(&bare);
+    for candidate in &wrong {
+        let id = candidate.id.as_str();
+        let about = ["gravity", "damp", "mass", "acceleration"];
+        assert!(!about.iter().any(|part| id.contains(part)), "{id}");
+    }
+    assert!(wrong.iter().any(|c| c.id == "springs_twice(rk4)"));
+}
+
+/// What replay says of a trajectory made by `made`: its id, and that the fault begins where it can
+/// and gives the mistake's sentence.
+fn names_itself(scene: &Scene, made: &Candidate, expected: &Candidate) -> Result<(), String> {
+    let system = ParticleSystem::new(scene);
+    let states = run(scene, 12, |_| made, |_, _| {});
+    let rows = rows(scene, &states, Precision::Double);
+    let question = question(scene, &system, &rows);
+    let identity = identify(&question).ok_or("nothing identified")?;
+    if identity.method != expected.id || !identity.decisive {
+        return Err(format!("{} taken for {identity:?}", expected.id));
+    }
+    let fault = first_fault(&question, &identity).ok_or("no fault")?;
+    // What adds up or comes late is right in the first step.
+    let first = u64::from(expected.remembers);
+    let says = expected.mistake.ok_or("no mistake")?;
+    if fault.step != first || !fault.explanation.starts_with(says) {
+        return Err(format!("{}: {fault:?}", expected.id));
+    }
+    Ok(())
+}
+
+#[test]
+fn every_mistake_is_named_and_explained() {
+    // Each in every scene that it can be made in.
+    let mut makes: BTreeMap<String, Vec<(Scene, Candidate)>> = BTreeMap::new();
+    for model in [DampingModel::Axial, DampingModel::Isotropic] {
+        let scene = scene(model);
+        let (_, methods, mistaken) = built(&scene);
+        for candidate in &mistaken {
+            let made = makes.entry(candidate.id.clone()).or_default();
+            made.push((scene.clone(), candidate.clone()));
+        }
+        // A method is none of its mistakes, nor one mistake another.
+        assert!(names_itself(&scene, &methods[0], &mistaken[0]).is_err());
+        assert!(names_itself(&scene, &mistaken[1], &mistaken[0]).is_err());
+    }
+    for (at, made) in makes.values().enumerate() {
+        for (scene, candidate) in part(made, made.len(), at) {
+            names_itself(scene, candidate, candidate).unwrap_or_else(|error| panic!("{error}"));
+        }
+    }
+}
+
+/// A trajectory of the method itself has no fault, however it was written down.
+fn is_clean(scene: &Scene, candidate: &Candidate, method: &str) -> Result<(), String> {
+    let states = run(scene, 120, |_| candidate, |_, _| {});
+    for precision in PRECISIONS {
+        let all = rows(scene, &states, precision);
+        let mut positions = all.clone();
+        positions.v = None;
+        let thin = [7, 60].map(|every| thinned(&all, every));
+        for rows in [
+            &all,
+            &thin[0],
+            &thin[1],
+            &positions,
+            &thinned(&positions, 7),
+        ] {
+            if let Some(fault) = fault_of(scene, rows, method) {
+                return Err(format!("{method}, {precision:?}: {fault:?}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn what_follows_its_scheme_has_no_fault() {
+    for model in [DampingModel::Axial, DampingModel::Isotropic] {
+        let scene = scene(model);
+        let (_, methods, _) = built(&scene);
+        for method in &methods {
+            is_clean(&scene, method, &method.id).unwrap_or_else(|error| panic!("{error}"));
+        }
+        // A twentieth of a percent of gravity, and it is not clean.
+        let mut heavier = scene.clone();
+        heavier.solver.gravity *= 1.0005;
+        let heavier = methods[0].under(&ParticleSystem::new(&heavier));
+        assert!(is_clean(&scene, &heavier, &methods[0].id).is_err());
+    }
+}

@@ -1,0 +1,7 @@
+//! Mistakes are named, first faults are found and explained, and what is right is left alone.
+
+mod injected;
+mod mistaken;
+mod record;
+mod shipped;
+mod written;

@@ -1,0 +1,103 @@
+//! Every method on every shipped scene: named, or said to be the same as others there.
+
+use super::*;
+use crate::testkit::part;
+use crate::testkit::scenes::{all_shipped, folders, shipped};
+use springcheck::integrators::REGISTRY;
+use springcheck::measure::identify::Sameness;
+use std::collections::BTreeSet;
+
+fn course(number: u32) -> Scene {
+    shipped(&format!("pa1/scene{number:02}.yml"))
+}
+
+/// The methods, whole, that a method's rows may follow on a scene; an error if that is not settled.
+fn class(scene: &Scene, method: &str) -> Result<BTreeSet<String>, String> {
+    let large = scene.particles.len() > 50;
+    let rows = run(scene, method, 1, if large { 24 } else { 300 });
+    let identity = name_of(scene, &rows, large.then_some(12)).expect("something to replay");
+    let mut class: BTreeSet<String> = identity.equivalent.iter().cloned().collect();
+    class.insert(identity.method.clone());
+    class.retain(|id| integrators::find(id).is_some());
+    let settled = match identity.same {
+        Sameness::Alone => identity.decisive,
+        Sameness::Mathematically => !identity.decisive && !identity.equivalent.is_empty(),
+        Sameness::TooCoarse | Sameness::NothingFits => false,
+    };
+    let whole = identity.substeps == 1 && identity.defect == 0.0;
+    if settled && whole && class.contains(method) && identity.mistake.is_none() {
+        Ok(class)
+    } else {
+        Err(format!("{}: {method}: {identity:?}", scene.name))
+    }
+}
+
+/// The classes are the same whichever of their members made the rows.
+#[test]
+fn every_method_is_named_on_every_shipped_scene() {
+    // On the hard ones few methods last long enough to be named.
+    let mut folders = folders();
+    folders.retain(|folder| folder != "hard");
+    for (at, scene) in all_shipped(&folders).iter().enumerate() {
+        let methods = part(&REGISTRY, 3, at);
+        let classes: Vec<_> = methods
+            .iter()
+            .map(|method| class(scene, method.id).unwrap())
+            .collect();
+        for (method, own) in methods.iter().zip(&classes) {
+            for (other, theirs) in methods.iter().zip(&classes) {
+                let message = format!("{}: {} and {}", scene.name, method.id, other.id);
+                assert_eq!(own.contains(other.id), own == theirs, "{message}");
+            }
+        }
+    }
+}
+
+fn set(ids: &str) -> BTreeSet<String> {
+    ids.split_whitespace().map(str::to_owned).collect()
+}
+
+#[test]
+fn on_constant_forces_methods_fall_into_three_classes() {
+    let scene = course(0);
+    for members in [
+        "explicit_euler symplectic_euler_drift_first",
+        "symplectic_euler implicit_euler linearized_implicit linearized_implicit_material",
+        "midpoint heun ralston velocity_verlet position_verlet rk4 yoshida4 pefrl implicit_midpoint trapezoidal tr_bdf2",
+    ] {
+        for method in members.split_whitespace() {
+            assert_eq!(class(&scene, method), Ok(set(members)), "{method}");
+        }
+    }
+}
+
+/// A spring in line is linear: explicit methods of order two are one, implicit ones need no second
+/// iteration, and nothing turns.
+#[test]
+fn on_linear_forces_some_methods_are_one() {
+    for number in [1, 2] {
+        let scene = course(number);
+        for members in [
+            "midpoint heun ralston",
+            "implicit_midpoint trapezoidal",
+            "implicit_euler linearized_implicit linearized_implicit_material",
+            "explicit_euler",
+            "symplectic_euler",
+            "symplectic_euler_drift_first",
+            "velocity_verlet",
+            "position_verlet",
+            "rk4",
+            "yoshida4",
+            "pefrl",
+            "tr_bdf2",
+        ] {
+            for method in members.split_whitespace() {
+                assert_eq!(class(&scene, method), Ok(set(members)), "{method}");
+            }
+        }
+    }
+    // A spring that turns is not linear: all are told apart.
+    for method in REGISTRY.iter() {
+        assert_eq!(class(&course(5), method.id), Ok(set(method.id)));
+    }
+}

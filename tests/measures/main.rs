@@ -1,0 +1,15 @@
+//! What the library says of trajectories: the numbers of a report by their definitions, identity and
+//! first faults, stability limits, what accuracy costs, and what scenes expect.
+//!
+//! A new measure, explanation or expectation belongs here, as long as it is asked through the library.
+
+mod cost;
+mod definitions;
+mod distances;
+mod expect;
+mod fault;
+mod identity;
+mod plan;
+mod stability;
+#[path = "../testkit/mod.rs"]
+mod testkit;

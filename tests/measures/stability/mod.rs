@@ -1,0 +1,6 @@
+//! How large a step may be: predicted and measured.
+
+mod admissible;
+mod measured;
+mod predict;
+mod vary;

@@ -1,0 +1,13 @@
+//! The program as its users run it: verbs, flags, messages, exit codes, files, and the examples.
+//!
+//! A new verb, a new flag and a new key of a report belong here.
+
+mod cost;
+mod examples;
+#[cfg(unix)] // the programs it starts are POSIX's
+mod external;
+mod run;
+mod show;
+mod stability;
+#[path = "../testkit/mod.rs"]
+mod testkit;

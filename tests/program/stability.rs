@@ -1,0 +1,314 @@
+//! The verb as its users run it.
+
+use crate::testkit::program::{
+    self, answer, array, files, keys, leave, number, refuse, set, springcheck, tidy, well_formed,
+    word,
+};
+use serde_json::Value;
+
+const SCENE: &str = "scenes/oscillator/circle.yml";
+/// A small map: what it shows does not matter where it is used.
+const MAP: [&str; 6] = [
+    "--vary",
+    "springs.stiffness=1..1e4:5",
+    "--steps",
+    "1e-3..10:6",
+    "--budget",
+    "120000",
+];
+
+fn json(args: &[&str]) -> Value {
+    program::json(&[&["stability"], args].concat())
+}
+
+#[test]
+fn the_json_has_exactly_the_contracts_keys() {
+    let args = [&[SCENE, "--integrators", "rk4,symplectic_euler"][..], &MAP].concat();
+    let report = json(&args);
+    let top = [
+        "verb",
+        "series",
+        "scene",
+        "truth",
+        "outcomes",
+        "checks",
+        "stability",
+    ];
+    assert_eq!(keys(&report), set(&top));
+    assert_eq!(report["verb"], "stability");
+    assert_eq!(report["outcomes"], Value::Array(Vec::new()));
+    let stability = &report["stability"];
+    let wanted = [
+        "omega_max_rad_s",
+        "unsure",
+        "horizon_s",
+        "timestep_s",
+        "linear",
+        "excluded",
+        "rows",
+        "map",
+        "admissible",
+    ];
+    assert_eq!(keys(stability), set(&wanted));
+    assert_eq!(stability["timestep_s"], 0.01);
+    assert!(stability["admissible"].is_null());
+    let rows = array(&stability["rows"]);
+    let engines: Vec<&Value> = rows.iter().map(|row| &row["engine"]).collect();
+    assert_eq!(engines, ["rk4", "symplectic_euler", "rapier"]);
+    for row in rows {
+        let wanted = [
+            "engine",
+            "kind",
+            "predicted_limit_s",
+            "measured_between_s",
+            "measured_limit_s",
+            "unconditional",
+            "measured_unconditional",
+            "growth_per_s",
+            "measured_growth_per_s",
+            "smooth_below_s",
+            "measured_smooth_below_s",
+            "tightest",
+            "reason",
+            "remarks",
+            "unsupported",
+        ];
+        assert_eq!(keys(row), set(&wanted));
+    }
+    let map = &stability["map"];
+    let wanted = [
+        "vary",
+        "unit",
+        "values",
+        "timesteps_s",
+        "steps_per_cell",
+        "engines",
+    ];
+    assert_eq!(keys(map), set(&wanted));
+    // 120,000 over 3 engines, 5 values, 6 timesteps and 2 particles.
+    assert_eq!(map["steps_per_cell"], 666);
+    assert_eq!(array(&map["engines"]).len(), 3);
+    for engine in array(&map["engines"]) {
+        assert_eq!(keys(engine), set(&["engine", "cells", "predicted_limit_s"]));
+        assert_eq!(array(&engine["predicted_limit_s"]).len(), 5);
+        assert_eq!(array(&engine["cells"]).len(), 5);
+        for column in array(&engine["cells"]) {
+            assert_eq!(array(column).len(), 6);
+        }
+    }
+}
+
+/// Symplectic Euler on an undamped linear spring is stable below z = h sqrt(k/m) = 2 and grows
+/// above. A tenth above, z = 2.2 multiplies the amplitude by 2.4 a step (λ + 1/λ = 2 - z²), so that a
+/// dozen steps leave no doubt.
+#[test]
+fn the_map_changes_where_theory_says() {
+    let args = [
+        &[
+            SCENE,
+            "--integrators",
+            "symplectic_euler",
+            "--engines",
+            "none",
+        ][..],
+        &MAP,
+    ]
+    .concat();
+    let report = json(&args);
+    let map = &report["stability"]["map"];
+    let (stiffnesses, timesteps) = (array(&map["values"]), array(&map["timesteps_s"]));
+    let wrong = |limit_of: &dyn Fn(usize) -> f64| {
+        let mut wrong = 0;
+        for (i, column) in array(&map["engines"][0]["cells"]).iter().enumerate() {
+            for (h, cell) in timesteps.iter().zip(array(column)) {
+                let z = number(h) / limit_of(i);
+                wrong += usize::from(
+                    (z < 0.9 && cell != "stable")
+                        || (z > 1.1 && cell != "growing" && cell != "failed"),
+                );
+            }
+        }
+        wrong
+    };
+    let limit = |i: usize| 2.0 / number(&stiffnesses[i]).sqrt();
+    assert_eq!(wrong(&limit), 0);
+    // The map upside down, and its axes in each other's place.
+    assert!(wrong(&|i| limit(stiffnesses.len() - 1 - i)) > 0);
+    assert!(wrong(&|i| number(&timesteps[i])) > 0);
+    let predicted = array(&map["engines"][0]["predicted_limit_s"]);
+    for (i, found) in predicted.iter().enumerate() {
+        // An eigenvalue of a 3 by 3 matrix: some roundings.
+        assert!((number(found) / limit(i) - 1.0).abs() < 1e-12, "{found}");
+    }
+}
+
+/// Its bodies move as symplectic Euler moves them, so the same limit is predicted; rapier's own joints
+/// are no method, so none is.
+#[test]
+fn an_engine_that_equals_a_method_has_its_prediction() {
+    let report = json(&[
+        SCENE,
+        "--integrators",
+        "symplectic_euler",
+        "--engines",
+        "rapier-forces,rapier",
+        "--vary",
+        "springs.stiffness=10..100:2",
+        "--steps",
+        "0.1..1:2",
+        "--budget",
+        "2400",
+    ]);
+    let engines = array(&report["stability"]["map"]["engines"]);
+    assert_eq!(
+        engines[0]["predicted_limit_s"],
+        engines[1]["predicted_limit_s"]
+    );
+    assert_eq!(
+        engines[2]["predicted_limit_s"],
+        serde_json::json!([null, null])
+    );
+    let rows = array(&report["stability"]["rows"]);
+    assert_eq!(rows[0]["predicted_limit_s"], rows[1]["predicted_limit_s"]);
+    assert_eq!(rows[0]["measured_limit_s"], rows[1]["measured_limit_s"]);
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let run = |threads: &str| {
+        let mut command = springcheck();
+        command
+            .args(["stability", "scenes/pa1/scene01.yml", "--format", "json"])
+            .args(["--integrators", "rk4,symplectic_euler,implicit_euler"])
+            .args(["--engines", "rapier"])
+            .args(MAP)
+            .env("RAYON_NUM_THREADS", threads);
+        let (code, report, _) = answer(&mut command);
+        assert_eq!(code, 0);
+        program::without_times(program::report(&report))
+    };
+    let serial = run("1");
+    assert_eq!(serial, run("4"));
+}
+
+#[test]
+fn it_prints_a_table_and_writes_a_report() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let args = [
+        "stability",
+        SCENE,
+        "--quiet",
+        "--output",
+        word(folder.path()),
+    ];
+    let (code, table, err) = program::output(&[&args[..], &MAP].concat());
+    assert_eq!((code, err.as_str()), (0, ""));
+    tidy(&table);
+    for id in springcheck::integrators::ids()
+        .into_iter()
+        .chain(["rapier"])
+    {
+        assert!(table.contains(id), "{id} in\n{table}");
+    }
+    let tail: Vec<&str> = table.lines().rev().take(3).collect();
+    assert!(tail[0].starts_with("next: springcheck run "), "{}", tail[0]);
+    assert!(tail[1].starts_with("report: ") && tail[1].ends_with("stability.md"));
+    assert!(tail[2].contains("explicit_euler"), "{}", tail[2]);
+    let place = folder.path().join("oscillator/circle");
+    let expected = ["stability.json", "stability.md", "stability_map.svg"];
+    assert_eq!(files(&place), expected.map(String::from).into());
+    well_formed(&place);
+}
+
+#[test]
+fn usage_errors_exit_with_2_and_write_nothing() {
+    let budget = [
+        SCENE,
+        "--vary",
+        "springs.stiffness=1..9",
+        "--budget",
+        "1000",
+    ];
+    let cases: [(&[&str], &str); 14] = [
+        (&[], "SCENE"),
+        (&["missing.yml"], "missing.yml"),
+        (
+            &[SCENE, "--vary", "springs.stifness=1..9"],
+            "did you mean `springs.stiffness`?",
+        ),
+        (&[SCENE, "--vary", "springs.stiffness=9..1"], "rises"),
+        (
+            &[SCENE, "--vary", "springs[7].stiffness=1..9"],
+            "has 1 of these",
+        ),
+        (&[SCENE, "--steps", "1e-3..1"], "--vary"),
+        (
+            &[SCENE, "--vary", "springs.stiffness=1..9", "--steps", "0..1"],
+            "--steps",
+        ),
+        (
+            &[SCENE, "--vary", "springs.stiffness=1..9", "--budget", "1.5"],
+            "whole number",
+        ),
+        (&budget, "fewer than 100 tell nothing"),
+        (&[SCENE, "--admissible", "1"], "two free particles"),
+        (&[SCENE, "--integrators", "rk5"], "symplectic_euler"),
+        (&[SCENE, "--engines", "bullet"], "rapier-forces"),
+        (&[SCENE, "--rapier", "dt=0.1"], "leave dt out"),
+        (&[SCENE, "--timestep", "0"], "--timestep"),
+    ];
+    refuse("stability", &cases);
+}
+
+/// Long enough a text to fill no pipe's buffer before the reader has gone.
+#[test]
+fn a_reader_that_leaves_is_no_error() {
+    let args = ["stability", SCENE, "--format", "markdown"];
+    leave(&[&args[..], &["--integrators", "rk4", "--engines", "none"]].concat());
+}
+
+/// All remarks of an engine.
+fn reason(scene: &str, engine: &str) -> String {
+    let report = json(&[scene, "--engines", "none", "--integrators", engine]);
+    let rows = array(&report["stability"]["rows"]);
+    rows[0]["reason"].as_str().unwrap_or_default().to_owned()
+}
+
+#[test]
+fn nobody_is_called_wrong_who_is_not() {
+    // Linear forces, but a step that is not linear, and on the other scene one that is.
+    let said = reason(
+        "scenes/oscillator/circle.yml",
+        "linearized_implicit_material",
+    );
+    assert!(said.contains("its step is not linear"), "{said}");
+    for (scene, engine) in [
+        (
+            "scenes/oscillator/circle.yml",
+            "linearized_implicit_material",
+        ),
+        (
+            "scenes/oscillator/damped_under.yml",
+            "linearized_implicit_material",
+        ),
+        ("scenes/hard/test_equation.yml", "yoshida4"),
+        ("scenes/hard/test_equation.yml", "pefrl"),
+    ] {
+        let said = reason(scene, engine);
+        assert!(!said.contains("is wrong"), "{scene} {engine}: {said}");
+    }
+}
+
+#[test]
+fn damping_alone_decays_under_substeps_backward_in_time() {
+    let report = json(&[
+        "scenes/hard/test_equation.yml",
+        "--engines",
+        "none",
+        "--integrators",
+        "yoshida4,pefrl",
+    ]);
+    for row in array(&report["stability"]["rows"]) {
+        assert_eq!(row["measured_unconditional"], true, "{row}");
+    }
+}
