@@ -7,7 +7,6 @@ use super::model::{NO_PARTICLES, Particle, Scene, Wind};
 use super::place::Problem;
 use super::read::Reading;
 use super::values::Number;
-use std::collections::HashSet;
 use std::fmt::Display;
 
 /// At least one step, and not more than a run can take; both in seconds.
@@ -41,38 +40,31 @@ pub fn check_times(timestep: f64, duration: f64) -> Result<(), Refusal> {
 
 /// The scene that was read. The first problem ends it.
 pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
-    let Reading {
-        mut scene,
-        names: _,
-        absent,
-        no_id,
-        unknown,
-    } = reading;
+    let Reading { mut scene, .. } = reading;
+    if let Some(problem) = reading.problem {
+        return Err(problem);
+    }
     check_times(scene.solver.timestep, scene.duration)
         .map_err(|refusal| Problem::new("solver.timestep", refusal))?;
-
-    let without = |key: &'static str| {
-        let of_key = absent.iter().filter(move |(of, _)| *of == key);
-        of_key.map(|(_, at)| *at)
-    };
-    let weightless: HashSet<usize> = without("mass").collect();
-    particles(&scene.particles, &weightless)?;
+    particles(&scene.particles)?;
     let count = scene.particles.len();
-    if let Some((path, number)) = no_id {
+    if let Some((path, number)) = reading.no_id {
         return Err(Problem::new(path, no_particle(number, count)));
     }
-    for (at, spring) in scene.springs.iter().enumerate() {
+    for (at, spring) in scene.springs.iter_mut().enumerate() {
         ends(spring.ends, count, &format_args!("springs[{at}]"))?;
-    }
-    for at in without("rest_length") {
-        let spring = &mut scene.springs[at];
-        spring.rest_length = distance(&scene.particles, spring.ends);
+        if spring.rest_length.is_nan() {
+            spring.rest_length = distance(&scene.particles, spring.ends);
+        }
     }
     for (at, pair) in scene.gravitational.iter().enumerate() {
         ends(pair.ends, count, &format_args!("gravitational[{at}]"))?;
-        attraction(pair.ends, &scene.particles, &weightless).map_err(|refusal| {
+        attraction(pair.ends, &scene.particles).map_err(|refusal| {
             Problem::new(format!("gravitational[{at}].particle_ids"), refusal)
         })?;
+    }
+    for particle in scene.particles.iter_mut().filter(|p| p.mass.is_nan()) {
+        particle.mass = Particle::default().mass;
     }
     if let Some(plot) = &scene.plot {
         if plot.particle >= count {
@@ -90,11 +82,11 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
     if let Some(wind) = &mut scene.wind {
         normalise(wind)?;
     }
-    unknown.map_or(Ok(scene), Err)
+    Ok(scene)
 }
 
 /// At least one, and at least one that can move.
-fn particles(particles: &[Particle], weightless: &HashSet<usize>) -> Result<(), Problem> {
+fn particles(particles: &[Particle]) -> Result<(), Problem> {
     if particles.is_empty() {
         let message = "expected at least one particle, found none";
         return Problem::because("particles", message, NO_PARTICLES);
@@ -107,7 +99,7 @@ fn particles(particles: &[Particle], weightless: &HashSet<usize>) -> Result<(), 
             return Problem::because(format!("particles[{at}].vel"), message, help);
         }
         // Of what acts on a particle that cannot move, only attraction depends on its mass.
-        if !particle.fixed && weightless.contains(&at) {
+        if !particle.fixed && particle.mass.is_nan() {
             let help = "a free particle needs its mass in kg";
             return Problem::because(format!("particles[{at}].mass"), "missing", help);
         }
@@ -149,12 +141,8 @@ fn whole(id: usize) -> Number {
 }
 
 /// Two particles that state their mass and do not start at one place.
-fn attraction(
-    ends: [usize; 2],
-    particles: &[Particle],
-    weightless: &HashSet<usize>,
-) -> Result<(), Refusal> {
-    if let Some(id) = ends.into_iter().find(|id| weightless.contains(id)) {
+fn attraction(ends: [usize; 2], particles: &[Particle]) -> Result<(), Refusal> {
+    if let Some(id) = ends.into_iter().find(|id| particles[*id].mass.is_nan()) {
         let message = format!("expected particles with a mass, found that {id} states none");
         return Refusal::because(message, "the attraction depends on it: add `mass`");
     }

@@ -42,12 +42,32 @@ impl Refusal {
     }
 }
 
+/// Stands around the parts of a [`Refusal`] that travels through serde, whose errors are nothing but
+/// text: no YAML file may contain it as it is.
+pub(super) const MARK: char = '\u{1f}';
+
+/// The refusal of the value being read.
+pub(super) fn refuse<E: serde::de::Error>(refusal: Refusal) -> E {
+    let Refusal { key, message, help } = refusal;
+    let [key, message, help] = [key, message, help].map(|text| text.replace(MARK, " "));
+    E::custom(format!("{MARK}{key}{MARK}{message}{MARK}{help}{MARK}"))
+}
+
 /// A refusal at a place in the text.
 #[derive(Debug)]
 pub(super) struct Fault {
     /// Bytes from the start of the text.
     pub(super) offset: usize,
     pub(super) refusal: Refusal,
+}
+
+impl Fault {
+    pub(super) fn new(offset: usize, message: impl Into<String>, help: &str) -> Fault {
+        Fault {
+            offset,
+            refusal: Refusal::new(message, help),
+        }
+    }
 }
 
 /// Why a scene cannot be used, for its author. Displays as a block whose first line begins with

@@ -1,12 +1,11 @@
 //! Reads `expect`: engines, keys and words that exist, bounds that a number can meet. Everything here is
 //! bounded: aliases multiply.
 
-use super::error::Refusal;
-use super::expectation::{ALL, Expectation, KeyKind, REST, Scope, Wanted};
+use super::error::{Refusal, refuse};
+use super::expectation::{ALL, Expectation, KeyKind, Names, REST, Scope, Wanted};
 use super::limits::{BOUND, EXPECTED, WORD_BYTES, known};
-use super::place::{Problem, refuse};
-use super::read::{Reading, no_merge, twice, unknown};
-use super::values::{Any, Key, Maybe, number, text};
+use super::place::Problem;
+use super::values::{Any, Key, Maybe, no_merge, number, text, twice, unknown};
 use super::words::{did_you_mean, shorten};
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use std::fmt;
@@ -14,24 +13,27 @@ use std::fmt;
 const MAPPING: &str = "a mapping such as {status: completed}";
 
 /// The whole of `expect`: a line for each engine.
-pub(super) struct Engines<'r, 'n>(pub(super) &'r mut Reading<'n>);
+pub(super) struct Engines<'r> {
+    pub(super) names: &'r Names,
+    pub(super) expect: &'r mut Vec<Expectation>,
+    /// The first unknown key: the value it has may say better what is wrong.
+    pub(super) problem: &'r mut Option<Problem>,
+}
 
-impl<'de> Visitor<'de> for Engines<'_, '_> {
+impl<'de> Visitor<'de> for Engines<'_> {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(MAPPING)
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let Engines(reading) = self;
+    fn visit_map<A: MapAccess<'de>>(mut self, mut map: A) -> Result<(), A::Error> {
         let mut before = Vec::new();
         while let Some(scope) = map.next_key_seed(Key(|engine: &str| {
             fresh(engine, &mut before)?;
-            scope(engine, reading)
+            scope(engine, self.names)
         }))? {
-            let reading = &mut *reading;
-            map.next_value_seed(Any(Line { scope, reading }))?;
+            map.next_value_seed(Any(Line(scope, &mut self)))?;
         }
         Ok(())
     }
@@ -59,9 +61,9 @@ fn short(text: &str) -> Result<(), Refusal> {
     Ok(())
 }
 
-fn scope(engine: &str, reading: &Reading) -> Result<Scope, Refusal> {
+fn scope(engine: &str, names: &Names) -> Result<Scope, Refusal> {
     let mut known = [ALL, REST].to_vec();
-    known.extend(reading.names.methods.iter().chain(&reading.names.engines));
+    known.extend(names.methods.iter().chain(&names.engines));
     match engine {
         ALL => Ok(Scope::All),
         REST => Ok(Scope::Rest),
@@ -75,10 +77,7 @@ fn scope(engine: &str, reading: &Reading) -> Result<Scope, Refusal> {
 }
 
 /// What is expected of one engine.
-struct Line<'r, 'n> {
-    scope: Scope,
-    reading: &'r mut Reading<'n>,
-}
+struct Line<'l, 'r>(Scope, &'l mut Engines<'r>);
 
 impl<'de> Visitor<'de> for Line<'_, '_> {
     type Value = ();
@@ -88,9 +87,8 @@ impl<'de> Visitor<'de> for Line<'_, '_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let Line { scope, reading } = self;
-        let names = reading.names;
-        let keys = &names.keys;
+        let Line(scope, engines) = self;
+        let keys = &engines.names.keys;
         let mut before = Vec::new();
         while let Some(key) = map.next_key_seed(Key(|key: &str| {
             fresh(key, &mut before)?;
@@ -102,10 +100,10 @@ impl<'de> Visitor<'de> for Line<'_, '_> {
                 let paths: Vec<&str> = keys.iter().map(|known| known.path.as_str()).collect();
                 let path = format!("expect.{scope}");
                 let problem = || Problem::of_key(&path, key, unknown(key, &paths));
-                reading.unknown.get_or_insert_with(problem);
+                engines.problem.get_or_insert_with(problem);
                 continue;
             };
-            reading.scene.expect.push(Expectation {
+            engines.expect.push(Expectation {
                 scope: scope.clone(),
                 key: key.path.clone(),
                 wanted,

@@ -2,7 +2,6 @@
 //! module knows none of them by itself: [`crosscheck::names`](crate::crosscheck::names) is what this
 //! program knows.
 
-use super::model::Scene;
 use std::fmt;
 
 /// The line of `expect` about every integrator.
@@ -72,26 +71,6 @@ pub enum Wanted {
     },
     /// A text with this in it; not empty.
     Contains(String),
-}
-
-impl Scene {
-    /// What is expected of an engine, each key once: what its own line says (or, for an integrator
-    /// without one, `rest`), then what `all` says of other keys if it is an `integrator`.
-    pub fn expected_of(&self, engine: &str, integrator: bool) -> Vec<&Expectation> {
-        let own = |e: &Expectation| matches!(&e.scope, Scope::Engine(id) if id == engine);
-        let named = self.expect.iter().any(own);
-        let rest = |e: &Expectation| integrator && !named && e.scope == Scope::Rest;
-        let mut found: Vec<&Expectation> =
-            self.expect.iter().filter(|e| own(e) || rest(e)).collect();
-        let nearer = found.len();
-        for expectation in &self.expect {
-            let open = !found[..nearer].iter().any(|e| e.key == expectation.key);
-            if integrator && open && expectation.scope == Scope::All {
-                found.push(expectation);
-            }
-        }
-        found
-    }
 }
 
 impl fmt::Display for Scope {

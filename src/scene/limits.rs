@@ -3,7 +3,7 @@
 //! The bounds lie far outside any sensible scene. They keep sums, squares and products of accepted
 //! numbers (energies, k/m, 1/h²) inside the range of a double, so that a NaN met later is the
 //! integrator's doing and not the file's. Those of a single key stand on its row of
-//! [`parameters`](super::parameters).
+//! the table.
 
 use super::error::Refusal;
 use super::expectation::Names;

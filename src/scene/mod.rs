@@ -1,7 +1,7 @@
 //! The scene file: bytes in, a checked [`Scene`] out, or one error that points at its place.
 //!
 //! ```text
-//! bytes -> text (size, UTF-8, nesting) -> read (keys and values, by the table of parameters)
+//! bytes -> text (size, UTF-8, nesting) -> read (keys and values, by the table of the model)
 //!       -> complete (what concerns several values) -> Scene
 //! ```
 //! Only [`Scene`] and what it is made of leaves this module, so nothing after it needs to doubt a
@@ -12,10 +12,10 @@ mod error;
 mod expect;
 mod expectation;
 pub mod limits;
-mod model;
-pub mod parameters;
+pub mod model;
 mod place;
 mod read;
+mod table;
 mod text;
 mod values;
 pub(crate) mod words;
@@ -26,6 +26,7 @@ pub use expectation::{Expectation, Key, KeyKind, Names, Scope, Wanted};
 pub use model::{
     Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, Solver, Spring, Wind, steps,
 };
+pub use table::Value;
 
 use read::Reading;
 use std::fs::File;
@@ -52,7 +53,19 @@ pub fn parse(bytes: &[u8], file: &str, names: &Names) -> Result<Scene, SceneErro
     let text = text::check(bytes)
         .map_err(|fault| SceneError::at(file, &String::from_utf8_lossy(bytes), fault))?;
     let located = |fault| SceneError::at(file, text, fault);
-    let mut reading = Reading::new(file, names);
+    let mut scene = Scene {
+        file: file.to_owned(),
+        ..Scene::default()
+    };
+    if let Some(stem) = Path::new(file).file_stem() {
+        scene.name = stem.to_string_lossy().replace(char::is_control, " ");
+    }
+    let mut reading = Reading {
+        scene,
+        names,
+        no_id: None,
+        problem: None,
+    };
     read::document(text, &mut reading).map_err(located)?;
     complete::scene(reading).map_err(|problem| located(problem.locate(text)))
 }

@@ -8,23 +8,24 @@
 //! walk fails there on purpose, so that the parser names the position. One pass, and only when something is
 //! wrong; no second parser, no positions carried through the good case.
 
-use super::error::{Fault, Refusal};
+use super::error::{Fault, MARK, Refusal};
 use super::values::{Any, Key};
 use super::words::shorten;
-use serde::de::{DeserializeSeed, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserialize, DeserializeSeed, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
-const MARK: char = '\u{1f}';
-
-/// The refusal of the value being read.
-pub(super) fn refuse<E: Error>(refusal: Refusal) -> E {
-    let Refusal { key, message, help } = refusal;
-    let [key, message, help] = [key, message, help].map(|text| text.replace(MARK, " "));
-    E::custom(format!("{MARK}{key}{MARK}{message}{MARK}{help}{MARK}"))
+/// What is wrong with a document that was refused. What is not YAML comes first: it may be the cause of
+/// whatever else is wrong.
+pub(super) fn refused(error: &serde_yaml::Error, text: &str) -> Fault {
+    let document = serde_yaml::Deserializer::from_str(text).next();
+    match document.and_then(|document| IgnoredAny::deserialize(document).err()) {
+        Some(not_yaml) => fault(&not_yaml, text),
+        None => fault(error, text),
+    }
 }
 
 /// Rebuilds what the parser says as a located fault.
-pub(super) fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
+fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
     let said = error.to_string();
     let location = error.location();
     let offset = location.as_ref().map_or(0, |l| l.index());
@@ -35,13 +36,9 @@ pub(super) fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
 
     let parts: Vec<&str> = said.split(MARK).collect();
     if let [path, key, message, help, _] = parts[..] {
-        let path = path.trim_end_matches(": ");
-        let dot = if path.is_empty() || key.is_empty() {
-            ""
-        } else {
-            "."
-        };
-        return place(&format!("{path}{dot}{key}"), message, help);
+        let path = [path.trim_end_matches(": "), key];
+        let path: Vec<&str> = path.into_iter().filter(|part| !part.is_empty()).collect();
+        return place(&path.join("."), message, help);
     }
 
     let said = match location {

@@ -1,99 +1,86 @@
-//! Reads the file by the table of [`parameters`](super::parameters): known keys, each at most once, with
-//! values of their kind and within their bounds.
+//! Reads the file by the table of the [model](super::model): known keys, each at most once, with values
+//! of their kind and within their bounds.
 //!
-//! The values are judged as they stream by and go straight into the [`Scene`], never through a free-form value,
-//! whose aliases and nesting a hostile file can multiply. What concerns several values waits for the
-//! end: [`complete`](super::complete) judges it.
+//! The values are judged as they stream by and go straight into the [`Scene`], never through a free-form
+//! value, whose aliases and nesting a hostile file can multiply. What concerns several values waits for
+//! the end: [`complete`](super::complete) judges it.
 
 use super::error::{Fault, Refusal};
 use super::expect::Engines;
 use super::expectation::Names;
 use super::limits::known;
-use super::model::Scene;
-use super::parameters::{Absent, Kind, Part, Row, SCENE, Value};
-use super::place::{Problem, fault, refuse, second_document};
-use super::values::{Any, Key, Maybe, Number, Numbers, flag, number, text};
-use super::words::{about_key, shorten};
+use super::model::{Absent, Kind, Part, Row, SCENE, Scene};
+use super::place::{Problem, refused, second_document};
+use super::table::Value;
+use super::values::{
+    Any, Key, Maybe, Number, Numbers, flag, no_merge, number, text, twice, unknown,
+};
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
-use std::path::Path;
 
 /// A scene while it is read.
 pub(super) struct Reading<'n> {
     pub(super) scene: Scene,
     pub(super) names: &'n Names,
-    /// Members without a key whose default follows from the rest of the scene.
-    pub(super) absent: Vec<(&'static str, usize)>,
     /// The first id that is no whole number from 0, and where: the message says how many particles there are.
     pub(super) no_id: Option<(String, Number)>,
-    /// The first unknown key under `expect`: the value it has may say better what is wrong.
-    pub(super) unknown: Option<Problem>,
+    /// The first key that is missing, or unknown under `expect`. What the parser says of the rest of the
+    /// file goes first.
+    pub(super) problem: Option<Problem>,
 }
 
-impl<'n> Reading<'n> {
-    /// Nothing yet; the name is the file's.
-    pub(super) fn new(file: &str, names: &'n Names) -> Reading<'n> {
-        let mut scene = Scene {
-            file: file.to_owned(),
-            ..Scene::default()
-        };
-        if let Some(stem) = Path::new(file).file_stem() {
-            scene.name = stem.to_string_lossy().replace(char::is_control, " ");
-        }
-        Reading {
-            scene,
-            names,
-            absent: Vec::new(),
-            no_id: None,
-            unknown: None,
-        }
-    }
-}
-
-/// Reads the one document the file holds into the scene.
+/// Reads the one document the file holds.
 pub(super) fn document(text: &str, reading: &mut Reading) -> Result<(), Fault> {
     let mut documents = serde_yaml::Deserializer::from_str(text);
-    let scene = Any(Mapping(&SCENE, reading));
+    let scene = Any(Mapping {
+        part: &SCENE,
+        row: None,
+        reading,
+    });
     let first = match documents.next() {
         Some(document) => Maybe(scene)
             .deserialize(document)
-            .map_err(|e| fault(&e, text))?,
+            .map_err(|e| refused(&e, text))?,
         None => None,
     };
     if let Some(second) = documents.next() {
         return Err(second_document(second, text));
     }
-    first.ok_or_else(|| Fault {
-        offset: 0,
-        refusal: Refusal::new(
-            "the file holds no scene",
-            "a scene needs at least `solver` and `particles`",
-        ),
-    })
+    let help = "a scene needs at least `solver` and `particles`";
+    first.ok_or_else(|| Fault::new(0, "the file holds no scene", help))
 }
 
-/// Reads one mapping as a member of the part.
-struct Mapping<'r, 'n>(&'static Part, &'r mut Reading<'n>);
+/// Reads one mapping as a member of a part.
+struct Mapping<'r, 'n> {
+    part: &'static Part,
+    /// Adds the member; none for the file itself.
+    row: Option<&'static Row>,
+    reading: &'r mut Reading<'n>,
+}
 
 impl<'de> Visitor<'de> for Mapping<'_, '_> {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(self.0.expected)
+        f.write_str(self.part.expected)
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let Mapping(part, reading) = self;
-        (part.add)(&mut reading.scene);
+        let Mapping { part, row, reading } = self;
+        if let Some(row) = row {
+            (row.set)(&mut reading.scene, 0, 0, Value::Flag(true));
+        }
         let at = (part.count)(&reading.scene) - 1;
         // Bit i: the key of row i was there, and had a value.
         let (mut seen, mut given) = (0_u32, 0_u32);
         while let Some(index) = map.next_key_seed(Key(|key: &str| row_of(part, key, &mut seen)))? {
+            let row = &part.rows[index];
+            let reading = &mut *reading;
             let value = Entry {
                 part,
-                row: &part.rows[index],
+                row,
                 at,
-                reading: &mut *reading,
+                reading,
             };
             if map.next_value_seed(Maybe(value))?.is_some() {
                 given |= 1 << index;
@@ -103,10 +90,14 @@ impl<'de> Visitor<'de> for Mapping<'_, '_> {
             match row.absent {
                 _ if given & (1 << index) != 0 => {}
                 Absent::Required(help) => {
-                    return Err(refuse(Refusal::new("missing", help).of(row.key)));
+                    let path = part.path(Some(at), row.key);
+                    let missing = || Problem::new(path, Refusal::new("missing", help));
+                    reading.problem.get_or_insert_with(missing);
                 }
-                Absent::Derived => reading.absent.push((row.key, at)),
-                Absent::Default => {}
+                Absent::Derived => {
+                    (row.set)(&mut reading.scene, at, 0, Value::Number(f64::NAN));
+                }
+                Absent::Usual => {}
             }
         }
         Ok(())
@@ -131,25 +122,6 @@ fn row_of(part: &Part, key: &str, seen: &mut u32) -> Result<usize, Refusal> {
     Err(unknown(key, &keys))
 }
 
-pub(super) fn twice(key: &str) -> Refusal {
-    Refusal::new("this key is given twice", "keep one of them").of(key)
-}
-
-pub(super) fn unknown(key: &str, known: &[&str]) -> Refusal {
-    let message = format!("unknown key `{}`", shorten(key));
-    Refusal::new(message, about_key(key, known))
-}
-
-pub(super) fn no_merge(key: &str) -> Result<(), Refusal> {
-    match key {
-        "<<" => Refusal::because(
-            "merge keys (`<<`) are not applied",
-            "write the keys out, or alias a whole value",
-        ),
-        _ => Ok(()),
-    }
-}
-
 /// Reads the value of a row.
 struct Entry<'r, 'n> {
     part: &'static Part,
@@ -158,22 +130,40 @@ struct Entry<'r, 'n> {
     reading: &'r mut Reading<'n>,
 }
 
-impl Entry<'_, '_> {
-    fn set(&mut self, value: Value<'_>) {
-        (self.row.set)(&mut self.reading.scene, self.at, value);
+impl<'n> Entry<'_, 'n> {
+    fn set(&mut self, component: usize, value: Value<'_>) {
+        (self.row.set)(&mut self.reading.scene, self.at, component, value);
+    }
+
+    fn member(&mut self, part: &'static Part) -> Mapping<'_, 'n> {
+        Mapping {
+            part,
+            row: Some(self.row),
+            reading: self.reading,
+        }
+    }
+
+    /// Takes a number, or one of a list.
+    fn number(&mut self, component: usize, number: Number) -> Result<(), Refusal> {
+        let value = match self.row.kind {
+            Kind::Number(quantity) | Kind::Numbers(_, quantity) => {
+                Value::Number(quantity.judge(number)?)
+            }
+            Kind::Coordinate => Value::Id(coordinate(number)?),
+            _ => Value::Id(self.id(component, number)),
+        };
+        self.set(component, value);
+        Ok(())
     }
 
     /// The id; of what is none, the largest number, which is no id either.
-    fn id(&mut self, index: &str, number: Number) -> usize {
-        let Entry { part, row, at, .. } = *self;
+    fn id(&mut self, component: usize, number: Number) -> usize {
         number.whole().unwrap_or_else(|| {
-            let member = if part.list {
-                format!("[{at}]")
-            } else {
-                String::new()
-            };
-            let path = || format!("{}{member}.{}{index}", part.key, row.key);
-            self.reading.no_id.get_or_insert_with(|| (path(), number));
+            let mut path = self.part.path(Some(self.at), self.row.key);
+            if let Kind::Ids = self.row.kind {
+                path += &format!("[{component}]");
+            }
+            self.reading.no_id.get_or_insert((path, number));
             usize::MAX
         })
     }
@@ -184,48 +174,35 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
 
     fn deserialize<D: Deserializer<'de>>(mut self, from: D) -> Result<(), D::Error> {
         match self.row.kind {
-            Kind::Number(quantity) => {
-                let number = from.deserialize_any(number(|n| quantity.judge(n)))?;
-                self.set(Value::Numbers(&[number]));
+            Kind::Number(_) | Kind::Id | Kind::Coordinate => {
+                from.deserialize_any(number(|n| self.number(0, n)))
             }
-            Kind::Numbers(count, quantity) => {
-                let mut room = [0.0; 3];
-                from.deserialize_any(Numbers(&mut room[..count], |_, n| quantity.judge(n)))?;
-                self.set(Value::Numbers(&room[..count]));
+            Kind::Numbers(count, _) => {
+                from.deserialize_any(Numbers(count, |i, n| self.number(i, n)))
             }
-            Kind::Ids(1) => {
-                let id = from.deserialize_any(number(|n| Ok(self.id("", n))))?;
-                self.set(Value::Ids(&[id]));
-            }
-            Kind::Ids(count) => {
-                let mut room = [0; 2];
-                let id = |index, n| Ok(self.id(&format!("[{index}]"), n));
-                from.deserialize_any(Numbers(&mut room[..count], id))?;
-                self.set(Value::Ids(&room[..count]));
-            }
-            Kind::Coordinate => {
-                let coordinate = from.deserialize_any(number(coordinate))?;
-                self.set(Value::Ids(&[coordinate]));
-            }
+            Kind::Ids => from.deserialize_any(Numbers(2, |i, n| self.number(i, n))),
             Kind::Flag => {
                 let flag = from.deserialize_any(flag())?;
-                self.set(Value::Flag(flag));
+                self.set(0, Value::Flag(flag));
+                Ok(())
             }
-            Kind::Word(words) => from.deserialize_any(text(|word| {
-                known(word, words, "choice")?;
-                self.set(Value::Text(word));
+            Kind::Word(_) | Kind::Text(_) => from.deserialize_any(text(|text| {
+                match self.row.kind {
+                    Kind::Word(words) => known(text, words, "choice")?,
+                    Kind::Text(judge) => judge(text, self.reading.names)?,
+                    _ => {}
+                }
+                self.set(0, Value::Text(text));
                 Ok(())
-            }))?,
-            Kind::Text(judge) => from.deserialize_any(text(|text| {
-                judge(text, self.reading.names)?;
-                self.set(Value::Text(text));
-                Ok(())
-            }))?,
-            Kind::Part(part) if part.list => from.deserialize_any(List(part, self.reading))?,
-            Kind::Part(part) => from.deserialize_any(Mapping(part, self.reading))?,
-            Kind::Expect => from.deserialize_any(Engines(self.reading))?,
+            })),
+            Kind::Part(part) if part.list => from.deserialize_any(List(part, self)),
+            Kind::Part(part) => from.deserialize_any(self.member(part)),
+            Kind::Expect => from.deserialize_any(Engines {
+                names: self.reading.names,
+                expect: &mut self.reading.scene.expect,
+                problem: &mut self.reading.problem,
+            }),
         }
-        Ok(())
     }
 }
 
@@ -240,7 +217,7 @@ fn coordinate(number: Number) -> Result<usize, Refusal> {
 }
 
 /// Reads a list of mappings.
-struct List<'r, 'n>(&'static Part, &'r mut Reading<'n>);
+struct List<'r, 'n>(&'static Part, Entry<'r, 'n>);
 
 impl<'de> Visitor<'de> for List<'_, '_> {
     type Value = ();
@@ -250,9 +227,8 @@ impl<'de> Visitor<'de> for List<'_, '_> {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
-        let List(part, reading) = self;
-        let mut one = || list.next_element_seed(Any(Mapping(part, &mut *reading)));
-        while one()?.is_some() {}
+        let List(part, mut entry) = self;
+        while list.next_element_seed(Any(entry.member(part)))?.is_some() {}
         Ok(())
     }
 }

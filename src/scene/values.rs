@@ -1,9 +1,8 @@
 //! The values a file is made of, read from the stream and judged while the parser still knows their
 //! place.
 
-use super::error::Refusal;
-use super::place::refuse;
-use super::words::shorten;
+use super::error::{Refusal, refuse};
+use super::words::{about_key, shorten};
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, SeqAccess, Unexpected, Visitor};
 use std::fmt;
 
@@ -72,6 +71,26 @@ impl<'de, T, F: FnMut(&str) -> Result<T, Refusal>> DeserializeSeed<'de> for Key<
             _ => None,
         };
         from.deserialize_str(One("a key", key))
+    }
+}
+
+/// A key that is there for the second time.
+pub(super) fn twice(key: &str) -> Refusal {
+    Refusal::new("this key is given twice", "keep one of them").of(key)
+}
+
+/// A key that is none of those known.
+pub(super) fn unknown(key: &str, known: &[&str]) -> Refusal {
+    let message = format!("unknown key `{}`", shorten(key));
+    Refusal::new(message, about_key(key, known))
+}
+
+/// YAML 1.1 would merge the mapping under this key into the one around it.
+pub(super) fn no_merge(key: &str) -> Result<(), Refusal> {
+    let help = "write the keys out, or alias a whole value";
+    match key {
+        "<<" => Refusal::because("merge keys (`<<`) are not applied", help),
+        _ => Ok(()),
     }
 }
 
@@ -186,29 +205,27 @@ fn remedy(text: &str) -> String {
     }
 }
 
-/// Reads a list of exactly as many numbers as there is room for. The function also gets the place in the list.
-pub(super) struct Numbers<'a, T, F>(pub(super) &'a mut [T], pub(super) F);
+/// Reads a list of so many numbers. The function also gets the place in the list.
+pub(super) struct Numbers<F>(pub(super) usize, pub(super) F);
 
-impl<'de, T, F: FnMut(usize, Number) -> Result<T, Refusal>> Visitor<'de> for Numbers<'_, T, F> {
+impl<'de, F: FnMut(usize, Number) -> Result<(), Refusal>> Visitor<'de> for Numbers<F> {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "a list of {} numbers", self.0.len())
+        write!(f, "a list of {} numbers", self.0)
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
-        let Numbers(room, mut judge) = self;
+        let Numbers(wanted, mut judge) = self;
         let mut count = 0;
-        while count < room.len()
-            && let Some(number) = list.next_element_seed(Any(number(|n| judge(count, n))))?
+        while count < wanted
+            && let Some(()) = list.next_element_seed(Any(number(|n| judge(count, n))))?
         {
-            room[count] = number;
             count += 1;
         }
         while list.next_element::<IgnoredAny>()?.is_some() {
             count += 1;
         }
-        let wanted = room.len();
         if count != wanted {
             let message = format!("expected a list of {wanted} numbers, found {count}");
             return Err(refuse(Refusal::new(message, "")));

@@ -10,7 +10,7 @@ mod vary;
 
 pub use admissible::NotAdmissible;
 pub use map::{BudgetError, MapPlan};
-pub use vary::{COUNT, Range, RangeError, Vary, VaryError};
+pub use vary::{COUNT, Range, Vary, VaryError};
 
 use super::{Host, ledger};
 use crate::measure;

@@ -2,8 +2,8 @@
 
 use super::Task;
 use crate::scene::Scene;
-use crate::scene::parameters::{GRAVITATIONAL, PARTICLES, Part, Row, SPRINGS, Value};
-use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
+use crate::scene::model::{GRAVITATIONAL, PARTICLES, Part, Row, SPRINGS};
+use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// Version of the keys and of what they mean.
 const SCHEMA_VERSION: u32 = 1;
@@ -11,8 +11,8 @@ const SCHEMA_VERSION: u32 = 1;
 /// Everything that moves the particles, all defaults filled in; the JSON behind `{scene_json}`.
 /// `docs/external.md` says what its keys mean. Numbers read back to the same bits. SI units.
 ///
-/// What particles, springs and pairs have comes from the table of their [parameters](crate::scene::parameters):
-/// an array for each row that moves something, under its name.
+/// What particles, springs and pairs have comes from the [table](crate::scene::model) of their
+/// parameters: an array for each row that moves something, under its name.
 #[derive(Clone, Copy)]
 pub struct Flat<'a>(pub &'a Task<'a>);
 
@@ -51,7 +51,7 @@ impl Serialize for Flat<'_> {
 fn arrays<M: SerializeMap>(map: &mut M, scene: &Scene, part: &Part) -> Result<(), M::Error> {
     for row in part.rows {
         if let Some(name) = row.flat {
-            map.serialize_entry(name, &Array(scene, part, row))?;
+            map.serialize_entry(name, &Array(scene, row, (part.count)(scene)))?;
         }
     }
     Ok(())
@@ -68,27 +68,12 @@ impl Serialize for Arrays<'_> {
     }
 }
 
-/// One row of all members; what is several numbers, as x, y, z, one after the other.
-struct Array<'a>(&'a Scene, &'a Part, &'a Row);
+/// One row of so many members; what is several numbers, as x, y, z, one after the other.
+struct Array<'a>(&'a Scene, &'a Row, usize);
 
 impl Serialize for Array<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let Array(scene, part, row) = *self;
-        let mut array = to.serialize_seq(None)?;
-        for value in (0..(part.count)(scene)).filter_map(|at| (row.get)(scene, at)) {
-            match value {
-                Value::Numbers(numbers) => each(&mut array, numbers)?,
-                Value::Ids(ids) => each(&mut array, ids)?,
-                Value::Flag(flag) => array.serialize_element(&flag)?,
-                Value::Text(text) => array.serialize_element(text)?,
-            }
-        }
-        array.end()
+        let Array(scene, row, count) = *self;
+        to.collect_seq((0..count).flat_map(|at| row.values(scene, at)))
     }
-}
-
-fn each<S: SerializeSeq>(array: &mut S, items: &[impl Serialize]) -> Result<(), S::Error> {
-    items
-        .iter()
-        .try_for_each(|item| array.serialize_element(item))
 }
