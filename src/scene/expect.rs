@@ -5,7 +5,7 @@ use super::error::{Refusal, refuse};
 use super::expectation::{ALL, Expectation, KeyKind, Names, REST, Scope, Wanted};
 use super::limits::{BOUND, EXPECTED, WORD_BYTES, known};
 use super::place::Problem;
-use super::values::{Any, Key, Maybe, no_merge, number, text, twice, unknown};
+use super::values::{Any, Key, Maybe, index_of, no_merge, number, text, twice, unknown};
 use super::words::{did_you_mean, shorten};
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use std::fmt;
@@ -190,8 +190,8 @@ impl<'de> Visitor<'de> for Value<'_> {
         }
         let (mut above, mut below, mut contains) = (None, None, None);
         let limit = |n| BOUND.judge(n);
-        let mut before = Vec::new();
-        while let Some(key) = map.next_key_seed(Key(|key: &str| bound(key, &mut before, self.0)))? {
+        let mut seen = 0;
+        while let Some(key) = map.next_key_seed(Key(|key: &str| bound(key, &mut seen, self.0)))? {
             match key {
                 "above" => above = map.next_value_seed(Maybe(Any(number(limit))))?,
                 "below" => below = map.next_value_seed(Maybe(Any(number(limit))))?,
@@ -219,20 +219,9 @@ impl<'de> Visitor<'de> for Value<'_> {
 }
 
 /// The key among those of bounds, if it fits the kind.
-fn bound(
-    key: &str,
-    before: &mut Vec<&'static str>,
-    kind: Option<&KeyKind>,
-) -> Result<&'static str, Refusal> {
+fn bound(key: &str, seen: &mut u32, kind: Option<&KeyKind>) -> Result<&'static str, Refusal> {
     const KEYS: [&str; 3] = ["below", "above", "contains"];
-    let Some(known) = KEYS.into_iter().find(|known| *known == key) else {
-        no_merge(key)?;
-        return Err(unknown(key, &KEYS));
-    };
-    if before.contains(&known) {
-        return Err(twice(key));
-    }
-    before.push(known);
+    let known = KEYS[index_of(key, KEYS.into_iter(), seen)?];
     match kind {
         Some(KeyKind::Number) if known == "contains" => Refusal::because(
             "found `contains` on a number",

@@ -1,9 +1,8 @@
-//! The scene as a file states it, checked and complete: every default resolved, every id valid; and the
-//! one table of what a file may say.
+//! The scene as a file states it, checked and complete, and the one table of what a file may say.
 //!
-//! Each key is a [`Row`]: reading and its messages, `--vary`, the flat arrays of
-//! [`external`](crate::solvers::external) and the key of the [converged truth](crate::truth::converged)
-//! come from it. A field of the model is declared together with its row:
+//! Each key is a [`Row`]: reading and its messages, `--vary`, the flat arrays handed to
+//! [other programs](crate::solvers::external) and the key of the
+//! [converged truth](crate::truth::converged) come from it. A field is declared together with its row:
 //! ```text
 //! /// What it is, and its unit.
 //! field: type = default, "key" => kind and bounds, what a file without it means, its flat array;
@@ -60,7 +59,7 @@ pub struct Row {
     /// A component of the member of this index; None where there is none.
     pub get: fn(&Scene, usize, usize) -> Option<Value<'_>>,
     /// Sets a component, unjudged. A value of another kind or of a member that is not there changes
-    /// nothing; where rows of their own stand below the key, any value adds a member with its defaults.
+    /// nothing. Where the key holds a part, any value adds a member with its defaults.
     pub set: fn(&mut Scene, usize, usize, Value<'_>),
 }
 
@@ -131,7 +130,8 @@ declare! {
     /// One line; the file's stem if absent, `scene` if that has none.
     name: String = "scene".into(), "name" => Kind::Text(limits::name), Usual, None;
     /// Any text.
-    description: Option<String> = None, "description" => Kind::Text(limits::description), Usual, None;
+    description: Option<String> = None,
+        "description" => Kind::Text(limits::description), Usual, None;
     /// How it is stepped, and in which gravity.
     solver: Solver = Solver::default(), "solver" => Kind::Part(&SOLVER),
         Required("add `solver: {type: symplectic_euler, timestep: 0.0005}`"), None;
@@ -145,11 +145,13 @@ declare! {
     /// The curve the report shows first.
     plot: Option<Plot> = None, "plot" => Kind::Part(&PLOT), Usual, None;
     /// At least one of them free.
-    particles: Vec<Particle> = Vec::new(), "particles" => Kind::Part(&PARTICLES), Required(NO_PARTICLES), None;
+    particles: Vec<Particle> = Vec::new(),
+        "particles" => Kind::Part(&PARTICLES), Required(NO_PARTICLES), None;
     /// Springs with dampers.
     springs: Vec<Spring> = Vec::new(), "springs" => Kind::Part(&SPRINGS), Usual, None;
     /// Attractions.
-    gravitational: Vec<GravitationalPair> = Vec::new(), "gravitational" => Kind::Part(&GRAVITATIONAL), Usual, None;
+    gravitational: Vec<GravitationalPair> = Vec::new(),
+        "gravitational" => Kind::Part(&GRAVITATIONAL), Usual, None;
     /// A constant force.
     wind: Option<Wind> = None, "wind" => Kind::Part(&WIND), Usual, None;
     /// What engines must do, in the order of the file. Changes no run.
@@ -167,7 +169,8 @@ declare! {
     timestep: f64 = 1e-3, "timestep" => Kind::Number(limits::TIMESTEP),
         Required("give the step in seconds, as 0.0005"), None;
     /// Signed acceleration along `up`, m/s².
-    gravity: f64 = -9.81, "gravity" => Kind::Number(Quantity::signed(1e12, "m/s²")), Usual, Some("gravity");
+    gravity: f64 = -9.81,
+        "gravity" => Kind::Number(Quantity::signed(1e12, "m/s²")), Usual, Some("gravity");
     /// Relative residual at which an implicit method's solve ends; the method's own if absent.
     tolerance: Option<f64> = None,
         "tolerance" => Kind::Number(Quantity::from(1e-300, 1.0, "relative")), Usual, None;
@@ -178,9 +181,11 @@ declare! {
     PLOT: Plot, maybe plot, "a mapping with `particle_id` and `dof`", later [];
 
     /// Whose curve.
-    particle: usize = 0, "particle_id" => Kind::Id, Required("say which particle's curve to show"), None;
+    particle: usize = 0,
+        "particle_id" => Kind::Id, Required("say which particle's curve to show"), None;
     /// Coordinate 0, 1 or 2.
-    dof: usize = 0, "dof" => Kind::Coordinate, Required("say which coordinate to show: 0, 1 or 2"), None;
+    dof: usize = 0,
+        "dof" => Kind::Coordinate, Required("say which coordinate to show: 0, 1 or 2"), None;
     /// Lower and upper, m; fits the data if absent.
     y_range: Option<[f64; 2]> = None, "y_range" => Kind::Numbers(2, limits::POSITION), Usual, None;
 }
@@ -198,16 +203,19 @@ declare! {
     /// Whether it never moves.
     fixed: bool = false, "fixed" => Kind::Flag, Usual, Some("fixed");
     /// Kilograms, positive. Only what is fixed and attracts nothing may leave it out.
-    mass: f64 = 1.0, "mass" => Kind::Number(Quantity::from(1e-30, 1e30, "kg")), Derived, Some("masses");
+    mass: f64 = 1.0,
+        "mass" => Kind::Number(Quantity::from(1e-30, 1e30, "kg")), Derived, Some("masses");
     /// Metres; the ball's radius once a scene asks for contact.
     radius: f64 = 0.1, "radius" => Kind::Number(Quantity::not_negative(1e12, "m")), Usual, None;
     /// Linear drag coefficient b, N s/m.
-    drag: f64 = 0.0, "drag" => Kind::Number(Quantity::not_negative(1e18, "N s/m")), Usual, Some("drag");
+    drag: f64 = 0.0,
+        "drag" => Kind::Number(Quantity::not_negative(1e18, "N s/m")), Usual, Some("drag");
 }
 
 declare! {
     /// A spring and the damper beside it.
-    SPRINGS: Spring, list springs, "a spring: a mapping with `particle_ids` and `stiffness`", later [];
+    SPRINGS: Spring, list springs, "a spring: a mapping with `particle_ids` and `stiffness`",
+    later [];
 
     /// Two different particles.
     ends: [usize; 2] = [0, 1], "particle_ids" => Kind::Ids,
@@ -216,9 +224,11 @@ declare! {
     stiffness: f64 = 0.0, "stiffness" => Kind::Number(limits::STIFFNESS),
         Required("a spring needs its stiffness in N/m"), Some("stiffness");
     /// q, N/m³, not negative: adds q (l - L)³ to the pull.
-    cubic: f64 = 0.0, "cubic" => Kind::Number(Quantity::not_negative(1e18, "N/m³")), Usual, Some("cubic");
+    cubic: f64 = 0.0,
+        "cubic" => Kind::Number(Quantity::not_negative(1e18, "N/m³")), Usual, Some("cubic");
     /// c, N s/m, not negative.
-    damping: f64 = 0.0, "damping" => Kind::Number(Quantity::not_negative(1e18, "N s/m")), Usual, Some("damping");
+    damping: f64 = 0.0,
+        "damping" => Kind::Number(Quantity::not_negative(1e18, "N s/m")), Usual, Some("damping");
     /// L, metres, not negative. A file without it means the initial distance of the ends.
     rest_length: f64 = 0.0, "rest_length" => Kind::Number(Quantity::not_negative(1e12, "m")),
         Derived, Some("rest_lengths");
@@ -226,7 +236,9 @@ declare! {
 
 declare! {
     /// Attraction G m1 m2 / r² between two particles.
-    GRAVITATIONAL: GravitationalPair, list gravitational, "a pair: a mapping with `particle_ids` and `G`", later [];
+    GRAVITATIONAL: GravitationalPair, list gravitational,
+    "a pair: a mapping with `particle_ids` and `G`",
+    later [];
 
     /// Two different particles.
     ends: [usize; 2] = [0, 1], "particle_ids" => Kind::Ids,
@@ -238,10 +250,12 @@ declare! {
 
 declare! {
     /// A constant force on every free particle, whatever its mass. Not to be confused with moving air.
-    WIND: Wind, maybe wind, "a mapping with `direction` and `strength`", later ["velocity", "density", "profile"];
+    WIND: Wind, maybe wind, "a mapping with `direction` and `strength`",
+    later ["velocity", "density", "profile"];
 
     /// Unit vector; in the file of any length but 0.
-    direction: [f64; 3] = [1.0, 0.0, 0.0], "direction" => Kind::Numbers(3, Quantity::signed(1e12, "any unit")),
+    direction: [f64; 3] = [1.0, 0.0, 0.0],
+        "direction" => Kind::Numbers(3, Quantity::signed(1e12, "any unit")),
         Required("say where it blows: `direction: [1, 0, 0]`"), Some("wind_force");
     /// Newtons; negative blows the other way.
     strength: f64 = 0.0, "strength" => Kind::Number(Quantity::signed(1e18, "N")),

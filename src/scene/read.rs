@@ -12,9 +12,7 @@ use super::limits::known;
 use super::model::{Absent, Kind, Part, Row, SCENE, Scene};
 use super::place::{Problem, refused, second_document};
 use super::table::Value;
-use super::values::{
-    Any, Key, Maybe, Number, Numbers, flag, no_merge, number, text, twice, unknown,
-};
+use super::values::{Any, Key, Maybe, Number, Numbers, flag, index_of, number, text};
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
@@ -104,22 +102,13 @@ impl<'de> Visitor<'de> for Mapping<'_, '_> {
     }
 }
 
-/// The row of a key that was not there before.
+/// The index of the row of a key that was not there before.
 fn row_of(part: &Part, key: &str, seen: &mut u32) -> Result<usize, Refusal> {
-    if let Some(index) = part.rows.iter().position(|row| row.key == key) {
-        if *seen & (1 << index) != 0 {
-            return Err(twice(key));
-        }
-        *seen |= 1 << index;
-        return Ok(index);
-    }
     if part.later.contains(&key) {
         let help = "remove the key to run the rest of the scene";
         return Err(Refusal::new("not supported yet", help).of(key));
     }
-    no_merge(key)?;
-    let keys: Vec<&str> = part.rows.iter().map(|row| row.key).collect();
-    Err(unknown(key, &keys))
+    index_of(key, part.rows.iter().map(|row| row.key), seen)
 }
 
 /// Reads the value of a row.

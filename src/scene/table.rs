@@ -1,5 +1,6 @@
-//! What the table of parameters is made of: the [`Value`]s it gets and sets, and [`declare!`], which
-//! declares a type of the [model](super::model) together with its rows, so that no field is without one.
+//! What the table of parameters is made of: the [`Value`]s it gets and sets, and `declare!`, which
+//! declares a type of the [model](super::model) together with its rows, so that no field is without
+//! one.
 
 use serde::Serialize;
 
@@ -16,8 +17,8 @@ pub enum Value<'a> {
     Text(&'a str),
 }
 
-/// A field of the model as the values of its components. What has rows of its own has none, and takes
-/// whatever is put as one more member.
+/// A field of the model as the values of its components. A part has none, and takes whatever is put
+/// as one more member.
 pub(super) trait Field {
     fn value(&self, _component: usize) -> Option<Value<'_>> {
         None
@@ -120,8 +121,8 @@ macro_rules! members {
     };
 }
 
-/// Declares a type of the model: its fields with their defaults, and the row of each. A field in brackets
-/// has no key.
+/// Declares a type of the model: its fields with their defaults, and the row of each. A field in
+/// brackets has no key.
 macro_rules! declare {
     (
         $(#[$about:meta])*

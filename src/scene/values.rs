@@ -79,6 +79,24 @@ pub(super) fn twice(key: &str) -> Refusal {
     Refusal::new("this key is given twice", "keep one of them").of(key)
 }
 
+/// The index of the key among those of a mapping, where it was not `seen` (bit i: the key of index i).
+pub(super) fn index_of<'k>(
+    key: &str,
+    keys: impl Iterator<Item = &'k str> + Clone,
+    seen: &mut u32,
+) -> Result<usize, Refusal> {
+    let Some(index) = keys.clone().position(|known| known == key) else {
+        no_merge(key)?;
+        return Err(unknown(key, &keys.collect::<Vec<_>>()));
+    };
+    let before = *seen;
+    *seen |= 1 << index;
+    if *seen == before {
+        return Err(twice(key));
+    }
+    Ok(index)
+}
+
 /// A key that is none of those known.
 pub(super) fn unknown(key: &str, known: &[&str]) -> Refusal {
     let message = format!("unknown key `{}`", shorten(key));
