@@ -1,5 +1,5 @@
 //! What a scene says that every engine must do, and the words of other stages that it may use. The scene
-//! module knows none of them by itself: [`crosscheck::names`](crate::crosscheck::names) is what this
+//! module knows none of them by itself: [`verbs::names`](crate::verbs::names) is what this
 //! program knows.
 
 use std::fmt;

@@ -3,12 +3,12 @@
 
 use super::{NAMES, parse};
 use crate::testkit::everything;
-use springcheck::crosscheck::stability::Vary;
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::model::{Absent, Kind, PARTS, Part, Row, SCENE};
 use springcheck::scene::{DampingModel, Plot, Scene, Value};
 use springcheck::solvers::external::{Flat, Task};
 use springcheck::truth::converged::key;
+use springcheck::verbs::stability::Vary;
 
 /// Each row that holds values itself, with its part.
 fn rows() -> impl Iterator<Item = (&'static Part, &'static Row)> {
