@@ -2,7 +2,7 @@
 
 use super::error::{HALF, Wrong};
 use super::limits;
-use crate::scene::shown::shorten;
+use crate::scene::words::shorten;
 use std::io::{ErrorKind, Read};
 
 /// What an array's header says.

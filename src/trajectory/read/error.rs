@@ -1,7 +1,7 @@
 //! The one error of reading a trajectory: what is wrong, where, and what to do about it. Lines and columns
 //! are worked out from byte offsets only when something is wrong.
 
-use crate::scene::shown::{printable, shorten};
+use crate::scene::words::{printable, shorten};
 use std::fmt;
 
 /// Why a trajectory file cannot be used. Displays as `mine.csv:17:3: ...` or

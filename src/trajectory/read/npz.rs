@@ -5,7 +5,7 @@ use super::error::{HALF, Place, ReadError, Wrong};
 use super::expected::Expected;
 use super::times::Times;
 use super::{Numbers, Precision, Table};
-use crate::scene::{shown::shorten, suggest};
+use crate::scene::words::{nearest, shorten};
 use std::io::{Cursor, Read};
 use zip::{ZipArchive, result::ZipError};
 
@@ -220,7 +220,7 @@ fn unknown(entry: &str) -> Wrong {
         let message = format!("`{}` in the archive is no NumPy array", shorten(entry));
         return Wrong::new(message, EXAMPLE);
     };
-    let help = match suggest::nearest(name, &NAMES) {
+    let help = match nearest(name, &NAMES) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("the arrays are t, x and v: {EXAMPLE}"),
     };

@@ -15,7 +15,7 @@ mod view;
 
 pub use admissible::NotAdmissible;
 pub use map::{BudgetError, MapPlan};
-pub use vary::{COUNT, Range, RangeError, Vary, VaryError};
+pub use vary::{COUNT, Range, Vary, VaryError};
 
 pub use args::{Args, stability};
 pub use result::{Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow};

@@ -3,7 +3,7 @@
 use super::super::error::Wrong;
 use super::super::expected::Expected;
 use super::bare;
-use crate::scene::{shown::shorten, suggest};
+use crate::scene::words::{nearest, shorten};
 
 /// Where in a record the numbers stand.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,7 +95,7 @@ fn unknown(name: &str) -> Wrong {
     }
     let message = format!("unknown column `{}`", shorten(name));
     let separator = [';', '\t', ' '].into_iter().find(|c| name.contains(*c));
-    let help = match (separator, suggest::nearest(name, &NAMES)) {
+    let help = match (separator, nearest(name, &NAMES)) {
         (Some(_), _) => "separate columns by commas".to_owned(),
         (None, Some(near)) => format!("did you mean `{near}`?"),
         (None, None) => format!("the columns are {}: remove others", NAMES[..8].join(", ")),

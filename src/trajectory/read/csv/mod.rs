@@ -7,7 +7,7 @@ use super::error::{HALF, ReadError, Wrong, of_end, of_field, without_mark};
 use super::expected::Expected;
 use super::times::{self, Times};
 use super::{Numbers, Place, Table, limits};
-use crate::scene::shown::shorten;
+use crate::scene::words::shorten;
 use ::csv::{ByteRecord, ReaderBuilder};
 use header::Columns;
 
