@@ -11,7 +11,7 @@ mod command;
 mod flat;
 
 pub use command::{Command, CommandError, Placeholder};
-pub use flat::{Flat, FlatPairs, FlatSprings};
+pub use flat::Flat;
 
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;

@@ -1,7 +1,8 @@
 //! What is kept of a run: few enough states for every run of a sweep to be kept.
 
 use crate::physics::{State, Work};
-use crate::solvers::{Observer, Setting};
+use crate::solvers::Setting;
+use crate::trajectory::Observer;
 use crate::truth::States;
 
 /// States of a run at some instants, the start and the end among them.

@@ -3,7 +3,7 @@
 
 use super::CostChoice;
 use crate::integrators::Stable;
-use crate::measure::stability::{Limit, Linearised};
+use crate::measure::stability::{Effort, Limit, Linearised};
 use crate::physics::{ParticleSystem, System};
 use crate::scene::{Scene, limits};
 use crate::solvers::{Kind, Setting, Solver};
@@ -50,7 +50,7 @@ pub fn plan(scene: &Scene, system: &ParticleSystem, choice: &CostChoice) -> Vec<
     let solvers: Vec<&Solver> = choice.solvers.iter().filter(swept).collect();
     let share = choice.budget_s / solvers.len().max(1) as f64;
     let start = ParticleSystem::initial_state(scene);
-    let linearised = Linearised::brief(system, start.t, &start.x, &start.v);
+    let linearised = Linearised::new(system, &start, Effort::BRIEF);
     let sweep = |solver: &Solver| {
         let coarsest = coarsest(scene, &linearised, solver);
         let each = price_of_step(scene, system, solver, &coarsest);

@@ -17,23 +17,7 @@ pub fn proofs(plan: &Plan) -> Vec<Check> {
     if !plan.choice.prove || !plan.cases.iter().any(computed) {
         return Vec::new();
     }
-    let proofs = twin::prove(plan.scene, plan.scene.solver.timestep).into_iter();
-    proofs
-        .map(|proof| Check {
-            id: proof.id.to_owned(),
-            subject: proof.subject.to_owned(),
-            status: match proof.status {
-                twin::Status::Pass => CheckStatus::Pass,
-                twin::Status::Fail => CheckStatus::Fail,
-                twin::Status::Inconclusive => CheckStatus::Inconclusive,
-                twin::Status::Skip => CheckStatus::Skip,
-            },
-            measured: proof.measured.filter(|m| m.is_finite()),
-            bound: Some(proof.bound).filter(|b| b.is_finite()),
-            derivation: proof.derivation,
-            message: proof.message,
-        })
-        .collect()
+    twin::prove(plan.scene, plan.scene.solver.timestep)
 }
 
 /// Steps times coordinates of the scene's own run up to which orders are measured unasked: measuring

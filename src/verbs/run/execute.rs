@@ -2,8 +2,8 @@
 
 use super::plan::{Case, Plan};
 use super::program;
-use crate::solvers::{Counts, Ended, Limits, Status, Unwatched};
-use crate::trajectory::{Recorder, SaveError, Trajectory};
+use crate::solvers::{Counts, Ended, Limits, Status};
+use crate::trajectory::{Recorder, SaveError, Trajectory, Unwatched};
 use crate::verbs::clock::{WallTime, spread};
 use crate::verbs::host::{Host, Label};
 use rayon::prelude::*;

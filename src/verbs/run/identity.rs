@@ -1,6 +1,7 @@
 //! Which scheme each trajectory follows.
 
 use super::plan::{Case, Plan};
+use super::program::begin_with;
 use crate::integrators::Settings;
 use crate::measure::identify::{Fault, Identified, Question, first_fault, identify, moved_anchor};
 use crate::physics::ParticleSystem;
@@ -51,13 +52,8 @@ fn from_the_start<'a>(plan: &Plan, rows: &'a Rows) -> Cow<'a, Rows> {
     if first == 0 || first > longest.unwrap_or(0) {
         return Cow::Borrowed(rows);
     }
-    let start = ParticleSystem::initial_state(plan.scene);
     let mut rows = rows.clone();
-    rows.steps.insert(0, 0);
-    rows.x.splice(0..0, start.x);
-    if let Some(v) = &mut rows.v {
-        v.splice(0..0, start.v);
-    }
+    begin_with(&mut rows, &ParticleSystem::initial_state(plan.scene));
     Cow::Owned(rows)
 }
 

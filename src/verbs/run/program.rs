@@ -5,7 +5,7 @@ use super::plan::{Case, Plan};
 use crate::physics::{ParticleSystem, Power, State, System};
 use crate::solvers::external::{Program, Recording, Task};
 use crate::solvers::{Counts, Limits, Status};
-use crate::trajectory::{Precision, RowRecorder, Rows};
+use crate::trajectory::{Precision, Rows, Trajectory};
 use crate::verbs::clock::spread;
 use crate::verbs::host::Host;
 
@@ -52,8 +52,7 @@ fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
         start: &start,
         system: task.system,
     };
-    let mut recorder = RowRecorder::new(&rows, task.steps);
-    let mut end = None;
+    let (mut work, mut diverged, mut end) = (Vec::new(), false, None);
     let mut state = start.clone();
     for k in 0..rows.len() {
         replay.advance(k, &mut state);
@@ -61,13 +60,12 @@ fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
         // An engine's bad position is in its next velocity; rows need not hang together.
         let lost = || (!finite).then(|| "a position is no longer finite".to_owned());
         if let Some(reason) = limits.exceeded(&state).or_else(lost) {
-            if finite {
-                recorder.observe_diverged(k, &state);
-            }
+            diverged = finite;
+            work.extend(finite.then_some(state.work));
             end = Some((rows.steps[k], reason));
             break;
         }
-        recorder.observe(k, &state);
+        work.push(state.work);
     }
     let last = rows.steps.last().copied().unwrap_or(0);
     let (status, reason, steps) = match end {
@@ -86,7 +84,7 @@ fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
         status,
         reason,
         steps,
-        trajectory: Some(recorder.finish()),
+        trajectory: Some(Trajectory::of_rows(&rows, &work, task.steps, diverged)),
         counts: Counts::default(),
         wall: seconds.map(|seconds| spread(vec![seconds])),
         remarks,
@@ -144,11 +142,16 @@ fn complete(rows: &mut Rows, start: &State, last: u64) {
         v.truncate(kept * rows.dim);
     }
     if rows.steps.first() != Some(&0) {
-        rows.steps.insert(0, 0);
-        rows.x.splice(0..0, start.x.iter().copied());
-        if let Some(v) = &mut rows.v {
-            v.splice(0..0, start.v.iter().copied());
-        }
+        begin_with(rows, start);
+    }
+}
+
+/// The scene's start as step 0 in front of rows that begin later.
+pub fn begin_with(rows: &mut Rows, start: &State) {
+    rows.steps.insert(0, 0);
+    rows.x.splice(0..0, start.x.iter().copied());
+    if let Some(v) = &mut rows.v {
+        v.splice(0..0, start.v.iter().copied());
     }
 }
 

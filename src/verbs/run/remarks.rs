@@ -2,7 +2,7 @@
 
 use super::plan::{Case, Plan};
 use crate::integrators::{EnergyLaw, Method, PerStep, Settings, Stable};
-use crate::measure::stability::{Limit, Linearised, Prediction};
+use crate::measure::stability::{Effort, Limit, Linearised, Prediction};
 use crate::measure::{Energy, EnergyClass};
 use crate::physics::{ParticleSystem, System};
 use crate::solvers::Status;
@@ -170,7 +170,7 @@ pub fn linearised(plan: &Plan) -> Option<Linearised> {
     let method = |case: &Case| case.solver.as_method().is_some();
     plan.cases.iter().any(method).then(|| {
         let start = ParticleSystem::initial_state(plan.scene);
-        Linearised::brief(&plan.system, start.t, &start.x, &start.v)
+        Linearised::new(&plan.system, &start, Effort::BRIEF)
     })
 }
 

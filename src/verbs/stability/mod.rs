@@ -14,14 +14,12 @@ mod vary;
 mod view;
 
 pub use map::MapPlan;
-pub use vary::{COUNT, Range, RangeError, Vary, VaryError};
+pub use vary::{COUNT, Range, Vary, VaryError};
 
 pub use args::{Args, stability};
-pub use result::{
-    Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow, TightestLimit,
-};
+pub use result::{Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow};
 
-use crate::measure::stability::{Linearised, is_linear};
+use crate::measure::stability::{Effort, Linearised, is_linear};
 use crate::physics::ParticleSystem;
 use crate::report::Header;
 use crate::scene::Scene;
@@ -75,7 +73,7 @@ impl StabilityPlan<'_> {
         let [_, steps_per_cell] = self.cells()?;
         let system = ParticleSystem::new(scene);
         let start = ParticleSystem::initial_state(scene);
-        let linearised = Linearised::at(&system, start.t, &start.x, &start.v);
+        let linearised = Linearised::new(&system, &start, Effort::FULL);
         let linear = is_linear(scene);
         let shared = Shared {
             plan: self,
@@ -93,14 +91,13 @@ impl StabilityPlan<'_> {
         let Shared {
             system, linearised, ..
         } = &shared;
-        let excluded = linearised.excluded().iter();
         let stability = Stability {
             omega_max_rad_s: linearised.omega_max().filter(|w| w.is_finite()),
             unsure: linearised.is_unsure(),
             horizon_s: shared.path.until,
             timestep_s: self.timestep,
             linear,
-            excluded: excluded.map(|mode| mode.what.clone()).collect(),
+            excluded: linearised.excluded().to_vec(),
             rows,
             map,
             admissible,

@@ -4,7 +4,8 @@ use super::StabilityPlan;
 use crate::integrators::Method;
 use crate::measure::stability::{Along, Linearised};
 use crate::physics::{ParticleSystem, State};
-use crate::solvers::{Observer, Setting, Solver};
+use crate::solvers::{Setting, Solver};
+use crate::trajectory::Observer;
 use crate::verbs::facts;
 
 /// States kept of a path.

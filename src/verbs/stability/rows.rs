@@ -2,12 +2,12 @@
 
 use super::{Shared, explain};
 use crate::integrators::Method;
-use crate::measure::stability::{Limit, Linearised, Prediction, Tightest, measure};
+use crate::measure::stability::{Limit, Linearised, Prediction, TightestLimit, measure};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::{Kind, Run, Setting, Solver, Tally, Unsupported};
 use crate::verbs::host::Host;
-use crate::verbs::stability::{StabilityRow, TightestLimit};
+use crate::verbs::stability::StabilityRow;
 use std::sync::Arc;
 
 /// Work the search for one limit may take, in particles passed over: some ten seconds. A probe takes
@@ -152,7 +152,7 @@ pub fn predicted(linearised: &Linearised, solver: &Solver, timestep: f64) -> Opt
 
 fn tightest(shared: &Shared, solver: &Solver) -> Option<TightestLimit> {
     let (method, substeps) = follows(solver)?;
-    let Tightest { limit_s, t_s } = shared.path.along.as_ref()?.tightest(method)?;
+    let TightestLimit { limit_s, t_s } = shared.path.along.as_ref()?.tightest(method)?;
     let limit_s = limit_s * substeps;
     (limit_s.is_finite() && t_s.is_finite()).then_some(TightestLimit { limit_s, t_s })
 }

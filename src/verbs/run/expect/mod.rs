@@ -143,7 +143,7 @@ impl Choice {
 
 /// One expectation held against one outcome; `value` is the outcome as JSON.
 fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, report: &Report) -> Check {
-    let Expectation { whom, key, wanted } = expectation;
+    let Expectation { scope, key, wanted } = expectation;
     let engine = &outcome.engine;
     let check = |status, measured, bound, message| Check {
         id: ID.to_owned(),
@@ -151,7 +151,7 @@ fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, report: &R
         status,
         measured,
         bound,
-        derivation: format!("the scene's `expect`, under `{whom}`"),
+        derivation: format!("the scene's `expect`, under `{scope}`"),
         message,
     };
     if let Some(reference) = absent_reference(key, outcome, report.outcomes()) {
