@@ -3,7 +3,7 @@
 use super::output::temporary;
 use crate::physics::State;
 use crate::trajectory::{CsvWriter, NpzWriter, Observer, SaveError};
-use crate::verbs::host::{Label, Saver};
+use crate::verbs::session::{Label, Saver};
 use std::path::PathBuf;
 use tempfile::NamedTempFile;
 

@@ -4,7 +4,7 @@ use super::cache::Cache;
 use super::save::Files;
 use crate::trajectory::SaveError;
 use crate::truth::Store;
-use crate::verbs::host::{Estimate, Host, Label, Saver};
+use crate::verbs::session::{Estimate, Label, Saver, Session};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 use std::io::{IsTerminal, Write};
 
@@ -49,7 +49,7 @@ impl Terminal {
     }
 }
 
-impl Host for Terminal {
+impl Session for Terminal {
     fn saver(&self, case: &Label) -> Result<Option<Box<dyn Saver>>, SaveError> {
         let files = self.files.as_ref();
         files.map(|files| files.saver(case)).transpose()

@@ -11,8 +11,8 @@ use crate::truth::Demand;
 use crate::verbs::cli::flags::{self, Truth};
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::terminal::Terminal;
-use crate::verbs::host::Host;
 use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity};
+use crate::verbs::session::Session;
 use crate::verbs::{Body, Report};
 use anyhow::{Context, bail};
 use std::fs::File;
@@ -63,17 +63,17 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         .steps
         .last()
         .map_or(scene.duration, |n| *n as f64 * timestep);
-    let comparison = Comparison {
-        scene: &scene,
-        rows: Arc::new(rows),
-        name: args
-            .file
-            .file_name()
-            .map_or(name, |n| n.to_string_lossy().into_owned()),
-        demand: args.truth.demand(),
-    };
-    let steps = comparison.rows.steps.last().copied().unwrap_or(0);
-    let report = comparison.execute(&Terminal::new(steps, 0.0, quiet))?;
+    let file_name = args.file.file_name();
+    let name = file_name.map_or(name, |n| n.to_string_lossy().into_owned());
+    let steps = rows.steps.last().copied().unwrap_or(0);
+    let terminal = Terminal::new(steps, 0.0, quiet);
+    let report = report(
+        &scene,
+        &Arc::new(rows),
+        &name,
+        args.truth.demand(),
+        &terminal,
+    )?;
     let place = args.output.asked_place(&args.file);
     let report = output::written(report, place.as_ref())?;
     if args.output.is_human() {
@@ -109,17 +109,6 @@ fn code(report: &Report) -> u8 {
     }
 }
 
-/// A trajectory and the scene it simulates, whose duration is the trajectory's.
-#[derive(Debug, Clone)]
-pub struct Comparison<'a> {
-    pub scene: &'a Scene,
-    pub rows: Arc<Rows>,
-    /// What the report calls it.
-    pub name: String,
-    /// What errors are measured against.
-    pub demand: Demand,
-}
-
 /// Rows that are there already.
 struct Recorded(Arc<Rows>);
 
@@ -132,35 +121,34 @@ impl Program for Recorded {
     }
 }
 
-impl Comparison<'_> {
-    /// Errors, energy, identity over every step, and the first fault: a report with one outcome.
-    ///
-    /// # Errors
-    /// Only when the host cannot write a trajectory it wants saved.
-    pub fn execute(&self, host: &dyn Host) -> Result<Report, SaveError> {
-        let choice = Choice {
-            solvers: vec![Solver::program(
-                &self.name,
-                Arc::new(Recorded(Arc::clone(&self.rows))),
-            )],
-            timesteps: vec![self.rows.timestep],
-            truth: self.demand,
-            order: Orders::Never,
-            // Every step of the rows is replayed below, not some of those recorded.
-            identify: false,
-            prove: false,
-            expectations: Expectations::Ignored,
-        };
-        let plan = Plan::new(self.scene, &choice);
-        let mut report = plan.execute(host)?;
-        let (identified, fault) = identity::of_rows(&plan, &self.rows);
-        if let Body::Run { outcomes } = &mut report.body {
-            let mut outcomes = std::mem::take(outcomes);
-            for outcome in &mut outcomes {
-                outcome.identified.clone_from(&identified);
-            }
-            report.body = Body::Compare { outcomes, fault };
+/// Errors, energy, identity over every step, and the first fault: a report with one outcome of this name. The
+/// scene's duration is that of the rows.
+fn report(
+    scene: &Scene,
+    rows: &Arc<Rows>,
+    name: &str,
+    truth: Demand,
+    session: &dyn Session,
+) -> Result<Report, SaveError> {
+    let choice = Choice {
+        solvers: vec![Solver::program(name, Arc::new(Recorded(Arc::clone(rows))))],
+        timesteps: vec![rows.timestep],
+        truth,
+        order: Orders::Never,
+        // Every step of the rows is replayed below, not some of those recorded.
+        identify: false,
+        prove: false,
+        expectations: Expectations::Ignored,
+    };
+    let plan = Plan::new(scene, &choice);
+    let mut report = plan.execute(session)?;
+    let (identified, fault) = identity::of_rows(&plan, rows);
+    if let Body::Run { outcomes } = &mut report.body {
+        let mut outcomes = std::mem::take(outcomes);
+        for outcome in &mut outcomes {
+            outcome.identified.clone_from(&identified);
         }
-        Ok(report)
+        report.body = Body::Compare { outcomes, fault };
     }
+    Ok(report)
 }

@@ -28,7 +28,7 @@ use crate::scene::Scene;
 use crate::solvers::rapier::Settings;
 use crate::solvers::{self, Setting, Solver};
 use crate::truth::{self, Demand};
-use crate::verbs::host::{Estimate, Host, Label};
+use crate::verbs::session::{Estimate, Label, Session};
 use crate::verbs::{Beside, Body, Report, Series, facts};
 use rayon::prelude::*;
 use runs::{Curve, Setup};
@@ -105,7 +105,7 @@ impl<'a> CostPlan<'a> {
         }
     }
 
-    /// What a progress bar counts against and [`Host::progress`] is told: nominal microseconds.
+    /// What a progress bar counts against and [`Session::progress`] is told: nominal microseconds.
     pub fn work(&self) -> u64 {
         self.sweeps.iter().map(Sweep::work).sum()
     }
@@ -125,16 +125,16 @@ impl<'a> CostPlan<'a> {
     }
 
     /// Sweeps, times and judges. Whatever an engine does is a point with its reason.
-    pub fn execute(&self, host: &dyn Host) -> Report {
+    pub fn execute(&self, session: &dyn Session) -> Report {
         let (scene, system) = (self.scene, &self.system);
         // When the last run ends, s.
         let named = self.choice.timesteps.as_deref();
         let ends = named.unwrap_or_default().iter();
         let ends = ends.map(|h| scene.steps(*h) as f64 * h);
         let until = ends.fold(scene.duration, f64::max);
-        let truth = truth::find(scene, system, self.choice.truth, until, host.store());
+        let truth = truth::find(scene, system, self.choice.truth, until, session.store());
         let scale = facts::energy_scale(scene, system, &truth);
-        let setup = Setup::new(scene, system, &truth, scale, host, named.is_some());
+        let setup = Setup::new(scene, system, &truth, scale, session, named.is_some());
         let sweep = |sweep: &Sweep| setup.sweep(sweep, &self.choice.targets);
         let mut curves: Vec<Curve> = self.sweeps.par_iter().map(sweep).collect();
         for (sweep, curve) in self.sweeps.iter().zip(&mut curves) {

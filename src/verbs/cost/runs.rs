@@ -12,7 +12,7 @@ use crate::truth::{States, Truth, TruthKind, farthest};
 use crate::verbs::clock::{WallTime, spread};
 use crate::verbs::cost::CostPoint;
 use crate::verbs::facts;
-use crate::verbs::host::Host;
+use crate::verbs::session::Session;
 use std::time::Instant;
 
 /// Instants of a run that are looked at, at most.
@@ -51,7 +51,7 @@ pub struct Setup<'a> {
     pub scene: &'a Scene,
     pub system: &'a ParticleSystem,
     pub truth: &'a Truth,
-    pub host: &'a dyn Host,
+    pub session: &'a dyn Session,
     limits: Limits,
     /// S, J.
     scale: Option<f64>,
@@ -69,7 +69,7 @@ impl<'a> Setup<'a> {
         system: &'a ParticleSystem,
         truth: &'a Truth,
         scale: Option<f64>,
-        host: &'a dyn Host,
+        session: &'a dyn Session,
         named: bool,
     ) -> Self {
         let positions = scene.particles.iter().flat_map(|p| p.position);
@@ -83,7 +83,7 @@ impl<'a> Setup<'a> {
             scene,
             system,
             truth,
-            host,
+            session,
             limits: facts::limits(scene, system).now_and_then(),
             scale,
             size,
@@ -150,7 +150,7 @@ impl<'a> Setup<'a> {
             let last = curve.points.last();
             let timed = !left_out && last.is_none_or(|p| p.status == Status::Completed);
             let untimed = if timed { 0 } else { sweep.of_timing(setting) };
-            self.host.progress(sweep.of_error(setting) + untimed);
+            self.session.progress(sweep.of_error(setting) + untimed);
         }
         let targets = if self.named { &[] } else { targets };
         for &target in targets {
@@ -215,7 +215,7 @@ impl<'a> Setup<'a> {
         for (setting, point) in curve.settings.iter().zip(&mut curve.points) {
             if point.status == Status::Completed {
                 point.wall_s = self.wall(&sweep.solver, setting);
-                self.host.progress(sweep.of_timing(setting));
+                self.session.progress(sweep.of_timing(setting));
             }
         }
     }

@@ -95,7 +95,9 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         let report = one(args, quiet, scene, *stated, path)?;
         if args.output.is_human() {
             let several = if reports.is_empty() { "" } else { "\n" };
-            output::print(&format!("{several}{}", human(args, path, &report)))?;
+            let (place, next) = (args.output.place(path), next(args, path, &report));
+            let text = output::human(&report, place.as_ref(), next, "springcheck run --help");
+            output::print(&format!("{several}{text}"))?;
         }
         reports.push(report);
     }
@@ -185,13 +187,6 @@ fn distinct(args: &Args) -> anyhow::Result<()> {
         }
     }
     Ok(())
-}
-
-/// The table and, as its last three lines, verdict, report path, next command.
-fn human(args: &Args, path: &Path, report: &Report) -> String {
-    let next = next(args, path, report);
-    let place = args.output.place(path);
-    output::human(report, place.as_ref(), next, "springcheck run --help")
 }
 
 /// A command worth trying next: other steps, or other integrators; None where the path cannot be

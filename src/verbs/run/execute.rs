@@ -5,7 +5,7 @@ use super::program;
 use crate::solvers::{Counts, Ended, Limits, Status};
 use crate::trajectory::{Recorder, SaveError, Trajectory, Unwatched};
 use crate::verbs::clock::{WallTime, spread};
-use crate::verbs::host::{Host, Label};
+use crate::verbs::session::{Label, Session};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -42,14 +42,14 @@ impl Record {
 
 /// All engines in parallel and, beside them, the programs one after the other: they may print and
 /// use as many threads as they like.
-pub fn all(plan: &Plan, limits: &Limits, host: &dyn Host) -> Result<Vec<Record>, SaveError> {
+pub fn all(plan: &Plan, limits: &Limits, session: &dyn Session) -> Result<Vec<Record>, SaveError> {
     let engine = |case: &Case| match case.solver.as_program() {
-        None => one(plan, case, limits, host).map(Some),
+        None => one(plan, case, limits, session).map(Some),
         Some(_) => Ok(None),
     };
     let program = |case: &Case| {
         let program = case.solver.as_program()?;
-        Some(program::one(plan, case, program, limits, host))
+        Some(program::one(plan, case, program, limits, session))
     };
     let (ours, theirs) = rayon::join(
         || plan.cases.par_iter().map(engine).collect::<Result<_, _>>(),
@@ -60,14 +60,19 @@ pub fn all(plan: &Plan, limits: &Limits, host: &dyn Host) -> Result<Vec<Record>,
     Ok(either.collect())
 }
 
-fn one(plan: &Plan, case: &Case, limits: &Limits, host: &dyn Host) -> Result<Record, SaveError> {
+fn one(
+    plan: &Plan,
+    case: &Case,
+    limits: &Limits,
+    session: &dyn Session,
+) -> Result<Record, SaveError> {
     let Label {
         steps, timestep, ..
     } = case.label;
     let mut run = match case.start(plan) {
         Ok(run) => run,
         Err(unsupported) => {
-            host.progress(steps);
+            session.progress(steps);
             return Ok(Record::none(Status::Unsupported, unsupported.reason));
         }
     };
@@ -75,7 +80,7 @@ fn one(plan: &Plan, case: &Case, limits: &Limits, host: &dyn Host) -> Result<Rec
     let mut recorder = Recorder::new(steps, dim, timestep);
     let start = Instant::now();
     let coarse = limits.now_and_then();
-    let mut ended = run.finish(&coarse, &mut recorder, &|taken| host.progress(taken));
+    let mut ended = run.finish(&coarse, &mut recorder, &|taken| session.progress(taken));
     let wall = spread(vec![start.elapsed().as_secs_f64()]);
     if ended != Ended::Completed
         && let Ok(again) = case.start(plan)
@@ -85,7 +90,7 @@ fn one(plan: &Plan, case: &Case, limits: &Limits, host: &dyn Host) -> Result<Rec
         recorder = Recorder::new(steps, dim, timestep);
         ended = run.finish(limits, &mut recorder, &|_| {});
     }
-    if let Some(mut saver) = host.saver(&case.label)? {
+    if let Some(mut saver) = session.saver(&case.label)? {
         // The same run once more, to the file: bits are the same, and the timed run writes nothing.
         if let Ok(mut again) = case.start(plan) {
             again.finish(limits, saver.as_mut(), &|_| {});
@@ -104,7 +109,7 @@ fn one(plan: &Plan, case: &Case, limits: &Limits, host: &dyn Host) -> Result<Rec
             (Status::Failed, Some(reason), step)
         }
     };
-    host.progress(steps.saturating_sub(taken));
+    session.progress(steps.saturating_sub(taken));
     Ok(Record {
         status,
         reason,

@@ -29,7 +29,7 @@ use crate::report::Header;
 use crate::solvers::Kind;
 use crate::trajectory::SaveError;
 use crate::truth;
-use crate::verbs::host::Host;
+use crate::verbs::session::Session;
 use crate::verbs::{Beside, Body, Report, Series, facts};
 use truths::Truths;
 
@@ -38,15 +38,15 @@ impl Plan<'_> {
     ///
     /// # Errors
     /// Only when a trajectory file could not be written; whatever an engine does is an outcome.
-    pub fn execute(&self, host: &dyn Host) -> Result<Report, SaveError> {
+    pub fn execute(&self, session: &dyn Session) -> Result<Report, SaveError> {
         let (scene, system) = (self.scene, &self.system);
         let limits = facts::limits(scene, system);
         let ends = self.cases.iter().map(|case| case.label.end());
         let until = ends.fold(0.0, f64::max);
-        let find = || truth::find(scene, system, self.choice.truth, until, host.store());
+        let find = || truth::find(scene, system, self.choice.truth, until, session.store());
         let (truth, (records, proofs)) = rayon::join(find, || {
             rayon::join(
-                || execute::all(self, &limits, host),
+                || execute::all(self, &limits, session),
                 || checks::proofs(self),
             )
         });

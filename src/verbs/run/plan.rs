@@ -5,7 +5,7 @@ use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::{self, Kind, Run, Setting, Solver, Unsupported};
 use crate::truth::Demand;
-use crate::verbs::host::{Estimate, Label};
+use crate::verbs::session::{Estimate, Label};
 use std::time::{Duration, Instant};
 
 /// What the caller wants run; [`Choice::default_for`] is what a run without flags does.
@@ -159,7 +159,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Long enough to be above the clock's grain, short enough not to be felt, and taken as often.
+/// A sample is longer than the clock's grain and too short to be noticed.
 const SAMPLE: Duration = Duration::from_millis(1);
 const SAMPLES: usize = 2;
 

@@ -7,7 +7,7 @@ use crate::solvers::external::{Program, Recording, Task};
 use crate::solvers::{Counts, Limits, Status};
 use crate::trajectory::{Precision, Rows, Trajectory};
 use crate::verbs::clock::spread;
-use crate::verbs::host::Host;
+use crate::verbs::session::Session;
 
 /// One case of a program, from its start to what came of it.
 pub fn one(
@@ -15,7 +15,7 @@ pub fn one(
     case: &Case,
     program: &dyn Program,
     limits: &Limits,
-    host: &dyn Host,
+    session: &dyn Session,
 ) -> Record {
     let task = Task {
         scene: plan.scene,
@@ -24,7 +24,7 @@ pub fn one(
         steps: case.label.steps,
     };
     let answer = program.record(&task);
-    host.progress(case.label.steps);
+    session.progress(case.label.steps);
     match answer {
         Ok(recording) => made_of(recording, &task, limits),
         Err(failure) => Record::none(Status::Failed, failure.to_string()),

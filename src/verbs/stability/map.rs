@@ -6,7 +6,7 @@ use crate::measure::stability::{Cell, Effort, Linearised, classify};
 use crate::physics::ParticleSystem;
 use crate::scene::{Scene, limits};
 use crate::solvers::{Solver, Tally};
-use crate::verbs::host::Host;
+use crate::verbs::session::Session;
 use crate::verbs::stability::{MapPanel, StabilityError, StabilityMap};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -64,7 +64,7 @@ impl MapPlan {
         solvers: &[Solver],
         steps_per_cell: u64,
         tally: &Arc<Tally>,
-        host: &dyn Host,
+        session: &dyn Session,
     ) -> StabilityMap {
         let values = &self.vary.values;
         let scenes = values.iter().map(|value| self.vary.apply(scene, *value));
@@ -100,7 +100,7 @@ impl MapPlan {
                 let (solver, scene, h) = (&solvers[s], &scenes[v], timesteps[h]);
                 start(solver, scene, h, tally).ok()?;
                 let make = |scene: &Scene, h| start(solver, scene, h, tally);
-                let tick = |steps| host.progress(steps);
+                let tick = |steps| session.progress(steps);
                 Some(classify(scene, &make, h, steps_per_cell, &tick))
             })
             .collect();

@@ -25,7 +25,7 @@ use crate::report::Header;
 use crate::scene::Scene;
 use crate::solvers::{Solver, Tally};
 use crate::truth::Truth;
-use crate::verbs::host::Host;
+use crate::verbs::session::Session;
 use crate::verbs::{Beside, Body, Report, facts};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -64,7 +64,7 @@ impl StabilityPlan<'_> {
     /// # Errors
     /// Before anything runs: a budget that leaves the map's cells too few steps, or a picture of a
     /// scene that is not two free particles on one spring.
-    pub fn execute(&self, host: &dyn Host) -> Result<Report, StabilityError> {
+    pub fn execute(&self, session: &dyn Session) -> Result<Report, StabilityError> {
         let scene = self.scene;
         let admissible = match self.admissible.as_slice() {
             [] => None,
@@ -84,10 +84,10 @@ impl StabilityPlan<'_> {
             tally: Arc::default(),
         };
         let (solvers, tally) = (&self.solvers, &shared.tally);
-        let row = |solver| rows::row(&shared, solver, host);
+        let row = |solver| rows::row(&shared, solver, session);
         let rows = solvers.par_iter().map(row).collect();
         let map = self.map.as_ref();
-        let map = map.map(|map| map.run(scene, solvers, steps_per_cell, tally, host));
+        let map = map.map(|map| map.run(scene, solvers, steps_per_cell, tally, session));
         let Shared {
             system, linearised, ..
         } = &shared;

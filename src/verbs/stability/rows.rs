@@ -6,7 +6,7 @@ use crate::measure::stability::{Limit, Linearised, Prediction, TightestLimit, me
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::{Kind, Run, Setting, Solver, Tally, Unsupported};
-use crate::verbs::host::Host;
+use crate::verbs::session::Session;
 use crate::verbs::stability::StabilityRow;
 use std::sync::Arc;
 
@@ -78,7 +78,7 @@ fn follows(solver: &Solver) -> Option<(&'static Method, f64)> {
     Some((solver.follows?, f64::from(solver.substeps)))
 }
 
-pub fn row(shared: &Shared, solver: &Solver, host: &dyn Host) -> StabilityRow {
+pub fn row(shared: &Shared, solver: &Solver, session: &dyn Session) -> StabilityRow {
     let (scene, timestep) = (shared.plan.scene, shared.plan.timestep);
     let start = |scene: &Scene, h| start(solver, scene, h, &shared.tally);
     let predicted = predicted(&shared.linearised, solver, timestep);
@@ -114,7 +114,7 @@ pub fn row(shared: &Shared, solver: &Solver, host: &dyn Host) -> StabilityRow {
         let near = [predicted_limit_s, along].into_iter().flatten();
         let near = near.filter(|h| *h > 0.0).reduce(f64::min);
         let patience = patience(scene, solver, timestep, &shared.tally);
-        let tick = |steps| host.progress(steps);
+        let tick = |steps| session.progress(steps);
         let measured = measure(
             scene,
             &shared.system,
