@@ -3,6 +3,7 @@
 use crate::scene::{self, Scene};
 use crate::truth::Demand;
 use crate::verbs;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
@@ -18,22 +19,13 @@ pub fn scene(path: &Path, duration: Option<f64>) -> anyhow::Result<Scene> {
     Ok(scene)
 }
 
-/// `--truth`.
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-pub enum Truth {
-    Auto,
-    Closed,
-    None,
-}
-
-impl Truth {
-    pub fn demand(self) -> Demand {
-        match self {
-            Self::Auto => Demand::Auto,
-            Self::Closed => Demand::Closed,
-            Self::None => Demand::None,
-        }
-    }
+/// What `--truth` takes.
+pub fn demand() -> impl TypedValueParser<Value = Demand> {
+    PossibleValuesParser::new(["auto", "closed", "none"]).map(|kind| match kind.as_str() {
+        "closed" => Demand::Closed,
+        "none" => Demand::None,
+        _ => Demand::Auto,
+    })
 }
 
 /// `60s`, `2m`, `1.5h`, `500ms`, or seconds without a unit.

@@ -8,7 +8,7 @@ use crate::solvers::Solver;
 use crate::solvers::external::{Failure, Program, Recording, Task};
 use crate::trajectory::{self, Expected, Rows, SaveError, limits};
 use crate::truth::Demand;
-use crate::verbs::cli::flags::{self, Truth};
+use crate::verbs::cli::flags::{self, demand};
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::terminal::Terminal;
 use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity};
@@ -37,8 +37,8 @@ pub struct Args {
     timestep: Option<f64>,
 
     /// What errors are measured against, as in `run`.
-    #[arg(long, value_enum, default_value_t = Truth::Auto, value_name = "KIND")]
-    truth: Truth,
+    #[arg(long, default_value = "auto", value_parser = demand(), value_name = "KIND")]
+    truth: Demand,
 
     #[command(flatten)]
     output: Output,
@@ -67,13 +67,7 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let name = file_name.map_or(name, |n| n.to_string_lossy().into_owned());
     let steps = rows.steps.last().copied().unwrap_or(0);
     let terminal = Terminal::new(steps, 0.0, quiet);
-    let report = report(
-        &scene,
-        &Arc::new(rows),
-        &name,
-        args.truth.demand(),
-        &terminal,
-    )?;
+    let report = report(&scene, &Arc::new(rows), &name, args.truth, &terminal)?;
     let place = args.output.asked_place(&args.file);
     let report = output::written(report, place.as_ref())?;
     if args.output.is_human() {

@@ -2,8 +2,9 @@
 
 use crate::scene::{self, Scene};
 use crate::solvers::Solver;
+use crate::truth::Demand;
 use crate::verbs::Report;
-use crate::verbs::cli::flags::{self, Time, Truth};
+use crate::verbs::cli::flags::{self, Time, demand};
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::solvers::{Custom, chosen, without_timestep};
 use crate::verbs::cli::terminal::{self, Terminal};
@@ -56,8 +57,8 @@ pub struct Args {
 
     /// What errors are measured against: a closed form or else a converged reference (auto), a
     /// closed form or nothing (closed), nothing (none).
-    #[arg(long, value_enum, default_value_t = Truth::Auto, value_name = "KIND")]
-    truth: Truth,
+    #[arg(long, default_value = "auto", value_parser = demand(), value_name = "KIND")]
+    truth: Demand,
 
     #[command(flatten)]
     output: Output,
@@ -130,7 +131,7 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
         settings: args.steps as usize,
         budget_s: args.budget.0.as_secs_f64(),
         timesteps: (!args.timestep.is_empty()).then(|| args.timestep.clone()),
-        truth: args.truth.demand(),
+        truth: args.truth,
     };
     if choice.solvers.is_empty() {
         bail!("nothing to sweep: no integrators and no engines");

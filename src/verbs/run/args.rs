@@ -6,7 +6,7 @@ use crate::scene::{self, Scene};
 use crate::truth::Demand;
 use crate::verbs::Report;
 use crate::verbs::cli::external::{self, External};
-use crate::verbs::cli::flags::{self, Time, Truth};
+use crate::verbs::cli::flags::{self, Time, demand};
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::save::{FileKind, Files};
 use crate::verbs::cli::solvers::{Custom, chosen};
@@ -60,8 +60,8 @@ pub struct Args {
 
     /// What errors are measured against: a closed form or else a converged reference (auto), a
     /// closed form or nothing (closed), nothing (none).
-    #[arg(long, value_enum, default_value_t = Truth::Auto, value_name = "KIND")]
-    truth: Truth,
+    #[arg(long, default_value = "auto", value_parser = demand(), value_name = "KIND")]
+    truth: Demand,
 
     /// Measure every integrator's order, also where that takes long.
     #[arg(long)]
@@ -165,7 +165,7 @@ fn one(
 fn expectations(args: &Args, scene: &Scene, stated: f64) -> Expectations {
     if scene.duration != stated {
         Expectations::Skipped(format!("they are about {stated:?} s"))
-    } else if args.truth.demand() != Demand::Auto {
+    } else if args.truth != Demand::Auto {
         let why = "they are about errors and energies against the truth, and --truth changed it";
         Expectations::Skipped(why.to_owned())
     } else {
@@ -211,7 +211,7 @@ fn next(args: &Args, path: &Path, report: &Report) -> Option<String> {
 
 fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
     let mut choice = Choice::default_for(scene);
-    choice.truth = args.truth.demand();
+    choice.truth = args.truth;
     if args.order {
         choice.order = Orders::Always;
     }
