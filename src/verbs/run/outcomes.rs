@@ -34,7 +34,7 @@ pub fn all(
             timestep,
             substep: timestep / f64::from(case.solver.substeps),
             status: record.status,
-            stopped_at_s: early.then(|| record.steps as f64 * timestep),
+            stopped_at_s: early.then_some(record.steps as f64 * timestep),
             reason: record.reason.clone(),
             position_error_m: errors.as_ref().map(|errors| errors.position.clone()),
             velocity_error_m_s: errors.and_then(|errors| errors.velocity),
