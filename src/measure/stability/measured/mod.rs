@@ -1,9 +1,9 @@
 //! Limits found by running a scene at many steps.
 
+mod experiment;
 mod perturbation;
 mod probe;
 mod search;
-mod setup;
 mod smooth;
 mod watched;
 
@@ -13,10 +13,9 @@ use crate::outcome::Cell;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
+use experiment::Experiment;
 use perturbation::Perturbation;
 use probe::{Budget, Fate, Watch, probe};
-use search::Search;
-use setup::Setup;
 use watched::{ExcessEnergy, Runs};
 
 /// Starts a run of a scene at a timestep, s, or says why there can be none.
@@ -64,8 +63,8 @@ pub fn measure(
 ) -> Measured {
     let start = ParticleSystem::initial_state(scene);
     let unit = predicted::shortest(system, &start).unwrap_or(timestep);
-    let mut setup = match Setup::new(scene, system, make, 0.5 * unit, patience, tick) {
-        Ok(setup) => setup,
+    let mut experiment = match Experiment::new(scene, system, make, unit, patience, tick) {
+        Ok(experiment) => experiment,
         Err(Unsupported { reason }) => {
             return Measured {
                 limit: Limit::Unknown(reason),
@@ -78,22 +77,22 @@ pub fn measure(
         }
     };
     let near = near.filter(|near| *near > 0.0 && near.is_finite());
-    let (limit, reason) = Search::new(&mut setup, unit).limit(near, patience);
-    let growth = (limit == Limit::Never).then(|| setup.growth(timestep, unit));
+    let (limit, reason) = experiment.limit(near, patience);
+    let growth = (limit == Limit::Never).then(|| experiment.growth(timestep));
     let upto = match limit {
         Limit::At(h) => Some(h),
         _ => None,
     };
-    let linear = setup.is_linear();
+    let linear = experiment.is_linear();
     Measured {
         growth_per_s: growth.flatten().filter(|growth| growth.is_finite()),
         smooth_below_s: linear
-            .then(|| smooth::below(&mut setup, unit, upto))
+            .then(|| smooth::below(&mut experiment, upto))
             .flatten(),
         linear,
         limit,
         reason,
-        steps: setup.budget.taken,
+        steps: experiment.budget.taken,
     }
 }
 

@@ -10,7 +10,7 @@
 //! motion decays.
 
 use super::Make;
-use super::perturbation::Perturbation;
+use super::perturbation::{Perturbation, Quadratic};
 use super::probe::Probed;
 use crate::integrators::StepError;
 use crate::measure::scale::free_fall;
@@ -83,41 +83,6 @@ pub(super) struct Level {
     pub high: bool,
 }
 
-/// K(dv) + the potential energy of dx under linear forces.
-#[derive(Clone)]
-pub(super) struct Quadratic {
-    system: ParticleSystem,
-    /// Forces at the origin, at rest: what does not depend on the state.
-    constant: Vec<f64>,
-    zero: Vec<f64>,
-    force: Vec<f64>,
-}
-
-impl Quadratic {
-    pub fn new(system: &ParticleSystem) -> Self {
-        let zero = vec![0.0; system.dim()];
-        let mut constant = zero.clone();
-        system.forces(0.0, &zero, &zero, &mut constant);
-        Self {
-            system: system.clone(),
-            constant,
-            force: zero.clone(),
-            zero,
-        }
-    }
-
-    /// -½ dx · (f(dx) - f(0)), J. Free coordinates only: `dx` is 0 on fixed ones.
-    pub fn potential(&mut self, dx: &[f64]) -> f64 {
-        self.system.forces(0.0, dx, &self.zero, &mut self.force);
-        let work = dx.iter().zip(self.force.iter().zip(&self.constant));
-        -0.5 * work.map(|(dx, (f, f0))| dx * (f - f0)).sum::<f64>()
-    }
-
-    pub fn energy(&mut self, of: &Perturbation) -> f64 {
-        self.potential(&of.x) + self.system.kinetic(&of.v)
-    }
-}
-
 /// The energy of the difference between two runs, against its start.
 pub(super) struct DifferenceEnergy {
     quadratic: Quadratic,
@@ -131,8 +96,6 @@ const GONE: f64 = 1e-22;
 /// Growth of the energy that no transient and no swing near a limit reaches: at a relative distance
 /// δ inside it Verlet's swings by 1/(2 δ).
 const BLOWN_UP: f64 = 1e12;
-/// What counts as rounding, in positions and velocities.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 impl DifferenceEnergy {
     /// Of two runs at their start.
@@ -170,17 +133,7 @@ impl Gauge for DifferenceEnergy {
     /// Whether the difference has no more energy than roundings of the state alone.
     fn is_rounding(&mut self, runs: &Runs) -> bool {
         let now = self.energy(runs);
-        // Every other coordinate the other way, so that no translation hides it.
-        let signs = [ROUNDING, -ROUNDING].into_iter().cycle();
-        let State { x, v, .. } = runs.state(1);
-        let free = x.iter().zip(self.quadratic.system.inverse_mass());
-        let x = free.zip(signs.clone());
-        let rounding = Perturbation {
-            x: x.map(|((x, w), s)| if *w > 0.0 { x * s } else { 0.0 })
-                .collect(),
-            v: v.iter().zip(signs).map(|(v, s)| v * s).collect(),
-        };
-        now < self.quadratic.energy(&rounding)
+        now < self.quadratic.rounding(runs.state(1))
     }
 }
 

@@ -63,12 +63,7 @@ fn by_modes(
         });
         // What oscillates from the first cell on is not smooth up to anything worth saying.
         let smooth = smooth.filter(|smooth| *smooth > NEAR / mode.rate() * 0.5);
-        let one = Prediction {
-            smooth_below_s: smooth,
-            binding: Some(mode),
-            ..Prediction::only(limit)
-        };
-        one.growing(Some(growth(at(h).modulus(), h)), h)
+        Prediction::of(mode, limit, growth(at(h).modulus(), h), smooth, h)
     });
     each.reduce(Prediction::and)
 }

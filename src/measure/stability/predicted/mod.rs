@@ -116,11 +116,12 @@ impl Linearised {
                 other => maps::predict(other, part, timestep, &self.effort),
             });
         let all = parts.chain(self.failed.map(Prediction::unknown));
-        let whole = all.reduce(Prediction::and);
+        // Where nothing moves but freely, nothing grows.
+        let whole = all
+            .reduce(Prediction::and)
+            .unwrap_or_else(|| Prediction::only(Limit::Unconditional).growing(Some(0.0), timestep));
         let (undamped, modes) = self.undamped();
-        whole
-            .unwrap_or_else(Prediction::at_rest)
-            .explained(undamped, modes)
+        whole.explained(undamped, modes)
     }
 
     /// Modes that neither decay nor rest, and all that do not rest; zeros where nobody counted.

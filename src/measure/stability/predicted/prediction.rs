@@ -22,14 +22,6 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// Of nothing that moves but freely.
-    pub(super) fn at_rest() -> Self {
-        Self {
-            growth_per_s: Some(0.0),
-            ..Self::only(Limit::Unconditional)
-        }
-    }
-
     pub(super) fn unknown(why: impl Into<String>) -> Self {
         Self::only(Limit::Unknown(why.into()))
     }
@@ -42,6 +34,16 @@ impl Prediction {
             reason: None,
             binding: None,
         }
+    }
+
+    /// Of one mode, with its growth at `h`, s.
+    pub(super) fn of(mode: Mode, limit: Limit, growth: f64, smooth: Option<f64>, h: f64) -> Self {
+        let of = Self {
+            smooth_below_s: smooth,
+            binding: Some(mode),
+            ..Self::only(limit)
+        };
+        of.growing(Some(growth), h)
     }
 
     /// With this growth at `h`, s: a step that is stable does not grow, whatever rounding says.

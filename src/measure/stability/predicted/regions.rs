@@ -33,12 +33,9 @@ fn of_eigenvalues(
             Stable::Below(u) => (Limit::At(u / rate), u / rate),
             Stable::Always | Stable::AlwaysAlong { .. } => (Limit::Unconditional, f64::INFINITY),
         };
-        let one = Prediction {
-            smooth_below_s: (value.im == 0.0).then(|| bound.min(sign_change / rate)),
-            binding: Some(mode),
-            ..Prediction::only(limit)
-        };
-        one.growing(Some(rational.log_modulus(value, h) / h), h)
+        let smooth = (value.im == 0.0).then(|| bound.min(sign_change / rate));
+        let growth = rational.log_modulus(value, h) / h;
+        Prediction::of(mode, limit, growth, smooth, h)
     });
     each.reduce(Prediction::and)
 }
