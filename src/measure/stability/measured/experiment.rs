@@ -2,8 +2,8 @@
 
 use super::Make;
 use super::perturbation::{Perturbation, Quadratic};
-use super::probe::{Budget, Probed, Watch, probe};
-use super::watched::{DifferenceEnergy, ExcessEnergy, Runs};
+use super::probe::{Budget, Probed, Runs, Watch, probe};
+use super::watched::{DifferenceEnergy, ExcessEnergy};
 use crate::measure::energy_scale;
 use crate::measure::stability::Limit;
 use crate::physics::ParticleSystem;

@@ -15,8 +15,8 @@ use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
 use experiment::Experiment;
 use perturbation::Perturbation;
-use probe::{Budget, Fate, Watch, probe};
-use watched::{ExcessEnergy, Runs};
+use probe::{Budget, Fate, Runs, Watch, probe};
+use watched::ExcessEnergy;
 
 /// Starts a run of a scene at a timestep, s, or says why there can be none.
 pub type Make<'a> = dyn Fn(&Scene, f64) -> Result<Run, Unsupported> + Sync + 'a;

@@ -1,4 +1,4 @@
-//! Runs of a scene, and the energy that tells whether they are stable.
+//! The energy that tells whether runs are stable.
 //!
 //! Where the map is linear, it is the energy of the difference between two runs: gravity and wind move
 //! both alike, so the difference obeys the method's homogeneous linear map exactly, wherever the
@@ -9,79 +9,11 @@
 //! explicit Euler dissipates without bound what it made out of nothing, and its balance rises while the
 //! motion decays.
 
-use super::Make;
 use super::perturbation::{Perturbation, Quadratic};
-use super::probe::Probed;
-use crate::integrators::StepError;
+use super::probe::{Gauge, Level, Probed, Runs};
 use crate::measure::scale::free_fall;
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
-use crate::solvers::{Run, Unsupported};
-
-/// Runs at one timestep from different starts, advanced together.
-pub(super) struct Runs(Vec<Run>);
-
-/// What a linear solve counts as, in force passes.
-const SOLVE: u64 = 3;
-
-impl Runs {
-    /// One from the start of each scene, at `h` seconds.
-    pub fn new(make: &Make, h: f64, scenes: &[&Scene]) -> Result<Self, Unsupported> {
-        let runs = scenes.iter().map(|scene| make(scene, h));
-        Ok(Self(runs.collect::<Result<_, _>>()?))
-    }
-
-    pub fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    /// A step of each.
-    pub fn step(&mut self) -> Result<(), StepError> {
-        self.0.iter_mut().try_for_each(|run| run.advance(1))
-    }
-
-    pub fn state(&self, run: usize) -> &State {
-        self.0[run].state()
-    }
-
-    /// The state of one run less that of the first.
-    pub fn difference(&self, run: usize) -> Perturbation {
-        let mut difference = Perturbation::default();
-        difference.set_difference(self.state(0), self.state(run));
-        difference
-    }
-
-    /// Force passes so far, linear solves turned into such, where engines count them.
-    pub fn passes(&self) -> u64 {
-        let passes = self.0.iter().map(|run| {
-            let counts = run.counts();
-            counts.all_force_passes().unwrap_or(0) + SOLVE * counts.linear_solves.unwrap_or(0)
-        });
-        passes.sum()
-    }
-}
-
-/// What is watched of runs.
-pub(super) trait Gauge {
-    /// Where the energy is after so many steps.
-    ///
-    /// # Errors
-    /// What became of the runs, where the energy leaves no other answer.
-    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed>;
-
-    /// Whether what is watched is no larger than rounding.
-    fn is_rounding(&mut self, _runs: &Runs) -> bool {
-        false
-    }
-}
-
-/// An energy against its start or its scale.
-pub(super) struct Level {
-    /// Its logarithm.
-    pub log: f64,
-    /// Too high to stay there.
-    pub high: bool,
-}
 
 /// The energy of the difference between two runs, against its start.
 pub(super) struct DifferenceEnergy {

@@ -14,6 +14,7 @@ use crate::integrators::{Amplification, Method};
 use crate::outcome::TightestLimit;
 use crate::physics::{State, System};
 use crate::scene::{DampingModel, Scene};
+pub(super) use parts::shortest;
 pub use prediction::Prediction;
 use spectrum::{Known, Spectrum};
 
@@ -140,14 +141,6 @@ impl Linearised {
         }
         counts
     }
-}
-
-/// A time, s, no longer than the shortest time scale of the forces about a state: from the row sums of the
-/// Jacobians (Gershgorin). None where no force depends on the state.
-pub(super) fn shortest<S: System + ?Sized>(system: &S, state: &State) -> Option<f64> {
-    let parts = parts::parts(system, state)?;
-    let rate = parts.iter().map(|part| part.rate()).fold(0.0, f64::max);
-    (rate > 0.0 && rate.is_finite()).then(|| 1.0 / rate)
 }
 
 /// Sizes, in coordinates that couple, up to which things are done, and how far Krylov spaces go.
