@@ -1,13 +1,13 @@
 //! What 1e-9 m costs with a tolerance, and with fixed steps of rk4. Compare figures of one run only.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use springcheck::crosscheck;
-use springcheck::integrators::adaptive::{self, Pair};
 use springcheck::integrators::{self, Method};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
-use springcheck::solvers::{Limits, Run, Setting, Solver, Unwatched};
+use springcheck::solvers::{Limits, Run, Setting, Solver};
+use springcheck::trajectory::Unwatched;
 use springcheck::truth::{self, Demand, NoStore};
+use springcheck::verbs;
 use std::fmt::Write;
 
 /// m, at the end.
@@ -16,7 +16,7 @@ const TARGET: f64 = 1e-9;
 const RATIO: f64 = 1.333_521_432_163_324;
 
 fn read(yaml: &str) -> Scene {
-    scene::parse(yaml.as_bytes(), "bench.yml", crosscheck::names()).expect("a valid scene")
+    scene::parse(yaml.as_bytes(), "bench.yml", verbs::names()).expect("a valid scene")
 }
 
 /// The chain of `steps`, 20 links let go sideways, for 2 s.
@@ -55,14 +55,14 @@ fn finished(solver: &Solver, scene: &Scene, system: &ParticleSystem, setting: Se
     run
 }
 
-fn by_pair(scene: &Scene, system: &ParticleSystem, pair: &'static Pair, tolerance: f64) -> Run {
+fn by_pair(scene: &Scene, system: &ParticleSystem, pair: &'static Method, tolerance: f64) -> Run {
     let setting = Setting::Tolerance {
         tolerance,
         duration: scene.duration,
         steps: 1,
         most: u64::MAX,
     };
-    finished(&Solver::pair(pair), scene, system, setting)
+    finished(&Solver::method(pair), scene, system, setting)
 }
 
 fn by_steps(scene: &Scene, system: &ParticleSystem, method: &'static Method, n: u64) -> Run {
@@ -94,7 +94,7 @@ fn to_the_target(c: &mut Criterion, name: &str, scene: &Scene) {
         largest.sqrt()
     };
     let mut group = c.benchmark_group(format!("{name}, to 1e-9 m"));
-    for pair in adaptive::REGISTRY {
+    for pair in integrators::pairs() {
         let tolerance = |k: i32| 1e-4 * RATIO.powi(-k);
         let at = tolerance(loosest(|k| {
             error(&by_pair(scene, &system, pair, tolerance(k)))

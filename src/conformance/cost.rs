@@ -1,12 +1,10 @@
 //! Cost: force evaluations a step, counted from outside.
 
-use super::Law;
-use super::finding::Verdict;
 use super::subject::advance;
-use super::systems::swinging_triangle;
+use super::systems::{built, swinging_triangle};
+use super::{Finding, Law};
 use crate::integrators::PerStep;
-use crate::outcome::CheckStatus;
-use crate::physics::{Counting, ParticleSystem};
+use crate::physics::Counting;
 use crate::scene::DampingModel;
 
 const STEPS: u32 = 100;
@@ -19,20 +17,13 @@ pub(super) const LAW: Law = Law {
     derivation: "counted over 100 steps after the first one: no tolerance",
     judge: |subject| {
         let Some(claimed) = subject.claims.evaluations else {
-            return Ok(Verdict::skip("force evaluations"));
+            return Ok(Finding::skip("force evaluations"));
         };
-        let scene = swinging_triangle(0.0, DampingModel::Axial);
-        let system = Counting::new(ParticleSystem::new(&scene));
-        let mut state = ParticleSystem::initial_state(&scene);
-        let mut integrator = subject.fresh();
+        let (system, mut state) = built(&swinging_triangle(0.0, DampingModel::Axial));
+        let (system, mut integrator) = (Counting::new(system), subject.fresh());
         let mut run = |steps: u32| {
-            advance(
-                integrator.as_mut(),
-                &system,
-                STEP,
-                steps as usize,
-                &mut state,
-            )?;
+            let n = steps as usize;
+            advance(integrator.as_mut(), &system, STEP, n, &mut state)?;
             Ok((system.evaluations().forces, integrator.linear_solves()))
         };
         let (forces_before, solves_before) = run(1)?;
@@ -47,13 +38,9 @@ pub(super) const LAW: Law = Law {
                 format!("one an iteration and {plus} a step"),
             ),
         };
-        let status = if forces == expected {
-            CheckStatus::Pass
-        } else {
-            CheckStatus::Fail
-        };
         let message = format!("claims {what}: {forces} in {steps} steps, with {solves} solves");
         let each = |count: u64| count as f64 / f64::from(STEPS);
-        Ok(Verdict::new(status, each(forces), each(expected), message))
+        let holds = forces == expected;
+        Ok(Finding::of(holds, each(forces), each(expected), message))
     },
 };

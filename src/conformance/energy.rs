@@ -1,11 +1,10 @@
 //! Energy: what becomes of the undamped oscillator's, as the claimed law says.
 
-use super::finding::Verdict;
+use super::stability::W;
 use super::subject::{Broken, Subject, advance};
 use super::systems::Oscillator;
-use super::{Law, SOLVED_TO};
+use super::{Finding, Law, SOLVED_TO};
 use crate::integrators::{EnergyLaw, Integrator, PerStep, Stable};
-use crate::outcome::CheckStatus;
 use crate::physics::State;
 
 pub(super) const LAW: Law = Law {
@@ -15,29 +14,26 @@ pub(super) const LAW: Law = Law {
                  a band is also filled to its edges within 1 %",
     judge: |subject| {
         let Some(oscillator) = subject.claims.oscillator else {
-            return Ok(Verdict::skip("the oscillator"));
+            return Ok(Finding::skip("the oscillator"));
         };
-        let mut verdicts = Vec::new();
+        let mut findings = Vec::new();
         for z in STEPS {
             // Outside its limit nothing is bounded; a factor holds anywhere.
             let inside = match oscillator.stable {
                 Stable::Below(limit) => z < limit,
                 _ => true,
             };
-            verdicts.push(match oscillator.energy {
+            findings.push(match oscillator.energy {
                 EnergyLaw::Factor { factor, .. } => by_factor(subject, z, factor(z))?,
                 EnergyLaw::Band { band, .. } if inside => within(subject, z, band(z))?,
                 EnergyLaw::Bounded if inside => bounded(subject, z)?,
                 _ => continue,
             });
         }
-        let worst = Verdict::worst(verdicts, |off| off);
-        Ok(worst.unwrap_or_else(|| Verdict::skip("steps of these sizes")))
+        let worst = Finding::worst(findings, |off| off);
+        Ok(worst.unwrap_or_else(|| Finding::skip("steps of these sizes")))
     },
 };
-
-/// rad/s.
-const W: f64 = 7.0;
 
 /// z = h w: inside every explicit limit but the smallest ones, and no simple fraction of a turn
 /// but for z = 1, where symplectic Euler turns by exactly a sixth.
@@ -54,7 +50,7 @@ fn start() -> State {
 }
 
 /// The maps are normal matrices: the factor holds at every step, whatever the phase.
-fn by_factor(subject: &Subject, z: f64, factor: f64) -> Result<Verdict, Broken> {
+fn by_factor(subject: &Subject, z: f64, factor: f64) -> Result<Finding, Broken> {
     let (mut integrator, mut state) = (subject.fresh(), start());
     let (mut off, mut seen) = (0.0_f64, factor);
     for _ in 0..50 {
@@ -64,11 +60,8 @@ fn by_factor(subject: &Subject, z: f64, factor: f64) -> Result<Verdict, Broken> 
         let defect = (found - factor).abs() / factor.max(1.0);
         if defect.is_nan() {
             // No energy is left to multiply.
-            return Ok(Verdict::fail(
-                None,
-                SOLVED_TO,
-                format!("at z = {z} all energy is gone"),
-            ));
+            let message = format!("at z = {z} all energy is gone");
+            return Ok(Finding::of(false, None, SOLVED_TO, message));
         }
         if defect > off {
             (off, seen) = (defect, found);
@@ -76,7 +69,7 @@ fn by_factor(subject: &Subject, z: f64, factor: f64) -> Result<Verdict, Broken> 
     }
     let what =
         format!("at z = {z} one step multiplies the energy by {seen:.6}, claimed {factor:.6}");
-    Ok(Verdict::at_most(off, SOLVED_TO, &what))
+    Ok(Finding::at_most(off, SOLVED_TO, &what))
 }
 
 /// Least and largest energy over many steps onwards, in units of the first.
@@ -92,10 +85,10 @@ fn range(integrator: &mut dyn Integrator, z: f64, state: &mut State) -> Result<(
     Ok((least, most))
 }
 
-fn within(subject: &Subject, z: f64, (low, high): (f64, f64)) -> Result<Verdict, Broken> {
+fn within(subject: &Subject, z: f64, (low, high): (f64, f64)) -> Result<Finding, Broken> {
     if low.is_nan() || high.is_nan() {
         let message = format!("at z = {z} the claimed band is no number");
-        return Ok(Verdict::fail(None, SOLVED_TO, message));
+        return Ok(Finding::of(false, None, SOLVED_TO, message));
     }
     let (least, most) = range(subject.fresh().as_mut(), z, &mut start())?;
     // Rounding wanders along an orbit, hardly off it, so that this holds over all the steps.
@@ -103,7 +96,7 @@ fn within(subject: &Subject, z: f64, (low, high): (f64, f64)) -> Result<Verdict,
     let what =
         format!("at z = {z} energies in [{least:.9}, {most:.9}], claimed [{low:.9}, {high:.9}]");
     if beyond > SOLVED_TO {
-        return Ok(Verdict::at_most(beyond, SOLVED_TO, &what));
+        return Ok(Finding::at_most(beyond, SOLVED_TO, &what));
     }
     // The orbit fills the band up to each edge: an edge 1 % too far out would be no law. But at z = 1
     // symplectic Euler meets three energies only and leaves a quarter of its band unseen, a third of
@@ -122,13 +115,13 @@ fn within(subject: &Subject, z: f64, (low, high): (f64, f64)) -> Result<Verdict,
     };
     if unseen > bound {
         let message = format!("{what}: the band is {unseen:.3} times as wide as the motion");
-        return Ok(Verdict::fail(unseen, bound, message));
+        return Ok(Finding::of(false, unseen, bound, message));
     }
-    Ok(Verdict::new(CheckStatus::Pass, beyond, SOLVED_TO, what))
+    Ok(Finding::of(true, beyond, SOLVED_TO, what))
 }
 
 /// The second half of a long run spans the same energies as the first.
-fn bounded(subject: &Subject, z: f64) -> Result<Verdict, Broken> {
+fn bounded(subject: &Subject, z: f64) -> Result<Finding, Broken> {
     let (mut integrator, mut state) = (subject.fresh(), start());
     let (low, high) = range(integrator.as_mut(), z, &mut state)?;
     let (later_low, later_high) = range(integrator.as_mut(), z, &mut state)?;
@@ -144,5 +137,5 @@ fn bounded(subject: &Subject, z: f64) -> Result<Verdict, Broken> {
     let what = format!(
         "at z = {z} energies in [{low:.9}, {high:.9}], later in [{later_low:.9}, {later_high:.9}]"
     );
-    Ok(Verdict::at_most(off, bound, &what))
+    Ok(Finding::at_most(off, bound, &what))
 }

@@ -1,10 +1,8 @@
 //! Exactness: motions followed without error, at any step.
 
-use super::finding::Verdict;
-use super::subject::{advance, distance};
+use super::subject::distance;
 use super::systems::ConstantForce;
-use super::{Law, SOLVED_TO};
-use crate::integrators::Exact;
+use super::{Finding, Law, SOLVED_TO};
 
 /// s; nothing depends on it.
 const STEP: f64 = 0.1;
@@ -19,15 +17,10 @@ pub(super) const LAW: Law = Law {
     derivation: "ten steps solved to 1e-12 on values up to 10; explicit ones leave rounding",
     judge: |subject| {
         let mut state = ConstantForce::start();
-        let mut integrator = subject.fresh();
-        advance(integrator.as_mut(), &ConstantForce, STEP, STEPS, &mut state)?;
+        subject.advance(&ConstantForce, STEP, STEPS, &mut state)?;
         let off = distance(&state, &ConstantForce::exact(STEP * STEPS as f64));
-        let claimed = subject.claims.exact == Exact::ConstantForce;
-        Ok(Verdict::of_property(
-            claimed,
-            off,
-            BOUND,
-            "exact under a constant force",
-        ))
+        let claimed = subject.claims.exact;
+        let property = "exact under a constant force";
+        Ok(Finding::of_property(claimed, off, BOUND, property))
     },
 };

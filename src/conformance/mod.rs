@@ -3,7 +3,7 @@
 //! ```
 //! use springcheck::conformance::{Claims, check};
 //! use springcheck::integrators;
-//! use springcheck::outcome::CheckStatus;
+//! use springcheck::measure::CheckStatus;
 //!
 //! let verlet = integrators::find("velocity_verlet").ok_or("no such method")?;
 //! let build = || verlet.build(&Default::default());
@@ -25,9 +25,7 @@
 //! The tolerances are for integrators of any make: an implicit step may be solved to [`SOLVED_TO`]
 //! only. `docs/conformance.md` has them law by law, with their reasons.
 
-mod across;
 mod balance;
-mod claims;
 mod cost;
 mod energy;
 mod exactness;
@@ -42,18 +40,68 @@ mod subject;
 mod symplecticity;
 pub mod systems;
 
-pub use claims::Claims;
 pub use finding::Finding;
 pub use stability::measured_limit;
 pub use subject::{Broken, Build};
 
-use crate::integrators::Integrator;
-use finding::Verdict;
+use crate::integrators::{Integrator, Method, Oscillator, PerStep, is_exact};
 use subject::Subject;
 
 /// Relative residual to which the kit expects an implicit step to be solved, and so the size of what
 /// its tolerances leave for solving. [`Settings`](crate::integrators::Settings) has the same default.
 pub const SOLVED_TO: f64 = 1e-12;
+
+/// The facts an integrator claims. What is `None` is not claimed, and the laws on it are skipped;
+/// `false` is a claim.
+#[derive(Debug, Clone, Copy)]
+pub struct Claims {
+    /// Order of the global error on smooth problems without damping, also where forces depend on
+    /// time.
+    pub order: u32,
+    /// Order with dampers or drag, of the motion and of the balance of energy.
+    pub order_damped: Option<u32>,
+    /// Keeps the symplectic form on undamped problems, and with it angular momentum.
+    pub symplectic: bool,
+    /// Stepping h, flipping velocities, stepping h again returns to the start.
+    pub reversible: bool,
+    /// Force evaluations a step costs on an undamped system, once running.
+    pub evaluations: Option<PerStep>,
+    /// On x'' = -w² x, with z = h w: how far it is stable, and what becomes of the energy.
+    pub oscillator: Option<Oscillator>,
+    /// Follows free fall without any error but rounding.
+    pub exact: bool,
+}
+
+impl Claims {
+    /// Of this order, with the exactness that comes with it, neither symplectic nor reversible, and
+    /// nothing said of damping, cost and the oscillator: the start of `Claims { .., ..of_order(p) }`.
+    pub const fn of_order(order: u32) -> Self {
+        Self {
+            order,
+            order_damped: None,
+            symplectic: false,
+            reversible: false,
+            evaluations: None,
+            oscillator: None,
+            exact: is_exact(order),
+        }
+    }
+}
+
+impl From<&Method> for Claims {
+    /// Everything a row states.
+    fn from(method: &Method) -> Self {
+        Self {
+            order: method.order,
+            order_damped: Some(method.order_damped),
+            symplectic: method.symplectic,
+            reversible: method.reversible,
+            evaluations: Some(method.evaluations),
+            oscillator: Some(method.oscillator),
+            exact: method.exact,
+        }
+    }
+}
 
 /// One thing an integrator is held to.
 pub struct Law {
@@ -62,7 +110,7 @@ pub struct Law {
     pub summary: &'static str,
     /// Where its bound comes from.
     pub derivation: &'static str,
-    judge: fn(&Subject) -> Result<Verdict, Broken>,
+    judge: fn(&Subject) -> Result<Finding, Broken>,
 }
 
 impl std::fmt::Debug for Law {
@@ -77,11 +125,15 @@ impl Law {
     /// An integrator that returns an error, leaves the finite numbers or breaks the contract of
     /// [`Integrator::step`] on the way fails, and the message says how.
     pub fn check(&self, build: Build, claims: &Claims) -> Finding {
-        let verdict = (self.judge)(&Subject { build, claims });
-        Finding::new(
-            self,
-            verdict.unwrap_or_else(|broken| Verdict::fail(None, None, broken)),
-        )
+        let found = (self.judge)(&Subject { build, claims });
+        let found = found.unwrap_or_else(|broken| Finding::of(false, None, None, broken));
+        Finding {
+            law: self.id,
+            derivation: self.derivation,
+            measured: found.measured.filter(|number| number.is_finite()),
+            bound: found.bound.filter(|number| number.is_finite()),
+            ..found
+        }
     }
 }
 
@@ -92,8 +144,8 @@ pub static LAWS: &[Law] = &[
     order::DRIVEN,
     balance::LAW,
     energy::LAW,
-    stability::LAW,
-    across::LAW,
+    stability::ALONG,
+    stability::ACROSS,
     symplecticity::LAW,
     reversal::LAW,
     momentum::LAW,

@@ -1,15 +1,12 @@
 //! Order: halve the step, and the error falls by 2 to the order.
 
-use super::Law;
-use super::finding::Verdict;
-use super::reference::{Reference, largest};
-use super::subject::{Broken, Subject, advance, distance};
-use super::systems::{Driven, swinging_triangle};
-use crate::measure::order::{
-    Observed, Point, RATIOS, TOLERANCE, Verdict as OrderVerdict, observed,
-};
-use crate::outcome::CheckStatus;
-use crate::physics::{ParticleSystem, State, System};
+use super::reference::Reference;
+use super::subject::{Broken, Subject, advance, distance, largest};
+use super::systems::{Driven, built, dragged_triangle, swinging_triangle};
+use super::{Finding, Law};
+use crate::measure::CheckStatus;
+use crate::measure::order::{Observed, Point, RATIOS, TOLERANCE, Verdict, observed};
+use crate::physics::{State, System};
 use crate::scene::{DampingModel, Scene};
 
 const DERIVATION: &str = "the observed order is an extrapolation of at least four slopes that agree \
@@ -21,8 +18,8 @@ pub(super) const UNDAMPED: Law = Law {
     summary: "the order claimed, on a network without damping",
     derivation: DERIVATION,
     judge: |subject| {
-        let network = Network::new(&swinging_triangle(0.0, DampingModel::Axial));
-        network.judge(subject, subject.claims.order)
+        let scene = swinging_triangle(0.0, DampingModel::Axial);
+        on_network(subject, &scene, subject.claims.order)
     },
 };
 
@@ -32,16 +29,23 @@ pub(super) const DAMPED: Law = Law {
     derivation: DERIVATION,
     judge: |subject| {
         let Some(order) = subject.claims.order_damped else {
-            return Ok(Verdict::skip("the order with damping"));
+            return Ok(Finding::skip("the order with damping"));
         };
-        let mut verdicts = Vec::new();
-        for (name, scene) in damped() {
-            let mut verdict = Network::new(&scene).judge(subject, order)?;
-            verdict.message = format!("{name}: {}", verdict.message);
-            verdicts.push(verdict);
+        let [axial, isotropic] = [DampingModel::Axial, DampingModel::Isotropic]
+            .map(|model| swinging_triangle(0.8, model));
+        let mut findings = Vec::new();
+        // Particles share dampers, so that their flows do not commute.
+        for (name, scene) in [
+            ("axial dampers", axial),
+            ("isotropic dampers", isotropic),
+            ("dampers and drag", dragged_triangle(0.4)),
+        ] {
+            let mut finding = on_network(subject, &scene, order)?;
+            finding.message = format!("{name}: {}", finding.message);
+            findings.push(finding);
         }
-        let worst = Verdict::worst(verdicts, |found| (found - f64::from(order)).abs());
-        Ok(worst.unwrap_or_else(|| Verdict::skip("any damping")))
+        let worst = Finding::worst(findings, |found| (found - f64::from(order)).abs());
+        Ok(worst.unwrap_or_else(|| Finding::skip("any damping")))
     },
 };
 
@@ -54,52 +58,16 @@ pub(super) const DRIVEN: Law = Law {
         let scale = truth.iter().fold(0.0, |most: f64, s| most.max(largest(s)));
         // Sines, cosines and a dozen operations.
         let bar = 16.0 * f64::EPSILON * scale;
-        let observed = ladder(subject, &Driven, &Driven::start(), &truth, bar)?;
+        let observed = refine(subject, &Driven, &Driven::start(), &truth, bar)?;
         Ok(judge(&observed, subject.claims.order))
     },
 };
 
-/// Particles share dampers, so that their flows do not commute.
-fn damped() -> [(&'static str, Scene); 3] {
-    let mut dragged = swinging_triangle(0.4, DampingModel::Axial);
-    for particle in dragged.particles.iter_mut().skip(2).take(1) {
-        particle.drag = 0.5;
-    }
-    [
-        ("axial dampers", swinging_triangle(0.8, DampingModel::Axial)),
-        (
-            "isotropic dampers",
-            swinging_triangle(0.8, DampingModel::Isotropic),
-        ),
-        ("dampers and drag", dragged),
-    ]
-}
-
-struct Network {
-    system: ParticleSystem,
-    start: State,
-    reference: Reference,
-}
-
-impl Network {
-    fn new(scene: &Scene) -> Self {
-        let (system, start) = (
-            ParticleSystem::new(scene),
-            ParticleSystem::initial_state(scene),
-        );
-        let reference = Reference::new(&system, &start, HORIZON, INSTANTS);
-        Self {
-            system,
-            start,
-            reference,
-        }
-    }
-
-    fn judge(&self, subject: &Subject, stated: u32) -> Result<Verdict, Broken> {
-        let Reference { states, bar } = &self.reference;
-        let observed = ladder(subject, &self.system, &self.start, states, *bar)?;
-        Ok(judge(&observed, stated))
-    }
+fn on_network(subject: &Subject, scene: &Scene, stated: u32) -> Result<Finding, Broken> {
+    let (system, start) = built(scene);
+    let Reference { states, bar } = Reference::new(&system, &start, HORIZON, INSTANTS);
+    let observed = refine(subject, &system, &start, &states, bar)?;
+    Ok(judge(&observed, stated))
 }
 
 /// About a period of the slowest mode, s; short enough that no error saturates.
@@ -111,8 +79,8 @@ fn instants() -> impl Iterator<Item = f64> {
     (1..=INSTANTS).map(|at| HORIZON * at as f64 / INSTANTS as f64)
 }
 
-/// The largest error over the horizon at each step of a ladder.
-fn ladder(
+/// The order observed of the largest error over the horizon.
+fn refine(
     subject: &Subject,
     system: &dyn System,
     start: &State,
@@ -122,7 +90,7 @@ fn ladder(
     let scale = truth
         .iter()
         .fold(largest(start), |most, s| most.max(largest(s)));
-    climb(subject, subject.claims.order, |steps| {
+    refined(subject, subject.claims.order, |steps| {
         let mut integrator = subject.fresh();
         let (mut state, mut error) = (start.clone(), 0.0_f64);
         for exact in truth {
@@ -142,14 +110,14 @@ pub(super) fn rounding(steps: usize, scale: f64) -> f64 {
 
 /// Reads the order off errors and floors at ever more steps over the horizon, until there are
 /// enough and an error is at its floor, or the steps are as small as a first order needs.
-pub(super) fn climb(
+pub(super) fn refined(
     subject: &Subject,
     stated: u32,
     mut error: impl FnMut(usize) -> Result<(f64, f64), Broken>,
 ) -> Result<Observed, Broken> {
     let mut points = Vec::new();
     let mut broken = None;
-    for steps in rungs(subject.claims.order) {
+    for steps in refinements(subject.claims.order) {
         match error(steps) {
             Ok((error, floor)) => {
                 let floor = floor * sensitivity(subject.claims.order);
@@ -181,44 +149,37 @@ fn sensitivity(order: u32) -> f64 {
 
 /// Numbers of steps, multiples of [`INSTANTS`]: doubled from 50 to 12,800, or from 20 on by factors
 /// of about 1.3.
-fn rungs(order: u32) -> Vec<usize> {
+fn refinements(order: u32) -> Vec<usize> {
     if order <= HALVED {
         return (0..9).map(|doubled| 50 << doubled).collect();
     }
-    let mut rungs: Vec<usize> = (0..16)
-        .map(|rung| INSTANTS * (2.0 * 1.3_f64.powi(rung)).round() as usize)
+    let mut refinements: Vec<usize> = (0..16)
+        .map(|level| INSTANTS * (2.0 * 1.3_f64.powi(level)).round() as usize)
         .collect();
-    rungs.dedup();
-    rungs
+    refinements.dedup();
+    refinements
 }
 
-fn judge(observed: &Observed, stated: u32) -> Verdict {
+fn judge(observed: &Observed, stated: u32) -> Finding {
     let Some(order) = observed.order else {
         let why = match observed.verdict {
-            OrderVerdict::Inconclusive(reason) => reason.to_string(),
+            Verdict::Inconclusive(reason) => reason.to_string(),
             _ => String::new(),
         };
         let message = format!("claims order {stated}: {why}");
-        return Verdict::new(CheckStatus::Inconclusive, None, TOLERANCE, message);
+        return Finding::new(CheckStatus::Inconclusive, None, TOLERANCE, message);
     };
     let off = order - f64::from(stated);
-    let status = if off.abs() <= TOLERANCE {
-        CheckStatus::Pass
-    } else {
-        CheckStatus::Fail
-    };
     let message = format!("claims order {stated}, observed {order:.3}");
-    Verdict::new(status, order, f64::from(stated) - TOLERANCE, message)
+    let bound = f64::from(stated) - TOLERANCE;
+    Finding::of(off.abs() <= TOLERANCE, order, bound, message)
 }
 
 /// As [`judge`], where a higher order is welcome: nothing was claimed of it.
-pub(super) fn judge_at_least(observed: &Observed, stated: u32) -> Verdict {
-    let verdict = judge(observed, stated);
-    match observed.order {
-        Some(order) if order > f64::from(stated) => Verdict {
-            status: CheckStatus::Pass,
-            ..verdict
-        },
-        _ => verdict,
+pub(super) fn judge_at_least(observed: &Observed, stated: u32) -> Finding {
+    let mut finding = judge(observed, stated);
+    if observed.order > Some(f64::from(stated)) {
+        finding.status = CheckStatus::Pass;
     }
+    finding
 }

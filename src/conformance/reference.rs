@@ -1,5 +1,6 @@
 //! Where a system really is: a high-order method that shares nothing with those under test.
 
+use super::subject::{distance, largest};
 use crate::physics::{State, System};
 use crate::truth::converged::{Gragg, Precise, Stepper};
 
@@ -18,13 +19,9 @@ impl Reference {
     /// At `span / n`, 2 `span / n`, ..., `span` seconds.
     pub fn new(system: &dyn System, start: &State, span: f64, n: usize) -> Self {
         let [coarse, states] = [STEPS, 2 * STEPS].map(|steps| run(system, start, span, n, steps));
-        let off = coarse.iter().zip(&states).fold(0.0, |most: f64, (a, b)| {
-            most.max(super::subject::distance(a, b))
-        });
+        let off = apart(&coarse, &states);
         // Never better than the doubles it is told in.
-        let size = states
-            .iter()
-            .fold(0.0, |most: f64, state| most.max(largest(state)));
+        let size = states.iter().map(largest).fold(0.0, f64::max);
         Self {
             states,
             bar: off.max(f64::EPSILON * size),
@@ -32,10 +29,10 @@ impl Reference {
     }
 }
 
-/// The largest magnitude in a state.
-pub(super) fn largest(state: &State) -> f64 {
-    let values = state.x.iter().chain(&state.v);
-    values.fold(0.0, |most: f64, value| most.max(value.abs()))
+/// The largest distance of states at the same instants.
+fn apart(a: &[State], b: &[State]) -> f64 {
+    let distances = a.iter().zip(b).map(|(a, b)| distance(a, b));
+    distances.fold(0.0, f64::max)
 }
 
 fn run(system: &dyn System, start: &State, span: f64, n: usize, steps: usize) -> Vec<State> {
@@ -58,16 +55,10 @@ fn run(system: &dyn System, start: &State, span: f64, n: usize, steps: usize) ->
 #[cfg(test)]
 mod tests {
     use super::super::order::{HORIZON, INSTANTS};
-    use super::super::subject::distance;
     use super::super::systems::{Driven, swinging_triangle};
     use super::*;
     use crate::physics::ParticleSystem;
     use crate::scene::DampingModel;
-
-    fn apart(a: &[State], b: &[State]) -> f64 {
-        let distances = a.iter().zip(b).map(|(a, b)| distance(a, b));
-        distances.fold(0.0, f64::max)
-    }
 
     #[test]
     fn the_reference_is_right_to_its_bar() {

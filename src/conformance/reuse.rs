@@ -1,9 +1,8 @@
 //! Reuse: what an integrator keeps from one step is used in the next only where it fits.
 
-use super::finding::Verdict;
 use super::subject::{advance, distance};
 use super::systems::Driven;
-use super::{Law, SOLVED_TO};
+use super::{Finding, Law, SOLVED_TO};
 
 /// s.
 const STEP: f64 = 0.05;
@@ -19,7 +18,7 @@ pub(super) const LAW: Law = Law {
     judge: |subject| {
         let start = Driven::start();
         let mut first = start.clone();
-        advance(subject.fresh().as_mut(), &Driven, STEP, 1, &mut first)?;
+        subject.advance(&Driven, STEP, 1, &mut first)?;
         let mut other_place = first.clone();
         for x in &mut other_place.x {
             *x += 0.25;
@@ -36,16 +35,13 @@ pub(super) const LAW: Law = Law {
             advance(used.as_mut(), &Driven, STEP, 1, &mut start.clone())?;
             let (mut by_used, mut by_fresh) = (state.clone(), state.clone());
             advance(used.as_mut(), &Driven, STEP, 1, &mut by_used)?;
-            advance(subject.fresh().as_mut(), &Driven, STEP, 1, &mut by_fresh)?;
+            subject.advance(&Driven, STEP, 1, &mut by_fresh)?;
             let found = distance(&by_used, &by_fresh);
             if found > off {
                 (off, where_) = (found, what);
             }
         }
-        Ok(Verdict::at_most(
-            off,
-            BOUND,
-            &format!("used before, then handed {where_}"),
-        ))
+        let what = format!("used before, then handed {where_}");
+        Ok(Finding::at_most(off, BOUND, &what))
     },
 };

@@ -1,11 +1,9 @@
 //! Reversal: forward, flip the velocities, forward, flip, and back at the start.
 
-use super::finding::Verdict;
-use super::subject::{advance, distance};
+use super::subject::distance;
 use super::symplecticity::LARGE_STEP;
-use super::systems::swinging_triangle;
-use super::{Law, SOLVED_TO};
-use crate::physics::ParticleSystem;
+use super::systems::{built, swinging_triangle};
+use super::{Finding, Law, SOLVED_TO};
 use crate::scene::DampingModel;
 
 /// Steps each way.
@@ -20,21 +18,11 @@ pub(super) const LAW: Law = Law {
     derivation: "twenty steps solved to 1e-12, errors stretched by up to ten; explicit ones leave \
                  5e-15 of rounding",
     judge: |subject| {
-        let scene = swinging_triangle(0.0, DampingModel::Axial);
-        let (system, start) = (
-            ParticleSystem::new(&scene),
-            ParticleSystem::initial_state(&scene),
-        );
+        let (system, start) = built(&swinging_triangle(0.0, DampingModel::Axial));
         let mut state = start.clone();
         let mut moved = 0.0_f64;
         for _ in 0..2 {
-            advance(
-                subject.fresh().as_mut(),
-                &system,
-                LARGE_STEP,
-                STEPS,
-                &mut state,
-            )?;
+            subject.advance(&system, LARGE_STEP, STEPS, &mut state)?;
             for (x, from) in state.x.iter().zip(&start.x) {
                 moved = moved.max((x - from).abs());
             }
@@ -44,18 +32,11 @@ pub(super) const LAW: Law = Law {
         }
         // Half a second of swinging: every method of the registry moves by 0.9 m or more.
         if moved < 0.3 {
-            return Ok(Verdict::fail(
-                moved,
-                0.3,
-                "returns, since it has hardly moved",
-            ));
+            let message = "returns, since it has hardly moved";
+            return Ok(Finding::of(false, moved, 0.3, message));
         }
         let off = distance(&state, &start);
-        Ok(Verdict::of_property(
-            subject.claims.reversible,
-            off,
-            BOUND,
-            "reversible",
-        ))
+        let claimed = subject.claims.reversible;
+        Ok(Finding::of_property(claimed, off, BOUND, "reversible"))
     },
 };

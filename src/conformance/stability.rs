@@ -1,21 +1,20 @@
-//! Stability: up to which z = h w the oscillator's amplitude stays bounded.
+//! Stability: up to which z = h w the oscillator's amplitude stays bounded, along a spring and across
+//! one: motion a method's Jacobian may not know of.
 
-use super::Law;
-use super::finding::Verdict;
 use super::subject::{Broken, Build, advance};
-use super::systems::Oscillator;
+use super::systems::{Across, Oscillator};
+use super::{Finding, Law};
 use crate::integrators::Stable;
-use crate::outcome::CheckStatus;
 use crate::physics::{State, System};
 
-pub(super) const LAW: Law = Law {
+pub(super) const ALONG: Law = Law {
     id: "stability",
     summary: "the undamped oscillator is stable exactly as far as claimed",
     derivation: "bisection of the one-step matrix's spectral radius to 1e-9; limits are published \
                  to six decimals",
     judge: |subject| {
         let Some(oscillator) = subject.claims.oscillator else {
-            return Ok(Verdict::skip("the oscillator"));
+            return Ok(Finding::skip("the oscillator"));
         };
         let stable = oscillator.stable;
         let upto = match stable {
@@ -43,17 +42,38 @@ pub(super) const LAW: Law = Law {
                 (found.is_none(), None, "always stable".to_owned())
             }
         };
-        let status = if holds {
-            CheckStatus::Pass
-        } else {
-            CheckStatus::Fail
+        let message = format!("claims to be {claim}, is {seen}");
+        Ok(Finding::of(holds, found, bound, message))
+    },
+};
+
+pub(super) const ACROSS: Law = Law {
+    id: "stability-across",
+    summary: "motion across a spring is as stable as claimed: as motion along it, unless its \
+              stiffness is left out",
+    derivation: "the one-step matrix 1e-6 inside and outside the limit: six decimals are published",
+    judge: |subject| {
+        let Some(oscillator) = subject.claims.oscillator else {
+            return Ok(Finding::skip("the oscillator"));
         };
-        Ok(Verdict::new(
-            status,
-            found,
-            bound,
-            format!("claims to be {claim}, is {seen}"),
-        ))
+        let at = |z: f64| unstable(subject.build, &Across { w: W }, z);
+        let (limit, holds) = match oscillator.stable {
+            Stable::AlwaysAlong { across: limit } | Stable::Below(limit) => {
+                let holds = !at(limit - PUBLISHED)? && at(limit + PUBLISHED)?;
+                (Some(limit), holds)
+            }
+            Stable::Always => {
+                let mut holds = true;
+                for z in [0.1, 1.0, 2.1, 10.0] {
+                    holds &= !at(z)?;
+                }
+                (None, holds)
+            }
+            Stable::Never => (None, at(0.1)?),
+        };
+        let (verb, stable) = (if holds { "is" } else { "is not" }, oscillator.stable);
+        let message = format!("{verb} stable across a spring as claimed: {stable:?}");
+        Ok(Finding::of(holds, None, limit, message))
     },
 };
 
@@ -61,7 +81,7 @@ pub(super) const LAW: Law = Law {
 const FAR: f64 = 10.0;
 const SMALL: f64 = 0.1;
 /// Limits have six decimals.
-pub(super) const PUBLISHED: f64 = 1e-6;
+const PUBLISHED: f64 = 1e-6;
 
 /// rad/s.
 pub(super) const W: f64 = 7.0;
@@ -77,15 +97,14 @@ const CELLS: u32 = 4_000;
 pub fn measured_limit(build: Build, zeta: f64, upto: f64) -> Result<Option<f64>, Broken> {
     let system = Oscillator { w: W, zeta };
     let cell = upto / f64::from(CELLS);
-    let mut first = None;
-    for i in 1..=CELLS {
+    let mut cells = 1..=CELLS;
+    let mut high = loop {
+        let Some(i) = cells.next() else {
+            return Ok(None);
+        };
         if unstable(build, &system, cell * f64::from(i))? {
-            first = Some(cell * f64::from(i));
-            break;
+            break cell * f64::from(i);
         }
-    }
-    let Some(mut high) = first else {
-        return Ok(None);
     };
     let mut low = high - cell;
     while high - low > 1e-9 {
@@ -105,7 +124,7 @@ pub fn measured_limit(build: Build, zeta: f64, upto: f64) -> Result<Option<f64>,
 
 /// Whether a step of z / W is: a spectral radius above 1 by more than rounding. Beyond the limit
 /// itself it grows like the square root of how far z is beyond it, or linearly.
-pub(super) fn unstable(build: Build, system: &dyn System, z: f64) -> Result<bool, Broken> {
+fn unstable(build: Build, system: &dyn System, z: f64) -> Result<bool, Broken> {
     Ok(spectral_radius(one_step_matrix(build, system, z)?) > 1.0 + 1e-12)
 }
 

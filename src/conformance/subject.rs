@@ -17,6 +17,17 @@ impl Subject<'_> {
     pub fn fresh(&self) -> Box<dyn Integrator> {
         (self.build)()
     }
+
+    /// Takes `n` steps of `h` with a fresh integrator.
+    pub fn advance(
+        &self,
+        system: &dyn System,
+        h: f64,
+        n: usize,
+        state: &mut State,
+    ) -> Result<(), Broken> {
+        advance(self.fresh().as_mut(), system, h, n, state)
+    }
 }
 
 /// Why an integrator could not be driven any further.
@@ -59,6 +70,12 @@ pub(super) fn advance(
         }
     }
     Ok(())
+}
+
+/// The largest magnitude in a state.
+pub(super) fn largest(state: &State) -> f64 {
+    let values = state.x.iter().chain(&state.v);
+    values.fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
 /// Largest difference between the positions or velocities of two states.

@@ -1,9 +1,8 @@
 //! Symplecticity: the one-step map's Jacobian S keeps the form, Sᵀ J S = J.
 
-use super::finding::Verdict;
-use super::subject::{Broken, Subject, advance};
-use super::systems::swinging_triangle;
-use super::{Law, SOLVED_TO};
+use super::subject::{Broken, Subject};
+use super::systems::{built, swinging_triangle};
+use super::{Finding, Law, SOLVED_TO};
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::DampingModel;
 use nalgebra::DMatrix;
@@ -26,29 +25,16 @@ pub(super) const LAW: Law = Law {
     derivation: "central differences over 2e-5 of steps solved to 1e-12 are good to 1e-7; explicit \
                  ones to 1e-10",
     judge: |subject| {
-        let defect = defect(subject)?;
-        Ok(Verdict::of_property(
-            subject.claims.symplectic,
-            defect,
-            BOUND,
-            "symplectic",
-        ))
+        let (claimed, defect) = (subject.claims.symplectic, defect(subject)?);
+        Ok(Finding::of_property(claimed, defect, BOUND, "symplectic"))
     },
 };
 
 /// Largest entry of Sᵀ J S - J over the free coordinates, with J = [[0, M], [-M, 0]] in (x, v).
 fn defect(subject: &Subject) -> Result<f64, Broken> {
-    let scene = swinging_triangle(0.0, DampingModel::Axial);
-    let (system, start) = (
-        ParticleSystem::new(&scene),
-        ParticleSystem::initial_state(&scene),
-    );
-    let masses: Vec<f64> = system
-        .inverse_mass()
-        .iter()
-        .filter(|w| **w > 0.0)
-        .map(|w| 1.0 / w)
-        .collect();
+    let (system, start) = built(&swinging_triangle(0.0, DampingModel::Axial));
+    let free_ones = system.inverse_mass().iter().filter(|w| **w > 0.0);
+    let masses: Vec<f64> = free_ones.map(|w| 1.0 / w).collect();
     let n = masses.len();
     let mut columns = Vec::new();
     for at in 0..2 * n {
@@ -57,7 +43,7 @@ fn defect(subject: &Subject) -> Result<f64, Broken> {
             if let Some(value) = free(&system, &mut state).nth(at) {
                 *value += by;
             }
-            advance(subject.fresh().as_mut(), &system, LARGE_STEP, 1, &mut state)?;
+            subject.advance(&system, LARGE_STEP, 1, &mut state)?;
             Ok(free(&system, &mut state).map(|value| *value).collect())
         };
         let (low, high) = (moved(-DELTA)?, moved(DELTA)?);
@@ -88,11 +74,7 @@ mod tests {
 
     #[test]
     fn the_step_is_large_for_the_stiffest_mode() {
-        let scene = swinging_triangle(0.0, DampingModel::Axial);
-        let (system, start) = (
-            ParticleSystem::new(&scene),
-            ParticleSystem::initial_state(&scene),
-        );
+        let (system, start) = built(&swinging_triangle(0.0, DampingModel::Axial));
         let mut jacobian = Jacobian::default();
         system.jacobian(0.0, &start.x, &start.v, Linearization::Exact, &mut jacobian);
         let w = system.inverse_mass();

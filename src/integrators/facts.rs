@@ -1,9 +1,10 @@
 //! A method's facts, from its coefficients alone: order, symmetry, stability, energy.
 
+use super::adaptive::Pair;
 use super::amplification::{Rational, band, oscillator_limit};
 use super::{
-    Amplification, Coefficients, DampingTreatment, EnergyLaw, Exact, Method, Oscillator, PerStep,
-    Scheme, Stable, Stage, Tableau,
+    Amplification, Coefficients, DampingTreatment, EnergyLaw, Method, Oscillator, PerStep, Scheme,
+    Stable, Stage, Tableau,
 };
 use crate::physics::Linearization;
 use nalgebra::Complex;
@@ -13,7 +14,7 @@ use nalgebra::Complex;
 /// ```
 /// use springcheck::conformance::{Claims, check};
 /// use springcheck::integrators::{Coefficients, Method, Row, Settings, Stable, Tableau};
-/// use springcheck::outcome::CheckStatus;
+/// use springcheck::measure::CheckStatus;
 ///
 /// let kutta3 = Method::new(Row {
 ///     id: "kutta3",
@@ -58,7 +59,7 @@ impl Method {
     /// Works all facts out. To be done once for a method: they live as long as the program.
     pub fn new(row: Row) -> Self {
         match row.coefficients {
-            Coefficients::Tableau(tableau) => {
+            Coefficients::Tableau(tableau) | Coefficients::Pair(Pair { tableau, .. }) => {
                 let evaluations = PerStep::Exactly(tableau.b.len() as u32);
                 of_tableau(row, &tableau, evaluations)
             }
@@ -74,6 +75,12 @@ const ROUNDING: f64 = 4e-14;
 
 fn is_zero(value: f64) -> bool {
     value.abs() < ROUNDING
+}
+
+/// Whether a method of this order meets free fall. Its errors are derivatives of the force, and vanish under
+/// a constant one, but for the first order's own h² a / 2.
+pub(crate) const fn is_exact(order: u32) -> bool {
+    order > 1
 }
 
 fn of_tableau(row: Row, tableau: &Tableau, evaluations: PerStep) -> Method {
@@ -97,7 +104,7 @@ fn of_tableau(row: Row, tableau: &Tableau, evaluations: PerStep) -> Method {
         },
         coefficients: row.coefficients,
         amplification: Amplification::Rational(rational),
-        exact: Exact::of_order(order),
+        exact: is_exact(order),
         source: row.source,
         not: row.not,
     }
@@ -148,7 +155,7 @@ fn of_composition(row: Row, stages: &'static [Stage], damping: DampingTreatment)
         },
         coefficients: row.coefficients,
         amplification: Amplification::Composition(stages, damping),
-        exact: Exact::of_order(order),
+        exact: is_exact(order),
         source: row.source,
         not: row.not,
     }

@@ -235,10 +235,10 @@ impl Integrator for Implicit {
     }
 
     fn linear_solves(&self) -> u64 {
-        self.newton.solves()
+        self.newton.solves
     }
 
     fn newton_iterations(&self) -> u64 {
-        self.newton.iterations()
+        self.newton.iterations
     }
 }

@@ -13,12 +13,14 @@ mod velocity_flow;
 pub use amplification::{Amplification, Rational};
 pub(crate) use amplification::{bisect, map, phi1};
 pub use facts::Row;
+pub(crate) use facts::is_exact;
 pub use implicit::{Implicit, Scheme};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
 
 use crate::physics::{ForceKinds, Refused, State, System};
 use crate::vector::axpy;
+use adaptive::Pair;
 use std::sync::LazyLock;
 
 /// Advances a state by one step.
@@ -124,7 +126,8 @@ pub struct Method {
     pub coefficients: Coefficients,
     /// On any linear system; `oscillator` is its summary.
     pub amplification: Amplification,
-    pub exact: Exact,
+    /// Follows free fall without any error but rounding, at every step size: a parabola stays one.
+    pub exact: bool,
     /// Paper or textbook.
     pub source: &'static str,
     /// What it must not be confused with.
@@ -140,21 +143,33 @@ pub enum Coefficients {
     Composition(&'static [Stage], DampingTreatment),
     /// A scheme of implicit stage equations.
     Implicit(Scheme),
+    /// An explicit Runge-Kutta method with an estimate of its error.
+    Pair(Pair),
 }
 
 impl Method {
     /// The kinds of forces it takes: as [`Integrator::takes`].
     pub const fn takes(&self) -> ForceKinds {
         match self.coefficients {
-            Coefficients::Tableau(_) => ForceKinds::ANY,
+            Coefficients::Tableau(_) | Coefficients::Pair(_) => ForceKinds::ANY,
             Coefficients::Composition(_, damping) => damping.takes(),
             Coefficients::Implicit(scheme) => scheme.takes(),
         }
     }
 
-    /// A fresh integrator.
+    /// What chooses its own steps, where it does; None of a method of fixed steps.
+    pub const fn pair(&self) -> Option<&Pair> {
+        match &self.coefficients {
+            Coefficients::Pair(pair) => Some(pair),
+            _ => None,
+        }
+    }
+
+    /// A fresh integrator of fixed steps; of a pair the formula that it advances
+    /// ([`Adaptive`](adaptive::Adaptive) chooses the steps).
     pub fn build(&self, settings: &Settings) -> Box<dyn Integrator> {
         match self.coefficients {
+            Coefficients::Pair(pair) => Box::new(RungeKutta::new(pair.tableau)),
             Coefficients::Tableau(tableau) => Box::new(RungeKutta::new(tableau)),
             Coefficients::Composition(stages, damping) => Box::new(Splitting::new(stages, damping)),
             Coefficients::Implicit(scheme) => Box::new(Implicit::new(scheme, settings)),
@@ -198,26 +213,6 @@ pub enum Stable {
     AlwaysAlong {
         across: f64,
     },
-}
-
-/// Which motions a method follows without any error but rounding, at every step size.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Exact {
-    Nothing,
-    /// Under a force that depends on nothing: free fall is a parabola, and stays one.
-    ConstantForce,
-}
-
-impl Exact {
-    /// What the order implies for a method whose errors are derivatives of the force: under a
-    /// constant force all of them vanish, but for the first order's own h² a / 2.
-    pub const fn of_order(order: u32) -> Self {
-        if order > 1 {
-            Self::ConstantForce
-        } else {
-            Self::Nothing
-        }
-    }
 }
 
 /// A function of z = h w.
@@ -269,7 +264,7 @@ impl Default for Settings {
     }
 }
 
-/// Every method, in the order reports list them.
+/// Every method, in the order reports list them: those of [fixed](fixed) steps, then [`pairs`].
 pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
     let rows = [
         runge_kutta::EXPLICIT_EULER,
@@ -289,6 +284,8 @@ pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
         implicit::IMPLICIT_MIDPOINT,
         implicit::TRAPEZOIDAL,
         implicit::TR_BDF2,
+        adaptive::DORMAND_PRINCE_54,
+        adaptive::DOP853,
     ];
     rows.map(Method::new).to_vec()
 });
@@ -298,9 +295,24 @@ pub fn find(id: &str) -> Option<&'static Method> {
     REGISTRY.iter().find(|method| method.id == id)
 }
 
-/// All ids, in registry order.
-pub fn ids() -> Vec<&'static str> {
-    REGISTRY.iter().map(|method| method.id).collect()
+/// Those that take the step they are given: maps of a state, which can be replayed and have a limit in h.
+pub fn fixed() -> &'static [Method] {
+    halves().0
+}
+
+/// Those that choose their steps from a tolerance.
+pub fn pairs() -> &'static [Method] {
+    halves().1
+}
+
+fn halves() -> (&'static [Method], &'static [Method]) {
+    let fixed = REGISTRY.partition_point(|method| method.pair().is_none());
+    REGISTRY.split_at(fixed)
+}
+
+/// Their ids.
+pub fn ids(methods: &[Method]) -> Vec<&'static str> {
+    methods.iter().map(|method| method.id).collect()
 }
 
 /// Refuses forces that an integrator would silently get wrong.

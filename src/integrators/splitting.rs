@@ -1,6 +1,6 @@
 //! Splitting methods: one stepper, a list of kicks and drifts a method.
 
-use super::velocity_flow::VelocityFlow;
+use super::velocity_flow::{HALVINGS, VelocityFlow};
 use super::{Coefficients, Integrator, Row, StepError, axpy, fit, refuse};
 use crate::physics::{ForceKinds, State, System};
 use crate::vector;
@@ -218,7 +218,8 @@ impl Splitting {
             self.kept.valid = true;
         }
         if system.kinds().depends_on_velocity() {
-            self.flow.advance(system, t, h, &self.kept.a, state)?;
+            self.flow
+                .advance(system, t, h, &self.kept.a, state, HALVINGS)?;
         } else if system.kinds().has(ForceKinds::DRIVEN) {
             // The power is linear in v, and v is linear in time: the trapezoid is exact.
             let before = system.injected_power(t, &state.x, &state.v);

@@ -12,7 +12,7 @@
 use super::{StepError, axpy, fit, largest, phi1, worst_particle};
 use crate::krylov::Space;
 use crate::physics::{ForceKinds, State, System};
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, Dyn, SymmetricEigen};
 
 /// Taylor terms before Lanczos takes over.
 const TAYLOR_TERMS: usize = 12;
@@ -21,7 +21,7 @@ const KRYLOV: usize = 60;
 /// Its size is tried every so many vectors: an eigenproblem each time.
 const TRIED: usize = 6;
 /// Halvings before the damping counts as too stiff: 4,096 pieces.
-const HALVINGS: u32 = 12;
+pub(super) const HALVINGS: u32 = 12;
 
 /// Scratch of the flow.
 #[derive(Debug, Clone, Default)]
@@ -36,24 +36,12 @@ pub(super) struct VelocityFlow {
 
 impl VelocityFlow {
     /// Advances `state.v` and the work over `h` at frozen `state.x`; `a0` is the acceleration at
-    /// rest, length n.
+    /// rest, length n. What needs too large a Krylov space is taken in two halves, `halvings` times.
     ///
     /// # Errors
-    /// [`StepError::DampingTooStiff`] when even small pieces need too large a Krylov space; the
-    /// state is then half way.
+    /// [`StepError::DampingTooStiff`] when even the smallest pieces need too large a space; the state is
+    /// then half way.
     pub(super) fn advance(
-        &mut self,
-        system: &dyn System,
-        t: f64,
-        h: f64,
-        a0: &[f64],
-        state: &mut State,
-    ) -> Result<(), StepError> {
-        self.piece(system, t, h, a0, state, HALVINGS)
-    }
-
-    /// A flow is that of its first half followed by that of its second.
-    fn piece(
         &mut self,
         system: &dyn System,
         t: f64,
@@ -63,13 +51,8 @@ impl VelocityFlow {
         halvings: u32,
     ) -> Result<(), StepError> {
         let n = a0.len();
-        for buffer in [
-            &mut self.r,
-            &mut self.term,
-            &mut self.next,
-            &mut self.phi1,
-            &mut self.phi2,
-        ] {
+        let Self { r, term, next, .. } = self;
+        for buffer in [r, term, next, &mut self.phi1, &mut self.phi2] {
             fit(buffer, n);
         }
         system.damping(t, &state.x, &state.v, &mut self.r);
@@ -84,13 +67,12 @@ impl VelocityFlow {
             summed || self.lanczos(system, t, h, &state.x, speed, CHANGE)
         };
         if !done {
-            let halvings = halvings
-                .checked_sub(1)
-                .ok_or_else(|| StepError::DampingTooStiff {
-                    particle: worst_particle(&self.r),
-                })?;
-            self.piece(system, t, 0.5 * h, a0, state, halvings)?;
-            return self.piece(system, t, 0.5 * h, a0, state, halvings);
+            let Some(halvings) = halvings.checked_sub(1) else {
+                let particle = worst_particle(&self.r);
+                return Err(StepError::DampingTooStiff { particle });
+            };
+            self.advance(system, t, 0.5 * h, a0, state, halvings)?;
+            return self.advance(system, t, 0.5 * h, a0, state, halvings);
         }
         // The displacement ∫ v, then the work of a0 along it; what it exceeds the gain in kinetic
         // energy by was dissipated.
@@ -178,13 +160,13 @@ impl VelocityFlow {
             let closed = beta <= 1e-13 * space.image || beta == 0.0;
             if closed || (k + 1) % TRIED == 0 {
                 let projected = DMatrix::from_fn(k + 1, k + 1, |i, j| h * space.tridiagonal(i, j));
-                let Some(small) = Small::new(projected) else {
+                let Some(small) = solved(projected) else {
                     return false;
                 };
-                if actions.whole && small.largest() > EXPONENT {
+                if actions.whole && small.eigenvalues.iter().any(|z| *z > EXPONENT) {
                     return false;
                 }
-                let (c1, c2) = small.actions(actions);
+                let [c1, c2] = [actions.first, actions.second].map(|phi| act(&small, phi));
                 // What the next vector would add, by the last component (Saad 1992, eq. 28).
                 let missing = (h * beta).abs() * c1[k].abs();
                 let per_step = if actions.whole { 1.0 } else { h.abs() };
@@ -230,40 +212,26 @@ const VELOCITY: Actions = Actions {
 /// Exponents beyond have no double; of half a step they may.
 const EXPONENT: f64 = 700.0;
 
-/// The projected problem: a symmetric tridiagonal matrix h T.
-struct Small(SymmetricEigen<f64, nalgebra::Dyn>);
+/// Eigenvalues and vectors of the projected problem, a symmetric tridiagonal matrix h T. None of what is
+/// not finite, on which an eigensolver might not end.
+fn solved(tridiagonal: DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
+    let finite = tridiagonal.iter().all(|c| c.is_finite());
+    let sweeps = 100 * tridiagonal.nrows();
+    finite
+        .then(|| SymmetricEigen::try_new(tridiagonal, f64::EPSILON, sweeps))
+        .flatten()
+}
 
-impl Small {
-    /// None with what is not finite, on which an eigensolver might not end.
-    fn new(tridiagonal: DMatrix<f64>) -> Option<Self> {
-        if tridiagonal.iter().any(|c| !c.is_finite()) {
-            return None;
-        }
-        let sweeps = 100 * tridiagonal.nrows();
-        SymmetricEigen::try_new(tridiagonal, f64::EPSILON, sweeps).map(Self)
-    }
-
-    /// The largest eigenvalue of h T.
-    fn largest(&self) -> f64 {
-        let values = self.0.eigenvalues.iter();
-        values.fold(f64::NEG_INFINITY, |m, z| m.max(*z))
-    }
-
-    /// Both functions of hT on e1.
-    fn actions(&self, actions: Actions) -> (Vec<f64>, Vec<f64>) {
-        let (values, vectors) = (&self.0.eigenvalues, &self.0.eigenvectors);
-        let act = |phi: fn(f64) -> f64, row: usize| {
-            let terms = values.iter().enumerate();
-            terms
-                .map(|(k, &z)| vectors[(row, k)] * vectors[(0, k)] * phi(z))
-                .sum()
-        };
-        let rows = 0..values.len();
-        (
-            rows.clone().map(|row| act(actions.first, row)).collect(),
-            rows.map(|row| act(actions.second, row)).collect(),
-        )
-    }
+/// A function of h T on e1.
+fn act(small: &SymmetricEigen<f64, Dyn>, phi: fn(f64) -> f64) -> Vec<f64> {
+    let (values, vectors) = (&small.eigenvalues, &small.eigenvectors);
+    let row = |row: usize| {
+        let terms = values.iter().enumerate();
+        terms
+            .map(|(k, &z)| vectors[(row, k)] * vectors[(0, k)] * phi(z))
+            .sum()
+    };
+    (0..values.len()).map(row).collect()
 }
 
 /// Root of the least free mass: turns a speed into the mass metric, from below.

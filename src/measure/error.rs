@@ -1,8 +1,19 @@
 //! How far a run is from the truth, and from another run.
 
-use crate::outcome::{Deviation, Spread};
 use crate::trajectory::Trajectory;
 use crate::truth::{States, farthest};
+use serde::{Deserialize, Serialize};
+
+/// Largest distance of a particle from where it truly is (m) or from its true velocity (m/s), over
+/// the recorded instants up to the truth's horizon.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Spread {
+    /// At the last of these instants.
+    #[serde(rename = "final")]
+    pub last: f64,
+    pub max: f64,
+    pub rms: f64,
+}
 
 /// What is true at certain steps.
 #[derive(Debug, Clone, Default)]
@@ -52,6 +63,16 @@ fn spread(distances: &[f64]) -> Option<Spread> {
         max,
         rms,
     })
+}
+
+/// Largest distance over the particles, metres, over the instants both engines recorded.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Deviation {
+    #[serde(rename = "final")]
+    pub last: f64,
+    pub max: f64,
+    /// When it first passed the tolerance (1 % of the scene's size); null if never.
+    pub first_exceeds_s: Option<f64>,
 }
 
 /// The distance at which `first_exceeds_s` is read, as a share of the scene's size, or of the way

@@ -1,6 +1,6 @@
 //! What a trajectory shows, as numbers: pure functions of recorded states.
 
-pub mod cost;
+mod check;
 mod energy;
 mod error;
 pub mod identify;
@@ -11,7 +11,10 @@ pub mod stability;
 mod trend;
 pub mod twin;
 
-pub use energy::{EnergySeries, judge};
-pub use error::{Errors, Known, TOLERANCE, deviation, errors, reach};
-pub use momentum::momentum;
+pub use check::{Check, CheckStatus};
+pub use energy::{Energy, EnergySeries, judge};
+pub use error::{Deviation, Errors, Known, Spread, TOLERANCE, deviation, errors, reach};
+pub(crate) use momentum::totals;
+pub use momentum::{Momentum, momentum};
 pub use scale::{divergence_limit, energy_scale};
+pub use trend::EnergyClass;

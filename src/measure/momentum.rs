@@ -1,10 +1,20 @@
 //! Linear and angular momentum where the scene conserves them.
 
-use crate::outcome::Momentum;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::trajectory::Trajectory;
 use crate::truth::farthest;
+use serde::{Deserialize, Serialize};
+
+/// Largest departure from the initial value; null where the scene does not conserve it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Momentum {
+    #[serde(rename = "linear_error_max_kg_m_s")]
+    pub linear_error_max: Option<f64>,
+    /// About the origin.
+    #[serde(rename = "angular_error_max_kg_m2_s")]
+    pub angular_error_max: Option<f64>,
+}
 
 /// Largest departures from the initial values over the recorded instants; each None where
 /// something is fixed or an effect does not keep it. None where velocities are not known.
@@ -18,10 +28,11 @@ pub fn momentum(scene: &Scene, system: &ParticleSystem, run: &Trajectory) -> Opt
     if run.is_empty() || !run.has_velocities() || !(linear || angular) {
         return None;
     }
-    let start = totals(scene, run, 0);
+    let totals = |k: usize| totals(scene, run.x(k), run.v(k));
+    let start = totals(0);
     let (mut linear_error, mut angular_error) = (0.0_f64, 0.0_f64);
     for k in 1..run.len() {
-        let now = totals(scene, run, k);
+        let now = totals(k);
         linear_error = linear_error.max(farthest(&now.0, &start.0));
         angular_error = angular_error.max(farthest(&now.1, &start.1));
     }
@@ -31,10 +42,10 @@ pub fn momentum(scene: &Scene, system: &ParticleSystem, run: &Trajectory) -> Opt
     })
 }
 
-/// Momentum, and angular momentum about the origin.
-fn totals(scene: &Scene, run: &Trajectory, k: usize) -> ([f64; 3], [f64; 3]) {
+/// Momentum, kg m/s, and angular momentum about the origin, kg m²/s.
+pub(crate) fn totals(scene: &Scene, x: &[f64], v: &[f64]) -> ([f64; 3], [f64; 3]) {
     let (mut p, mut l) = ([0.0; 3], [0.0; 3]);
-    let states = run.x(k).chunks_exact(3).zip(run.v(k).chunks_exact(3));
+    let states = x.chunks_exact(3).zip(v.chunks_exact(3));
     for (particle, (x, v)) in scene.particles.iter().zip(states) {
         let m = particle.mass;
         for a in 0..3 {

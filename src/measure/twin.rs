@@ -7,7 +7,7 @@
 mod lockstep;
 mod start;
 
-use crate::outcome::{Check, CheckStatus};
+use crate::measure::{Check, CheckStatus};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::rapier::Settings;

@@ -47,9 +47,6 @@ fn bump(counter: &Cell<u64>) {
 }
 
 impl<S: System> System for Counting<S> {
-    fn dim(&self) -> usize {
-        self.inner.dim()
-    }
     fn inverse_mass(&self) -> &[f64] {
         self.inner.inverse_mass()
     }

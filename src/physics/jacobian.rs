@@ -31,7 +31,7 @@ pub(crate) struct PairBlock {
 
 /// By what the force was differentiated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Slope {
+pub enum Slope {
     Position = 0,
     Velocity = 1,
 }
@@ -86,16 +86,8 @@ impl Jacobian {
         for &(row, column, value) in self.triplets(by) {
             out[row] += factor * value * w[column];
         }
-        // In the order of the triplets, so that both ways give the same bits.
         for pair in self.pairs(by) {
-            let [i, j] = pair.ends.map(|end| 3 * end as usize);
-            for (row, column, sign) in [(i, j, 1.0), (i, i, -1.0), (j, j, -1.0), (j, i, 1.0)] {
-                for r in 0..3 {
-                    for c in 0..3 {
-                        out[row + r] += factor * (sign * pair.block[(r, c)]) * w[column + c];
-                    }
-                }
-            }
+            pair.for_each(|row, column, value| out[row] += factor * value * w[column]);
         }
     }
 
@@ -115,34 +107,31 @@ impl Jacobian {
         }
     }
 
-    /// Adds the blocks of an interaction that depends on the difference of two particles only:
-    /// `position` and `velocity` are ∂f_i/∂(x_j - x_i) and ∂f_i/∂(v_j - v_i), with f_j = -f_i.
-    pub fn add_pair(
-        &mut self,
-        i: usize,
-        j: usize,
-        position: Option<&Matrix3<f64>>,
-        velocity: Option<&Matrix3<f64>>,
-    ) {
+    /// Adds the block of an interaction that depends on the difference of two particles only:
+    /// ∂f_i/∂(x_j - x_i), or ∂f_i/∂(v_j - v_i), with f_j = -f_i.
+    pub fn add_pair(&mut self, by: Slope, ends: [usize; 2], block: Matrix3<f64>) {
+        let ends = ends.map(|end| end as u32);
+        let pair = PairBlock { ends, block };
         if let Some(pairs) = &mut self.pairs {
-            for (block, out) in [position, velocity].into_iter().zip(pairs) {
-                out.extend(block.map(|&block| PairBlock {
-                    ends: [i as u32, j as u32],
-                    block,
-                }));
-            }
-            return;
+            return pairs[by as usize].push(pair);
         }
-        for (block, out) in [
-            (position, &mut self.position),
-            (velocity, &mut self.velocity),
-        ] {
-            let Some(block) = block else { continue };
-            for (row, column, sign) in [(i, j, 1.0), (i, i, -1.0), (j, j, -1.0), (j, i, 1.0)] {
-                for r in 0..3 {
-                    for c in 0..3 {
-                        out.push((3 * row + r, 3 * column + c, sign * block[(r, c)]));
-                    }
+        let out = match by {
+            Slope::Position => &mut self.position,
+            Slope::Velocity => &mut self.velocity,
+        };
+        pair.for_each(|row, column, value| out.push((row, column, value)));
+    }
+}
+
+impl PairBlock {
+    /// Every entry (row, column, value).
+    #[inline]
+    fn for_each(&self, mut entry: impl FnMut(usize, usize, f64)) {
+        let [i, j] = self.ends.map(|end| 3 * end as usize);
+        for (row, column, sign) in [(i, j, 1.0), (i, i, -1.0), (j, j, -1.0), (j, i, 1.0)] {
+            for r in 0..3 {
+                for c in 0..3 {
+                    entry(row + r, column + c, sign * self.block[(r, c)]);
                 }
             }
         }

@@ -10,8 +10,8 @@ mod particles;
 mod state;
 
 pub use counting::{Counting, Evaluations};
-pub use jacobian::{Jacobian, Linearization, Triplets};
-pub(crate) use jacobian::{PairBlock, Slope};
+pub(crate) use jacobian::PairBlock;
+pub use jacobian::{Jacobian, Linearization, Slope, Triplets};
 pub use kinds::{ForceKinds, Refused};
 pub use particles::{Effects, ParticleSystem};
 pub use state::{Power, State, Work};
@@ -25,11 +25,13 @@ pub use state::{Power, State, Work};
 /// How the force depends on v is for the system to say ([`kinds`](System::kinds)): some methods treat
 /// it as linear, f(t, x, v) = f(t, x, 0) + D(x) v with D symmetric, and refuse any other.
 pub trait System {
-    /// Number of coordinates.
-    fn dim(&self) -> usize;
-
     /// 1/m of each coordinate, 1/kg; 0 for a fixed one.
     fn inverse_mass(&self) -> &[f64];
+
+    /// Number of coordinates.
+    fn dim(&self) -> usize {
+        self.inverse_mass().len()
+    }
 
     /// Overwrites `a` with the acceleration, m/s², and returns the powers at this point, W.
     ///

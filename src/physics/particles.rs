@@ -119,10 +119,6 @@ impl ParticleSystem {
 }
 
 impl System for ParticleSystem {
-    fn dim(&self) -> usize {
-        self.inverse_mass.len()
-    }
-
     fn inverse_mass(&self) -> &[f64] {
         &self.inverse_mass
     }

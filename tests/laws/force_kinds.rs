@@ -3,15 +3,17 @@
 
 use crate::testkit::{Random, everything, force, method, sample};
 use nalgebra::{DMatrix, DVector};
-use springcheck::crosscheck::{self, Choice, Plan, Quiet};
-use springcheck::integrators::adaptive::{self, Adaptive};
-use springcheck::integrators::{Method, REGISTRY, Settings, StepError};
-use springcheck::outcome::Status;
+use springcheck::integrators::adaptive::Adaptive;
+use springcheck::integrators::{Method, Settings, StepError, fixed, pairs};
 use springcheck::physics::effects::{self, Effect, EffectRow};
 use springcheck::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem};
 use springcheck::physics::{Power, State, System};
 use springcheck::scene::{self, DampingModel};
 use springcheck::solvers::Solver;
+use springcheck::solvers::Status;
+use springcheck::verbs;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::{Choice, Plan};
 
 /// f = q B v x e_z on every particle, with this q B, kg/s.
 struct Magnetic(f64, ForceKinds);
@@ -271,7 +273,7 @@ fn a_method_is_right_to_its_order_or_refuses() {
         (driven_on(), ForceKinds::NEGATIVE_DAMPING),
     ];
     for (problem, kind) in both {
-        for method in REGISTRY.iter() {
+        for method in fixed().iter() {
             let taken = right_or_refused(&problem, method).unwrap();
             assert_eq!(taken, method.takes().has(kind), "{}: {kind}", method.id);
             // Whoever asks beforehand hears the same, with names.
@@ -315,7 +317,8 @@ fn pairs_take_any_force() {
         charged(ForceKinds::GYROSCOPIC),
         dragged(ForceKinds::NON_LINEAR),
     ] {
-        for pair in adaptive::REGISTRY {
+        for method in pairs() {
+            let pair = method.pair().expect("a pair");
             let mut state = State::new(vec![0.0; 3], vec![1.0, 0.0, 0.0]);
             let mut stepper = Adaptive::new(pair, 1e-10, 1.0);
             while state.t < END {
@@ -323,7 +326,7 @@ fn pairs_take_any_force() {
             }
             // Some twenty steps of 1e-10 each.
             let off = crate::testkit::distance(&state.x, &problem.end);
-            assert!(off < 2e-9, "{}: {off:e}", pair.id);
+            assert!(off < 2e-9, "{}: {off:e}", method.id);
         }
     }
 }
@@ -349,7 +352,7 @@ impl System for Undeclared {
 #[test]
 fn who_says_nothing_is_taken_only_where_nothing_is_asked() {
     let system = Undeclared(charged(ForceKinds::GYROSCOPIC).system);
-    for method in REGISTRY.iter() {
+    for method in fixed().iter() {
         let mut state = State::new(vec![0.0; 3], vec![1.0, 0.0, 0.0]);
         let before = state.clone();
         let stepped = method
@@ -364,7 +367,7 @@ fn who_says_nothing_is_taken_only_where_nothing_is_asked() {
 #[test]
 fn a_run_shows_who_refused_what_and_why() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/oscillator/circle.yml");
-    let scene = scene::read(path.as_ref(), crosscheck::names()).expect("a scene");
+    let scene = scene::read(path.as_ref(), verbs::names()).expect("a scene");
     let mut choice = Choice::default_for(&scene);
     let build = |id| move || method(id).build(&Settings::default());
     choice.solvers = vec![

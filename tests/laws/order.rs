@@ -5,11 +5,9 @@ use crate::testkit::line::{Line, released};
 use crate::testkit::mutants::{self, Step, mutant};
 use crate::testkit::scenes::shipped;
 use crate::testkit::{built, method, own};
-use springcheck::integrators::{
-    DampingTreatment, Integrator, REGISTRY, Splitting, Stage, StepError,
-};
+use springcheck::integrators::{DampingTreatment, Integrator, Splitting, Stage, StepError, fixed};
+use springcheck::measure::CheckStatus;
 use springcheck::measure::order::{Measured, RATIOS, Reason, Study, Verdict, check, observed};
-use springcheck::outcome::CheckStatus;
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::Scene;
 use springcheck::truth::Motion;
@@ -40,7 +38,7 @@ fn every_method_is_of_its_order_on_designated_scenes() {
         on(path, |study, scene| {
             let description = scene.description.as_deref().unwrap_or_default();
             assert!(description.starts_with("Designated for measuring orders"));
-            for row in REGISTRY.iter() {
+            for row in fixed().iter() {
                 let Measured { observed, .. } = study.method(row);
                 assert_eq!(
                     observed.verdict,
@@ -68,7 +66,7 @@ fn no_method_falls_below_its_order_on_an_oscillator() {
         let (system, _) = built(&scene);
         let truth = released(&scene);
         let study = Study::of_scene(&scene, &system, &truth, f64::INFINITY);
-        for row in REGISTRY.iter() {
+        for row in fixed().iter() {
             let measured = study.method(row);
             let seen = &measured.observed;
             assert!(
@@ -94,7 +92,7 @@ fn free_fall_is_exact_from_order_two_up() {
         bar: 16.0 * f64::EPSILON * 123.0,
     };
     let study = Study::of_scene(&scene, &system, &truth, scene.duration);
-    for row in REGISTRY.iter() {
+    for row in fixed().iter() {
         let measured = study.method(row);
         let said = check(row.id, &measured);
         if row.order == 1 {
@@ -286,7 +284,7 @@ fn a_motion_damped_away_is_no_miss() {
         let (system, start) = built(&scene);
         let truth = Gauss::new(&system, start, duration, 4e-3);
         let study = Study::of_scene(&scene, &system, &truth, duration);
-        for row in REGISTRY.iter() {
+        for row in fixed().iter() {
             let measured = study.method(row);
             let seen = &measured.observed;
             // By the errors alone, as they come in.
@@ -348,7 +346,7 @@ fn forces_that_jump_are_no_miss() {
     let (scene, truth) = dropped(0.0);
     let (system, _) = built(&scene);
     let study = Study::of_scene(&scene, &system, &truth, f64::INFINITY);
-    for row in REGISTRY.iter() {
+    for row in fixed().iter() {
         let measured = study.method(row);
         let verdict = measured.observed.verdict;
         let alone = observed(&measured.points, row.order).verdict;
@@ -365,7 +363,7 @@ fn forces_that_jump_are_no_miss() {
     let (scene, truth) = dropped(0.5);
     let (system, _) = built(&scene);
     let study = Study::of_scene(&scene, &system, &truth, f64::INFINITY);
-    for row in REGISTRY.iter() {
+    for row in fixed().iter() {
         let seen = study.method(row).observed;
         assert_eq!(seen.verdict, Verdict::Meets, "{}: {seen:?}", row.id);
     }
@@ -415,7 +413,7 @@ fn threads_change_nothing() {
         let with = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             let all = || {
-                REGISTRY
+                fixed()
                     .iter()
                     .map(|row| study.method(row))
                     .collect::<Vec<_>>()

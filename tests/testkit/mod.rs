@@ -10,7 +10,7 @@ pub mod scenes;
 
 pub use springcheck::conformance::Build;
 pub use springcheck::conformance::systems::{Oscillator, free_triangle, swinging_triangle};
-use springcheck::integrators::{Integrator, Method, REGISTRY, Settings};
+use springcheck::integrators::{Integrator, Method, Settings, fixed};
 use springcheck::physics::effects::Effect;
 use springcheck::physics::{ForceKinds, ParticleSystem, Power, State, System};
 use springcheck::scene::{DampingModel, GravitationalPair, Scene, Wind};
@@ -40,7 +40,7 @@ pub fn own(method: &'static Method) -> impl Fn() -> Box<dyn Integrator> {
 }
 
 pub fn method(id: &str) -> &'static Method {
-    REGISTRY
+    fixed()
         .iter()
         .find(|m| m.id == id)
         .unwrap_or_else(|| panic!("no method {id}"))

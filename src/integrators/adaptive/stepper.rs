@@ -1,9 +1,7 @@
 //! The stepper all pairs share: try, judge, accept or try a shorter step.
 
 use super::Pair;
-use super::control::Controller;
-use super::scale::Scale;
-use super::trial::Trial;
+use super::trial::{Scale, Trial};
 use crate::integrators::StepError;
 use crate::physics::{State, System};
 
@@ -11,6 +9,57 @@ use crate::physics::{State, System};
 const TIGHTEST: f64 = 4.0 * f64::EPSILON;
 /// Steps shorter than this share of the time they start at are refused.
 const SPACING: f64 = 10.0 * f64::EPSILON;
+
+/// Errors aim at somewhat less than allowed.
+const SAFETY: f64 = 0.9;
+/// By what a step may change at once.
+const CHANGE: [f64; 2] = [0.2, 10.0];
+/// Errors below this are no reason for more.
+const LEAST: f64 = 1e-4;
+/// The proportional part, as in DOPRI5. DOP853 comes without by default, but has fewer steps rejected
+/// and smaller errors for its evaluations with it.
+const BETA: f64 = 0.04;
+
+/// Gustafsson's PI controller as in DOPRI5 (Gustafsson 1991, ACM TOMS 17; Hairer, Nørsett, Wanner,
+/// Solving ODEs II, IV.2, and I, II.4): h times 0.9 e^-(1/k - 3 β / 4) e'^β, with e' the error of the
+/// step before; errors are in units of what is allowed.
+#[derive(Debug, Clone)]
+struct Controller {
+    alpha: f64,
+    /// Of the last accepted step.
+    before: f64,
+    /// The last attempt failed.
+    failed: bool,
+}
+
+impl Controller {
+    /// For an estimate that falls as h^k.
+    fn new(k: u32) -> Self {
+        Self {
+            alpha: 1.0 / f64::from(k) - 0.75 * BETA,
+            before: LEAST,
+            failed: false,
+        }
+    }
+
+    /// The step after one of `h` that was accepted with this error.
+    fn accepted(&mut self, h: f64, error: f64) -> f64 {
+        let factor = SAFETY * error.powf(-self.alpha) * self.before.powf(BETA);
+        self.before = error.max(LEAST);
+        // What has just failed is not tried again.
+        let most = if self.failed { 1.0 } else { CHANGE[1] };
+        self.failed = false;
+        h * factor.max(CHANGE[0]).min(most)
+    }
+
+    /// What to try after `h` was rejected with this error, which may be NaN.
+    fn rejected(&mut self, h: f64, error: f64) -> f64 {
+        self.failed = true;
+        let factor = SAFETY * error.powf(-self.alpha);
+        let factor = if factor.is_nan() { CHANGE[0] } else { factor };
+        h * factor.clamp(CHANGE[0], SAFETY)
+    }
+}
 
 /// A pair with a tolerance.
 ///
@@ -110,24 +159,6 @@ impl Adaptive {
             self.rejected += 1;
             h = self.controller.rejected(h, error);
         }
-    }
-
-    /// Advances a state by a step of `h` seconds, whatever its error, which is returned, as estimated,
-    /// in units of the tolerance. For those who hold the pair's formula against its order.
-    ///
-    /// # Errors
-    /// [`StepError::NotFinite`].
-    pub fn step_of(
-        &mut self,
-        system: &dyn System,
-        h: f64,
-        state: &mut State,
-    ) -> Result<f64, StepError> {
-        self.trial.begin(system, state);
-        let (scale, _) = self.started(system, state.t, h)?;
-        let error = self.trial.attempt(system, state.t, h, &scale) / self.tolerance;
-        let moved = self.trial.accept(h, state.t + h, state);
-        moved.map(|_| error).ok_or_else(|| self.not_finite())
     }
 
     /// Scale and step; at the first call from the state begun with, `left` seconds before the end.

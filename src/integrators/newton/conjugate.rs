@@ -5,6 +5,7 @@
 //! has rank 0 and no error, so the step is 0 and it spins to its cap; and negative curvature is
 //! what asks for another direction here. (Nocedal & Wright 2006, Numerical Optimization, 7.1.)
 
+use super::fit;
 use super::matrix::{Matrix, three};
 use nalgebra::Matrix3;
 
@@ -39,14 +40,10 @@ impl Conjugate {
             self.inverse.push(inverse);
         }
         let n = matrix.size();
-        for buffer in [
-            &mut self.left,
-            &mut self.preconditioned,
-            &mut self.direction,
-            &mut self.image,
-        ] {
-            super::super::fit(buffer, n);
-        }
+        fit(&mut self.left, n);
+        fit(&mut self.preconditioned, n);
+        fit(&mut self.direction, n);
+        fit(&mut self.image, n);
         true
     }
 

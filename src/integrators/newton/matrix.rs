@@ -1,24 +1,131 @@
-//! The matrix M - γ C - γ² K in blocks of 3 x 3, with a kept pattern.
-//!
-//! Where each piece of a Jacobian goes is looked up once ([`Pattern`]); after that, assembling is one
-//! pass that adds.
+//! The matrix M - γ C - γ² K in blocks of 3 x 3, with a kept pattern: a system emits the pieces of its
+//! Jacobian in the same places at every call, so where pairs go is looked up once.
 
-use super::pattern::{Pattern, Place};
+use super::worst_particle;
 use crate::physics::{Jacobian, PairBlock, Slope};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
+use std::cmp::Ordering;
+use std::ops::Range;
 
 /// Rows and columns are coordinates in threes, one block a particle, those without a free coordinate
 /// left out. A fixed coordinate in a block with free ones, or one that pads the last block, is a row
 /// and column of the identity.
 #[derive(Default)]
 pub(super) struct Matrix {
-    pattern: Pattern,
     /// A_jj.
     pub diagonal: Vec<Matrix3<f64>>,
     /// A_ij below the diagonal, column by column, rows ascending.
     pub lower: Vec<Matrix3<f64>>,
     /// A_ji of the same places; as long as `lower` in an unsymmetric matrix, else empty.
-    pub upper: Vec<Matrix3<f64>>,
+    upper: Vec<Matrix3<f64>>,
+    pattern: Pattern,
+}
+
+/// Where blocks are, and where what is emitted goes.
+#[derive(Default)]
+struct Pattern {
+    /// Which coordinates are free.
+    free: Vec<bool>,
+    /// From particle to block; `NOWHERE` without a free coordinate.
+    blocks: Vec<usize>,
+    /// The coordinate each row stands for, or would stand for where it pads the last block.
+    coordinates: Vec<usize>,
+    /// Rows of the identity.
+    pinned: Vec<bool>,
+    /// Where each column of `lower` begins, one more at the end.
+    starts: Vec<usize>,
+    /// Block rows of `lower`.
+    rows: Vec<u32>,
+    /// By position, then by velocity.
+    emitted: [Emitted; 2],
+}
+
+/// What was emitted last.
+#[derive(Default)]
+struct Emitted {
+    ends: Vec<[u32; 2]>,
+    /// Where each pair is in `lower`; `NOWHERE` where an end is fixed.
+    off: Vec<usize>,
+    entries: Vec<(usize, usize)>,
+}
+
+const NOWHERE: usize = usize::MAX;
+const BOTH: [Slope; 2] = [Slope::Position, Slope::Velocity];
+
+impl Pattern {
+    /// Whether this is the pattern of that Jacobian: the same places in the same order.
+    fn fits(&self, inverse_mass: &[f64], jacobian: &Jacobian) -> bool {
+        let free = inverse_mass.iter().map(|w| *w > 0.0);
+        free.eq(self.free.iter().copied())
+            && BOTH.iter().all(|&by| {
+                let emitted = &self.emitted[by as usize];
+                let ends = jacobian.pairs(by).iter().map(|pair| &pair.ends);
+                ends.eq(&emitted.ends) && entries(jacobian, by).eq(emitted.entries.iter().copied())
+            })
+    }
+
+    fn new(inverse_mass: &[f64], jacobian: &Jacobian) -> Self {
+        let free: Vec<bool> = inverse_mass.iter().map(|w| *w > 0.0).collect();
+        let mut count = 0..;
+        let place = |free: &[bool]| free.contains(&true).then(|| count.next()).flatten();
+        let blocks: Vec<usize> = (free.chunks(3).map(place))
+            .map(|block| block.unwrap_or(NOWHERE))
+            .collect();
+        let particles = (0..blocks.len()).filter(|&p| blocks[p] != NOWHERE);
+        let coordinates: Vec<usize> = particles.flat_map(|p| 3 * p..3 * p + 3).collect();
+        let pinned = coordinates.iter().map(|&at| free.get(at) != Some(&true));
+        let mut pattern = Self {
+            pinned: pinned.collect(),
+            blocks,
+            coordinates,
+            free,
+            ..Self::default()
+        };
+        // Which blocks below the diagonal there are, column by column.
+        let pairs = BOTH.iter().flat_map(|&by| jacobian.pairs(by));
+        let pairs = pairs.map(|pair| pair.ends.map(|end| pattern.block(end as usize)));
+        let entries_ = BOTH.iter().flat_map(|&by| entries(jacobian, by));
+        let entries_ = entries_.map(|(r, c)| [r, c].map(|at| pattern.block(at / 3)));
+        let mut below: Vec<(usize, usize)> = (pairs.chain(entries_))
+            .filter(|&[i, j]| i != j && i != NOWHERE && j != NOWHERE)
+            .map(|[i, j]| (i.min(j), i.max(j)))
+            .collect();
+        below.sort_unstable();
+        below.dedup();
+        pattern.starts = (0..=pattern.coordinates.len() / 3)
+            .map(|column| below.partition_point(|&(c, _)| c < column))
+            .collect();
+        pattern.rows = below.iter().map(|&(_, row)| row as u32).collect();
+        pattern.emitted = BOTH.map(|by| {
+            let pairs = jacobian.pairs(by).iter();
+            let blocks = |pair: &PairBlock| pair.ends.map(|end| pattern.block(end as usize));
+            Emitted {
+                ends: pairs.clone().map(|pair| pair.ends).collect(),
+                off: pairs.map(|pair| pattern.off(blocks(pair))).collect(),
+                entries: entries(jacobian, by).collect(),
+            }
+        });
+        pattern
+    }
+
+    fn block(&self, particle: usize) -> usize {
+        self.blocks.get(particle).copied().unwrap_or(NOWHERE)
+    }
+
+    /// Where two blocks meet in `lower`.
+    fn off(&self, [i, j]: [usize; 2]) -> usize {
+        let (column, row) = (i.min(j), i.max(j) as u32);
+        let Some(&[start, end]) = self.starts.get(column..).and_then(|s| s.first_chunk()) else {
+            return NOWHERE;
+        };
+        let found = self.rows[start..end].binary_search(&row);
+        found.map_or(NOWHERE, |at| start + at)
+    }
+}
+
+/// Places of a Jacobian's single entries.
+fn entries(jacobian: &Jacobian, by: Slope) -> impl Iterator<Item = (usize, usize)> {
+    jacobian.triplets(by).iter().map(|&(r, c, _)| (r, c))
 }
 
 impl Matrix {
@@ -31,16 +138,45 @@ impl Matrix {
         self.upper.is_empty()
     }
 
-    /// Rows and values of the blocks below the diagonal in a column of blocks.
+    /// Places and rows of the blocks below the diagonal in a column of blocks.
     #[inline(always)]
-    pub(super) fn below(&self, column: usize) -> (std::ops::Range<usize>, &[u32]) {
+    pub(super) fn below(&self, column: usize) -> (Range<usize>, &[u32]) {
         let range = self.pattern.starts[column]..self.pattern.starts[column + 1];
         (range.clone(), &self.pattern.rows[range])
     }
 
-    /// The coordinates of each block's rows, `usize::MAX` for those that stand for none.
-    pub(super) fn coordinates(&self) -> &[usize] {
-        &self.pattern.coordinates
+    /// From coordinates to rows; 0 in those that stand for none.
+    pub(super) fn gather(&self, values: &[f64], rows: &mut Vec<f64>) {
+        rows.clear();
+        let coordinates = self.pattern.coordinates.iter();
+        rows.extend(coordinates.map(|&at| values.get(at).copied().unwrap_or(0.0)));
+    }
+
+    /// From rows to coordinates; 0 in those that have none.
+    pub(super) fn scatter(&self, rows: &[f64], values: &mut [f64]) {
+        values.fill(0.0);
+        for (&at, row) in self.pattern.coordinates.iter().zip(rows) {
+            if let Some(value) = values.get_mut(at) {
+                *value = *row;
+            }
+        }
+    }
+
+    /// The particle with the largest entry.
+    pub(super) fn worst(&self, rows: &[f64]) -> usize {
+        let row = 3 * worst_particle(rows);
+        self.pattern.coordinates.get(row).map_or(0, |at| at / 3)
+    }
+
+    /// The largest of what the diagonal is in units of the masses, 1 at least.
+    pub(super) fn stiffest(&self, inverse_mass: &[f64]) -> f64 {
+        let mut stiffest = 1.0_f64;
+        for (row, &at) in self.pattern.coordinates.iter().enumerate() {
+            if let Some(w) = inverse_mass.get(at) {
+                stiffest = stiffest.max(self.diagonal[row / 3][(row % 3, row % 3)] * w);
+            }
+        }
+        stiffest
     }
 
     /// Overwrites it with the matrix of this Jacobian. Returns whether the pattern is a new one.
@@ -54,49 +190,46 @@ impl Matrix {
         if !kept {
             self.pattern = Pattern::new(inverse_mass, jacobian);
         }
-        let blocks = self.pattern.coordinates.len() / 3;
-        self.diagonal.clear();
-        self.diagonal.resize(blocks, Matrix3::zeros());
-        self.lower.clear();
-        self.lower.resize(self.pattern.rows.len(), Matrix3::zeros());
-        self.upper.clear();
+        let pattern = &self.pattern;
+        let restart = |blocks: &mut Vec<Matrix3<f64>>, n: usize| {
+            blocks.clear();
+            blocks.resize(n, Matrix3::zeros());
+        };
+        restart(&mut self.diagonal, pattern.coordinates.len() / 3);
+        restart(&mut self.lower, pattern.rows.len());
         let slopes = [(Slope::Velocity, -gamma), (Slope::Position, -gamma * gamma)];
-        let skew = slopes.iter().any(|&(by, _)| {
+        let skew = BOTH.iter().any(|&by| {
             let skew = |pair: &PairBlock| !is_symmetric(&pair.block);
-            jacobian.pairs(by).iter().any(skew)
-                || jacobian.triplets(by).iter().any(|(r, c, _)| r != c)
+            jacobian.pairs(by).iter().any(skew) || entries(jacobian, by).any(|(r, c)| r != c)
         });
-        if skew {
-            self.upper.resize(self.lower.len(), Matrix3::zeros());
-        }
-        for (row, &at) in self.pattern.coordinates.iter().enumerate() {
-            if let Some(&w) = inverse_mass.get(at).filter(|w| **w > 0.0) {
-                self.diagonal[row / 3][(row % 3, row % 3)] = 1.0 / w;
-            }
-        }
+        restart(&mut self.upper, if skew { pattern.rows.len() } else { 0 });
+        self.add_masses(1.0, inverse_mass);
+        let pattern = &self.pattern;
         for (by, factor) in slopes {
-            let places = &self.pattern.slopes[by as usize];
-            for (place, pair) in places.pairs.iter().zip(jacobian.pairs(by)) {
+            let off = &pattern.emitted[by as usize].off;
+            for (pair, &off) in jacobian.pairs(by).iter().zip(off) {
                 let block = pair.block * factor;
-                for end in place.ends {
-                    if let Some(diagonal) = self.diagonal.get_mut(end as usize) {
+                for end in pair.ends {
+                    if let Some(diagonal) = self.diagonal.get_mut(pattern.block(end as usize)) {
                         *diagonal -= block;
                     }
                 }
-                if let Some(lower) = self.lower.get_mut(place.off as usize) {
+                if let Some(lower) = self.lower.get_mut(off) {
                     *lower += block;
-                    if let Some(upper) = self.upper.get_mut(place.off as usize) {
+                    if let Some(upper) = self.upper.get_mut(off) {
                         *upper += block;
                     }
                 }
             }
-            for (&place, &(.., value)) in places.triplets.iter().zip(jacobian.triplets(by)) {
-                let value = factor * value;
-                match place {
-                    Place::Diagonal(at, cell) => self.diagonal[at as usize][cell] += value,
-                    Place::Lower(at, cell) => self.lower[at as usize][cell] += value,
-                    Place::Upper(at, cell) => self.upper[at as usize][cell] += value,
-                    Place::Nowhere => {}
+            for &(r, c, value) in jacobian.triplets(by) {
+                let [i, j] = [r, c].map(|at| pattern.block(at / 3));
+                let block = match i.cmp(&j) {
+                    Ordering::Equal => self.diagonal.get_mut(i),
+                    Ordering::Greater => self.lower.get_mut(pattern.off([i, j])),
+                    Ordering::Less => self.upper.get_mut(pattern.off([i, j])),
+                };
+                if let Some(block) = block {
+                    block[(r % 3, c % 3)] += factor * value;
                 }
             }
         }
@@ -110,36 +243,33 @@ impl Matrix {
         !kept
     }
 
+    /// Makes rows and columns of fixed coordinates those of the identity.
     fn pin(&mut self) {
-        if self.pattern.pinned.is_empty() {
+        let Self {
+            diagonal,
+            lower,
+            upper,
+            pattern,
+        } = self;
+        if !pattern.pinned.contains(&true) {
             return;
         }
-        for &row in &self.pattern.pinned {
-            let block = &mut self.diagonal[row / 3];
-            block.row_mut(row % 3).fill(0.0);
-            block.column_mut(row % 3).fill(0.0);
-            block[(row % 3, row % 3)] = 1.0;
-        }
-        let pinned = &self.pattern.pinned;
-        for column in 0..self.diagonal.len() {
-            for at in self.pattern.starts[column]..self.pattern.starts[column + 1] {
-                let row = self.pattern.rows[at] as usize;
+        for column in 0..diagonal.len() {
+            for axis in (0..3).filter(|axis| pattern.pinned[3 * column + axis]) {
+                clear_row(&mut diagonal[column], axis);
+                clear_column(&mut diagonal[column], axis);
+                diagonal[column][(axis, axis)] = 1.0;
+            }
+            for at in pattern.starts[column]..pattern.starts[column + 1] {
+                let row = pattern.rows[at] as usize;
                 for axis in 0..3 {
-                    let rows = pinned.binary_search(&(3 * row + axis)).is_ok();
-                    let columns = pinned.binary_search(&(3 * column + axis)).is_ok();
-                    if rows {
-                        self.lower[at].row_mut(axis).fill(0.0);
+                    if pattern.pinned[3 * row + axis] {
+                        clear_row(&mut lower[at], axis);
+                        upper.get_mut(at).map(|upper| clear_column(upper, axis));
                     }
-                    if columns {
-                        self.lower[at].column_mut(axis).fill(0.0);
-                    }
-                    if let Some(upper) = self.upper.get_mut(at) {
-                        if rows {
-                            upper.column_mut(axis).fill(0.0);
-                        }
-                        if columns {
-                            upper.row_mut(axis).fill(0.0);
-                        }
+                    if pattern.pinned[3 * column + axis] {
+                        clear_column(&mut lower[at], axis);
+                        upper.get_mut(at).map(|upper| clear_row(upper, axis));
                     }
                 }
             }
@@ -251,9 +381,17 @@ impl Matrix {
 }
 
 #[inline(always)]
-pub(super) fn three(z: &[f64], block: usize) -> nalgebra::Vector3<f64> {
+pub(super) fn three(z: &[f64], block: usize) -> Vector3<f64> {
     let z = &z[3 * block..3 * block + 3];
-    nalgebra::Vector3::new(z[0], z[1], z[2])
+    Vector3::new(z[0], z[1], z[2])
+}
+
+fn clear_row(block: &mut Matrix3<f64>, axis: usize) {
+    block.row_mut(axis).fill(0.0);
+}
+
+fn clear_column(block: &mut Matrix3<f64>, axis: usize) {
+    block.column_mut(axis).fill(0.0);
 }
 
 fn symmetric(block: &Matrix3<f64>) -> Matrix3<f64> {

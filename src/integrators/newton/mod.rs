@@ -1,30 +1,29 @@
 //! Newton's iteration for M (u - b) = γ f(t, y + γ u, u), globalised.
 //!
-//! Full steps wherever they descend ([`search`]), in directions that always do ([`regularise`]),
-//! over blocks of 3 x 3 ([`matrix`]) and the linear solver the matrix calls for ([`choose`]). Every
-//! decision depends on the equation at hand alone, so an integrator that was used gives the same
-//! bits as a fresh one.
+//! Full steps wherever they descend ([`search`]), in directions that always do, over blocks of 3 x 3
+//! ([`matrix`]) and the linear solver the matrix calls for ([`solver`]). Every decision depends on the
+//! equation at hand alone, so an integrator that was used gives the same bits as a fresh one.
+//!
+//! Newton's own direction A⁻¹ r descends where the symmetric part of A = M - γ C - γ² K is positive
+//! definite: r·d = dᵀ A d. Compressed springs and the turning of dampers can make it indefinite. Then
+//! what is negative is left out spring by spring ([`Linearization::Definite`]; Teran et al. 2005,
+//! SCA; for springs Choi & Ko 2002), and where a system cannot say what that is, masses are added
+//! until A is definite. Where A is definite nothing is changed, so convergence to a minimum stays
+//! quadratic.
 
-mod choose;
 mod conjugate;
-mod dense;
+mod factors;
 mod matrix;
-mod pattern;
-mod regularise;
 mod search;
 mod solver;
-mod sparse;
-mod stage;
 #[cfg(test)]
 mod tests;
 
-use super::{StepError, fit, worst_particle};
+use super::{StepError, fit, largest, worst_particle};
 use crate::physics::{Jacobian, Linearization, Power, Slope, State, System};
-use choose::Kind;
 use matrix::Matrix;
-use search::{Merit, Search};
-use solver::{Solved, Solver};
-use stage::{Stage, Trial};
+use search::{Merit, Stage, Trial};
+use solver::Solver;
 
 /// Quadratic convergence needs four to six, a way around hills a few dozen, along a valley that bends
 /// hundreds; more means it is not converging.
@@ -38,6 +37,11 @@ const FORCING: f64 = 1e-3;
 const LINEAR: f64 = 0.1;
 /// One plain solve, of the methods that do not iterate, is solved to rounding, by factors.
 const PLAIN: f64 = 0.0;
+/// The first share of the masses added, and how it grows.
+const SHIFT: f64 = 1.0;
+const GROWTH: f64 = 4.0;
+/// Tries with masses added: up to 4³⁰, 1e18 times the masses.
+const SHIFTS: u32 = 30;
 
 pub(super) struct Newton {
     tolerance: f64,
@@ -50,8 +54,10 @@ pub(super) struct Newton {
     /// The direction, over all coordinates and over the matrix's rows.
     d: Vec<f64>,
     z: Vec<f64>,
-    solves: u64,
-    iterations: u64,
+    /// Linear systems solved so far.
+    pub(super) solves: u64,
+    /// Iterations in all; a single linearised step is none.
+    pub(super) iterations: u64,
 }
 
 impl Newton {
@@ -68,15 +74,6 @@ impl Newton {
             solves: 0,
             iterations: 0,
         }
-    }
-
-    pub(super) fn solves(&self) -> u64 {
-        self.solves
-    }
-
-    /// Iterations of Newton's method in all; a single linearised step is none.
-    pub(super) fn iterations(&self) -> u64 {
-        self.iterations
     }
 
     /// Improves `u` until |r| <= tolerance (|M (u - b)| + |γ f|), or until it stops shrinking
@@ -141,7 +138,7 @@ impl Newton {
             let wanted = (0.1 * self.at.relative).min(FORCING);
             let left = 0.25 * self.tolerance / self.at.relative;
             let precise = wanted.max(left).min(0.1);
-            let own = self.newton(stage, precise)?;
+            let own = self.direction(stage, Linearization::Exact, precise)?;
             if !own {
                 if self.at.relative <= leap {
                     if self.leap(stage) {
@@ -152,7 +149,8 @@ impl Newton {
                 }
                 self.descend(stage, precise)?;
             }
-            while !self.advance(stage, merit, own) {
+            // A direction whose matrix had its negative part left out knows where to go, but not how far.
+            while !self.advance(stage, merit, !own) {
                 if merit == Merit::Slope {
                     return Err(self.not_converged(iteration));
                 }
@@ -164,27 +162,6 @@ impl Newton {
         Err(self.not_converged(MAX_ITERATIONS))
     }
 
-    /// Leaves the next iterate in `self.next`; false where no step is good.
-    fn advance(&mut self, stage: &Stage, merit: Merit, own: bool) -> bool {
-        let search = Search {
-            stage,
-            d: &self.d,
-            jacobian: &self.jacobian,
-            merit,
-            extend: !own,
-            tolerance: self.tolerance,
-        };
-        let (jacobian, size) = (&self.jacobian, &mut self.z);
-        let mut known = None;
-        search.run(&mut self.at, &mut self.next, |from| {
-            *known.get_or_insert_with(|| floor(stage, jacobian, from, size))
-        })
-    }
-
-    fn floor(&mut self, stage: &Stage) -> f64 {
-        floor(stage, &self.jacobian, &self.at, &mut self.z)
-    }
-
     fn not_converged(&self, iterations: u32) -> StepError {
         StepError::NotConverged {
             iterations,
@@ -192,6 +169,115 @@ impl Newton {
             tolerance: self.tolerance,
             particle: self.at.particle(),
         }
+    }
+
+    /// Overwrites `self.d` with A⁻¹ r at `self.at`, solved to `tolerance` at least. False where that need
+    /// not be a direction of descent: the matrix is not positive definite.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] where there is no memory for factors.
+    fn direction(
+        &mut self,
+        stage: &Stage,
+        kept: Linearization,
+        tolerance: f64,
+    ) -> Result<bool, StepError> {
+        self.assemble(stage, kept);
+        self.try_direction(stage, tolerance)
+    }
+
+    /// Overwrites `self.d` with a direction of descent where Newton's is none.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] where nothing makes the matrix definite.
+    fn descend(&mut self, stage: &Stage, tolerance: f64) -> Result<(), StepError> {
+        let mut definite = self.direction(stage, Linearization::Definite, tolerance)?;
+        let (mut shift, mut added) = (SHIFT, 0.0);
+        for _ in 0..SHIFTS {
+            if definite {
+                return Ok(());
+            }
+            let inverse_mass = stage.system.inverse_mass();
+            self.matrix.add_masses(shift - added, inverse_mass);
+            definite = self.try_direction(stage, tolerance)?;
+            (added, shift) = (shift, shift * GROWTH);
+        }
+        let particle = self.at.particle();
+        definite
+            .then_some(())
+            .ok_or(StepError::Singular { particle })
+    }
+
+    /// Newton's whole step with the exact matrix that [`direction`](Self::direction) left, definite or
+    /// not, in `self.next`; false unless Φ does not rise and a tenth of the residual is left.
+    ///
+    /// A plane chain under compression would rather buckle sideways, where nothing pushes it: Φ then has
+    /// a saddle, which solves the equation as well as a minimum does, and the directions of
+    /// [`descend`](Self::descend) come near it only linearly.
+    fn leap(&mut self, stage: &Stage) -> bool {
+        self.matrix.gather(&self.at.residual, &mut self.z);
+        if self.solver.solve_lu(&self.matrix, &mut self.z).is_err() {
+            return false;
+        }
+        self.solves += 1;
+        self.matrix.scatter(&self.z, &mut self.d);
+        self.leaps(stage)
+    }
+
+    fn assemble(&mut self, stage: &Stage, kept: Linearization) {
+        let (system, t) = (stage.system, stage.t);
+        self.jacobian.clear();
+        system.jacobian(t, &self.at.x, &self.at.u, kept, &mut self.jacobian);
+        self.assembled(system, stage.gamma);
+    }
+
+    /// The matrix of `self.jacobian`.
+    fn assembled(&mut self, system: &dyn System, gamma: f64) {
+        let inverse_mass = system.inverse_mass();
+        if self.matrix.assemble(inverse_mass, gamma, &self.jacobian) {
+            self.solver.forget();
+        }
+    }
+
+    /// False where the matrix is not positive definite, or too nearly so for a finite direction.
+    fn try_direction(&mut self, stage: &Stage, tolerance: f64) -> Result<bool, StepError> {
+        self.matrix.gather(&self.at.residual, &mut self.z);
+        let (solver, inverse_mass) = (&mut self.solver, stage.system.inverse_mass());
+        if !solver.solve(&self.matrix, inverse_mass, tolerance, &mut self.z)? {
+            return Ok(false);
+        }
+        self.solves += 1;
+        self.matrix.scatter(&self.z, &mut self.d);
+        // Scaled, for what has nearly come to rest: products would underflow. A direction that has
+        // itself underflowed to 0 leads nowhere, and is as good as any.
+        let (far, steep) = (largest(&self.d), largest(&self.at.residual));
+        let pairs = self.d.iter().zip(&self.at.residual);
+        let along: f64 = pairs.map(|(d, r)| (d / far) * (r / steep)).sum();
+        // NaN is not positive.
+        Ok(far == 0.0 || (along > 0.0 && far.is_finite()))
+    }
+
+    /// What a few roundings of positions and velocities do to the residual at `self.at`, in its norm:
+    /// eps (γ |∂f/∂x| max(|y|, |γ u|) + M (|u| + |b|)), with the last Jacobian.
+    fn floor(&mut self, stage: &Stage) -> f64 {
+        let (at, size) = (&self.at, &mut self.z);
+        size.clear();
+        size.resize(at.u.len(), 0.0);
+        // y and γ u may cancel: their sum is no better than they are.
+        let parts = stage.y.iter().zip(&at.u);
+        let reach: Vec<f64> = parts
+            .map(|(y, u)| y.abs().max((stage.gamma * u).abs()))
+            .collect();
+        let position = Slope::Position;
+        (self.jacobian).add_magnitudes(position, stage.gamma, &reach, size);
+        let mut squares = 0.0;
+        for (i, &w) in stage.system.inverse_mass().iter().enumerate() {
+            if w > 0.0 {
+                let size = size[i] + (at.u[i].abs() + stage.b[i].abs()) / w;
+                squares += size * size;
+            }
+        }
+        ROUNDING * f64::EPSILON * squares.sqrt()
     }
 
     /// One Newton step of backward Euler from the state itself:
@@ -207,42 +293,31 @@ impl Newton {
         state: &State,
         u: &mut [f64],
     ) -> Result<Power, StepError> {
-        let n = u.len();
-        fit(&mut self.d, n);
-        let mut a = vec![0.0; n];
+        fit(&mut self.d, u.len());
+        let mut right = vec![0.0; u.len()];
         let inverse_mass = system.inverse_mass();
         // Forces that depend on time are met at the end of the step, as in implicit Euler.
-        let power = system.acceleration(t + h, &state.x, &state.v, &mut a);
+        let power = system.acceleration(t + h, &state.x, &state.v, &mut right);
         self.jacobian.clear();
         system.jacobian(t + h, &state.x, &state.v, linearization, &mut self.jacobian);
-        let right = &mut a;
         for (right, &w) in right.iter_mut().zip(inverse_mass) {
             *right = if w > 0.0 { h * *right / w } else { 0.0 };
         }
         self.jacobian
-            .add_product(Slope::Position, h * h, &state.v, right);
+            .add_product(Slope::Position, h * h, &state.v, &mut right);
         for (right, &w) in right.iter_mut().zip(inverse_mass) {
-            if w == 0.0 {
-                *right = 0.0;
-            }
+            *right = if w > 0.0 { *right } else { 0.0 };
         }
-        if self.matrix.assemble(inverse_mass, h, &self.jacobian) {
-            self.solver.forget();
-        }
-        self.z.clear();
-        let values = self.matrix.coordinates().iter();
-        self.z
-            .extend(values.map(|&at| right.get(at).copied().unwrap_or(0.0)));
+        self.assembled(system, h);
+        self.matrix.gather(&right, &mut self.z);
         self.solves += 1;
         let (solver, matrix) = (&mut self.solver, &self.matrix);
         // A few unknowns by LU whatever their matrix, as ever: at huge steps it is all rounding, and
         // both of these methods then meet the same.
-        if Kind::is_dense(matrix)
-            || solver.solve(matrix, inverse_mass, PLAIN, &mut self.z)? == Solved::Indefinite
-        {
+        if solver::is_small(matrix) || !solver.solve(matrix, inverse_mass, PLAIN, &mut self.z)? {
             solver.solve_lu(matrix, &mut self.z)?;
         }
-        self.spread();
+        self.matrix.scatter(&self.z, &mut self.d);
         for (u, du) in u.iter_mut().zip(&self.d) {
             *u += du;
         }
@@ -254,31 +329,4 @@ impl Newton {
             })
         }
     }
-}
-
-/// The particle with the largest entry, rows of a matrix standing for these coordinates.
-fn worst(coordinates: &[usize], rows: &[f64]) -> usize {
-    let row = 3 * worst_particle(rows);
-    coordinates.get(row).map_or(0, |at| at / 3)
-}
-
-/// What a few roundings of positions and velocities do to the residual at `at`, in its norm:
-/// eps (γ |∂f/∂x| max(|y|, |γ u|) + M (|u| + |b|)), with the last Jacobian. `size` is scratch.
-fn floor(stage: &Stage, jacobian: &Jacobian, at: &Trial, size: &mut Vec<f64>) -> f64 {
-    size.clear();
-    size.resize(at.u.len(), 0.0);
-    // y and γ u may cancel: their sum is no better than they are.
-    let parts = stage.y.iter().zip(&at.u);
-    let reach: Vec<f64> = parts
-        .map(|(y, u)| y.abs().max((stage.gamma * u).abs()))
-        .collect();
-    jacobian.add_magnitudes(Slope::Position, stage.gamma, &reach, size);
-    let mut squares = 0.0;
-    for (i, &w) in stage.system.inverse_mass().iter().enumerate() {
-        if w > 0.0 {
-            let size = size[i] + (at.u[i].abs() + stage.b[i].abs()) / w;
-            squares += size * size;
-        }
-    }
-    ROUNDING * f64::EPSILON * squares.sqrt()
 }

@@ -1,4 +1,5 @@
-//! How far to go along a direction: the full step, or as much of it as descends; further, where the
+//! The stage equation M (u - b) = γ f(t, y + γ u, u), one trial of it, and how far to go along a
+//! direction: the full step, or as much of it as descends; further, where the
 //! direction is not Newton's own and still falls there.
 //!
 //! What descends is the incremental potential
@@ -9,8 +10,8 @@
 //! counts as well. (Armijo's rule; where rounding hides the decrease of Φ its slope decides, as in
 //! Hager & Zhang 2005, SIAM J. Optim. 16.)
 
-use super::stage::{Stage, Trial};
-use crate::physics::{ForceKinds, Jacobian, Slope};
+use super::{Newton, fit, worst_particle};
+use crate::physics::{ForceKinds, Jacobian, Power, Slope, System};
 
 /// Share of the decrease its slope promises that Φ has to make (Armijo).
 const ARMIJO: f64 = 1e-4;
@@ -23,6 +24,100 @@ const STEEP: f64 = 0.9;
 const TRIALS: u32 = 40;
 /// A step is lengthened while the slope is no less than this share of what it was.
 const STILL_STEEP: f64 = 0.5;
+
+/// What is to be solved for u.
+#[derive(Clone, Copy)]
+pub(super) struct Stage<'a> {
+    pub system: &'a dyn System,
+    pub t: f64,
+    pub gamma: f64,
+    /// The velocity u departs from.
+    pub b: &'a [f64],
+    /// The position γ u is added to.
+    pub y: &'a [f64],
+}
+
+/// Everything known of one u.
+#[derive(Default)]
+pub(super) struct Trial {
+    pub u: Vec<f64>,
+    /// y + γ u.
+    pub x: Vec<f64>,
+    a: Vec<f64>,
+    /// r = γ f - M (u - b), kg m/s: minus the gradient of the incremental potential, where there
+    /// is one. 0 on fixed coordinates.
+    pub residual: Vec<f64>,
+    pub power: Power,
+    /// U(x), once it has been asked for.
+    potential: Option<f64>,
+    /// |r|.
+    pub off: f64,
+    /// |r| / (|M (u - b)| + |γ f|), 0 where both are.
+    pub relative: f64,
+}
+
+impl Trial {
+    /// Evaluates the equation `alpha` times `d` from another trial.
+    fn step(&mut self, stage: &Stage, from: &Self, alpha: f64, d: &[f64]) {
+        self.u.clear();
+        let steps = from.u.iter().zip(d);
+        self.u.extend(steps.map(|(u, d)| u + alpha * d));
+        self.evaluate(stage);
+    }
+
+    /// Evaluates the equation at `self.u`.
+    pub(super) fn evaluate(&mut self, stage: &Stage) {
+        let n = self.u.len();
+        for buffer in [&mut self.x, &mut self.a, &mut self.residual] {
+            fit(buffer, n);
+        }
+        self.potential = None;
+        let gamma = stage.gamma;
+        for ((x, y), u) in self.x.iter_mut().zip(stage.y).zip(&self.u) {
+            *x = y + gamma * u;
+        }
+        let system = stage.system;
+        self.power = system.acceleration(stage.t, &self.x, &self.u, &mut self.a);
+        let (mut left, mut right, mut off) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for (i, &w) in system.inverse_mass().iter().enumerate() {
+            self.residual[i] = if w > 0.0 {
+                let inertia = (self.u[i] - stage.b[i]) / w;
+                let impulse = gamma * self.a[i] / w;
+                left += inertia * inertia;
+                right += impulse * impulse;
+                off += (inertia - impulse) * (inertia - impulse);
+                impulse - inertia
+            } else {
+                0.0
+            };
+        }
+        let scale = left.sqrt() + right.sqrt();
+        self.off = off.sqrt();
+        self.relative = if !scale.is_finite() {
+            f64::NAN
+        } else if scale > 0.0 {
+            self.off / scale
+        } else {
+            0.0
+        };
+    }
+
+    fn potential(&mut self, stage: &Stage) -> f64 {
+        let x = &self.x;
+        *self
+            .potential
+            .get_or_insert_with(|| stage.system.potential(stage.t, x))
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        self.off.is_finite() && self.relative.is_finite()
+    }
+
+    /// The particle with the largest residual, or the first that is not finite.
+    pub(super) fn particle(&self) -> usize {
+        worst_particle(&self.residual)
+    }
+}
 
 /// What decides whether a trial is good.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,6 +167,25 @@ impl Line {
         }
     }
 
+    /// Whether a trial is good: α from the start, where the residual was `before`, with this slope there.
+    fn accepts(
+        &self,
+        stage: &Stage,
+        merit: Merit,
+        before: f64,
+        to: &mut Trial,
+        [alpha, slope]: [f64; 2],
+    ) -> bool {
+        let flat = slope <= STEEP * self.slope.abs();
+        if merit == Merit::Slope {
+            return flat;
+        }
+        let (change, hidden) = self.change(stage, alpha, to);
+        change <= ARMIJO * alpha * self.slope
+            || (flat && alpha * self.slope.abs() <= hidden && change <= hidden)
+            || (stage.system.kinds().depends_on_velocity() && to.off <= 0.5 * before)
+    }
+
     /// Φ(u + α d) - Φ(u), and how much of it may be rounding.
     fn change(&self, stage: &Stage, alpha: f64, to: &mut Trial) -> (f64, f64) {
         let potential = to.potential(stage);
@@ -85,49 +199,29 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// What a search needs to know.
-pub(super) struct Search<'a> {
-    pub stage: &'a Stage<'a>,
-    /// Of descent, and 0 on fixed coordinates.
-    pub d: &'a [f64],
-    /// ∂f/∂v at the start, among others.
-    pub jacobian: &'a Jacobian,
-    pub merit: Merit,
-    /// Whether a good full step may be lengthened: a direction whose matrix had its negative part left
-    /// out knows where to go, but not how far.
-    pub extend: bool,
-    /// A trial with this relative residual needs no further judgement.
-    pub tolerance: f64,
-}
-
-impl Search<'_> {
-    /// Leaves in `to` the first good trial from `from`: the full step, if it is one. What leaves a
-    /// residual of no more than `floor`, a few roundings, is good. False if no trial is.
-    pub(super) fn run(
-        &self,
-        from: &mut Trial,
-        to: &mut Trial,
-        mut floor: impl FnMut(&Trial) -> f64,
-    ) -> bool {
-        let (stage, d) = (self.stage, self.d);
-        let mut line = None;
-        let mut alpha = 1.0;
+impl Newton {
+    /// Leaves in `self.next` the first good trial along `self.d`, a direction of descent that is 0 on fixed
+    /// coordinates: the full step, if it is one, and further with `extend`. A trial that solves the equation,
+    /// or leaves a residual of a few roundings, is good. False if no trial is.
+    pub(super) fn advance(&mut self, stage: &Stage, merit: Merit, extend: bool) -> bool {
+        let (mut line, mut floor, mut alpha) = (None, None, 1.0);
         for _ in 0..TRIALS {
-            to.u.clear();
-            to.u.extend(from.u.iter().zip(d).map(|(u, d)| u + alpha * d));
-            to.evaluate(stage);
-            if !to.is_finite() {
+            self.next.step(stage, &self.at, alpha, &self.d);
+            if !self.next.is_finite() {
                 alpha *= 0.1;
                 continue;
             }
-            if to.relative <= self.tolerance {
+            if self.next.relative <= self.tolerance {
                 return true;
             }
-            let line = line.get_or_insert_with(|| Line::new(stage, from, d, self.jacobian));
-            let slope = -dot(&to.residual, d);
-            if self.is_good(from.off, to, line, alpha, slope) || to.off <= floor(from) {
-                if self.extend && self.merit == Merit::Potential && alpha == 1.0 {
-                    self.lengthen(from, to, line, slope);
+            let line = line.get_or_insert_with(|| self.line(stage));
+            let slope = -dot(&self.next.residual, &self.d);
+            let (before, off) = (self.at.off, self.next.off);
+            if line.accepts(stage, merit, before, &mut self.next, [alpha, slope])
+                || off <= *floor.get_or_insert_with(|| self.floor(stage))
+            {
+                if extend && merit == Merit::Potential && alpha == 1.0 {
+                    self.lengthen(stage, line, slope);
                 }
                 return true;
             }
@@ -142,8 +236,12 @@ impl Search<'_> {
         false
     }
 
+    fn line(&mut self, stage: &Stage) -> Line {
+        Line::new(stage, &mut self.at, &self.d, &self.jacobian)
+    }
+
     /// Doubles the step while Φ falls as steeply as at the start.
-    fn lengthen(&self, from: &Trial, to: &mut Trial, line: &Line, mut slope: f64) {
+    fn lengthen(&mut self, stage: &Stage, line: &Line, mut slope: f64) {
         let mut alpha = 1.0;
         let mut further = Trial::default();
         for _ in 0..TRIALS {
@@ -151,40 +249,25 @@ impl Search<'_> {
                 return;
             }
             alpha *= 2.0;
-            let steps = from.u.iter().zip(self.d);
-            further.u.clear();
-            further.u.extend(steps.map(|(u, d)| u + alpha * d));
-            further.evaluate(self.stage);
-            let fell = |to: &mut Trial, alpha: f64| line.change(self.stage, alpha, to).0;
-            if !further.is_finite() || fell(&mut further, alpha) >= fell(to, 0.5 * alpha) {
+            further.step(stage, &self.at, alpha, &self.d);
+            let fell = |to: &mut Trial, alpha: f64| line.change(stage, alpha, to).0;
+            if !further.is_finite()
+                || fell(&mut further, alpha) >= fell(&mut self.next, 0.5 * alpha)
+            {
                 return;
             }
-            slope = -dot(&further.residual, self.d);
-            std::mem::swap(to, &mut further);
+            slope = -dot(&further.residual, &self.d);
+            std::mem::swap(&mut self.next, &mut further);
         }
     }
 
-    /// Leaves the full step in `to`; false unless Φ does not rise and a tenth of the residual is left.
-    pub(super) fn leaps(&self, from: &mut Trial, to: &mut Trial) -> bool {
-        to.u.clear();
-        to.u.extend(from.u.iter().zip(self.d).map(|(u, d)| u + d));
-        to.evaluate(self.stage);
-        if !to.is_finite() || to.off > 0.1 * from.off {
+    /// Leaves the full step in `self.next`; false unless Φ does not rise and a tenth of the residual is left.
+    pub(super) fn leaps(&mut self, stage: &Stage) -> bool {
+        self.next.step(stage, &self.at, 1.0, &self.d);
+        if !self.next.is_finite() || self.next.off > 0.1 * self.at.off {
             return false;
         }
-        let line = Line::new(self.stage, from, self.d, self.jacobian);
-        let (change, hidden) = line.change(self.stage, 1.0, to);
+        let (change, hidden) = self.line(stage).change(stage, 1.0, &mut self.next);
         change <= hidden
-    }
-
-    fn is_good(&self, before: f64, to: &mut Trial, line: &Line, alpha: f64, slope: f64) -> bool {
-        let flat = slope <= STEEP * line.slope.abs();
-        if self.merit == Merit::Slope {
-            return flat;
-        }
-        let (change, hidden) = line.change(self.stage, alpha, to);
-        change <= ARMIJO * alpha * line.slope
-            || (flat && alpha * line.slope.abs() <= hidden && change <= hidden)
-            || (self.stage.system.kinds().depends_on_velocity() && to.off <= 0.5 * before)
     }
 }

@@ -1,11 +1,11 @@
-//! One linear solve: with the symmetric part, and refined where that is not all of the matrix.
+//! One linear solve: with the symmetric part, by what the matrix calls for, and refined where that is not
+//! all of the matrix.
 
-use super::super::{StepError, largest};
-use super::choose::{Kind, iterations};
-use super::conjugate::{Conjugate, Ended};
-use super::dense::{self, Dense};
+use super::conjugate::{Conjugate, Ended, dot};
+use super::factors::{Dense, Sparse, SparseLu, solve_dense_lu};
 use super::matrix::Matrix;
-use super::sparse::{Sparse, SparseLu};
+use super::{StepError, fit, largest};
+use crate::vector::axpy;
 
 /// Refinements before LU takes over; each gains the digits the symmetric part has right.
 const REFINEMENTS: usize = 8;
@@ -13,6 +13,22 @@ const REFINEMENTS: usize = 8;
 const REFINED: f64 = 4.0 * f64::EPSILON;
 /// Beyond this many times the iterations it was chosen for, conjugate gradients give way.
 const PATIENCE: f64 = 8.0;
+/// Up to this many rows a dense factor is as fast or faster.
+const DENSE: usize = 60;
+/// Multiplications of a sparse factorisation in the time of one multiplication of a product with
+/// the matrix: the former run in blocks, the latter waits for memory. An estimate.
+const DENSER: f64 = 4.0;
+
+/// What solves with the symmetric part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Dense Cholesky.
+    Dense,
+    /// Sparse Cholesky.
+    Sparse,
+    /// Conjugate gradients.
+    Conjugate,
+}
 
 /// Factors and their memory, for matrices of one pattern.
 #[derive(Default)]
@@ -27,15 +43,6 @@ pub(super) struct Solver {
     left: Vec<f64>,
 }
 
-/// What could be done with a matrix.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Solved {
-    /// Solved, and the symmetric part is positive definite (as far as was seen).
-    Definite,
-    /// The symmetric part is not positive definite; nothing was solved.
-    Indefinite,
-}
-
 impl Solver {
     /// What was made for another pattern is of no use.
     pub(super) fn forget(&mut self) {
@@ -43,55 +50,58 @@ impl Solver {
         self.lu = None;
     }
 
-    /// Replaces `z` by A⁻¹ z, if the symmetric part of A is positive definite: to rounding with
-    /// factors, to `tolerance` of the norm of `z` by iteration.
+    /// Replaces `z` by A⁻¹ z, if the symmetric part of A is positive definite (as far as was seen): to
+    /// rounding with factors, to `tolerance` of the norm of `z` by iteration. False, and nothing solved, if
+    /// it is not.
     pub(super) fn solve(
         &mut self,
         matrix: &Matrix,
         inverse_mass: &[f64],
         tolerance: f64,
         z: &mut [f64],
-    ) -> Result<Solved, StepError> {
-        match self.kind(matrix, inverse_mass, tolerance)? {
-            Kind::Conjugate => {
-                if !self.conjugate.prepare(matrix) {
-                    return Ok(Solved::Indefinite);
-                }
-                let cap = PATIENCE * iterations(matrix, inverse_mass, digits(tolerance));
-                // As many as there are unknowns is what exact arithmetic needs.
-                let cap = (cap as usize).clamp(100, 10 * matrix.size() + 100);
-                self.right.clear();
-                self.right.extend_from_slice(z);
-                match self.by_iteration(matrix, tolerance, cap, z) {
-                    Ended::Solved => return Ok(Solved::Definite),
-                    Ended::Indefinite => return Ok(Solved::Indefinite),
-                    Ended::Slow => z.copy_from_slice(&self.right),
-                }
-                self.by_sparse(matrix, z)
+    ) -> Result<bool, StepError> {
+        let kind = self.kind(matrix, inverse_mass, tolerance)?;
+        if kind == Kind::Conjugate {
+            if !self.conjugate.prepare(matrix) {
+                return Ok(false);
             }
-            Kind::Dense => {
-                if !self.dense.factorise(matrix) {
-                    return Ok(Solved::Indefinite);
-                }
-                if !matrix.is_symmetric() {
-                    let dense = &self.dense;
-                    let refined = refine(matrix, z, &mut self.right, &mut self.left, |left| {
-                        dense.solve(left);
-                    });
-                    if !refined {
-                        z.copy_from_slice(&self.right);
-                        self.solve_lu(matrix, z)?;
-                    }
-                } else {
-                    self.dense.solve(z);
-                }
-                Ok(Solved::Definite)
+            let cap = PATIENCE * iterations(matrix, inverse_mass, tolerance);
+            // As many as there are unknowns is what exact arithmetic needs.
+            let cap = (cap as usize).clamp(100, 10 * matrix.size() + 100);
+            self.right.clear();
+            self.right.extend_from_slice(z);
+            match self.by_iteration(matrix, tolerance, cap, z) {
+                Ended::Solved => return Ok(true),
+                Ended::Indefinite => return Ok(false),
+                Ended::Slow => z.copy_from_slice(&self.right),
             }
-            Kind::Sparse => self.by_sparse(matrix, z),
         }
+        let dense = kind == Kind::Dense;
+        let definite = if dense {
+            self.dense.factorise(matrix)
+        } else {
+            self.sparse(matrix)?.factorise(matrix)
+        };
+        if !definite {
+            return Ok(false);
+        }
+        let mut solve = |z: &mut [f64]| match &mut self.sparse {
+            Some(sparse) if !dense => sparse.solve(z),
+            _ => self.dense.solve(z),
+        };
+        if matrix.is_symmetric() {
+            solve(z);
+        } else if !refine(matrix, z, &mut self.right, &mut self.left, solve) {
+            z.copy_from_slice(&self.right);
+            self.solve_lu(matrix, z)?;
+        }
+        Ok(true)
     }
 
-    /// What `solve` takes.
+    /// What `solve` takes: by size first; among many unknowns by the work each is expected to take.
+    ///
+    /// A factor of `fill` numbers takes fill² / n multiplications, whatever the stiffness. A function of
+    /// this matrix and its pattern, never of what was solved before.
     pub(super) fn kind(
         &mut self,
         matrix: &Matrix,
@@ -101,45 +111,24 @@ impl Solver {
         if let Some(kind) = self.forced {
             return Ok(kind);
         }
-        let mut failed = None;
-        let kind = Kind::of(matrix, inverse_mass, digits(tolerance), || {
-            self.laid_out(matrix).map_or_else(
-                |error| {
-                    failed = Some(error);
-                    0
-                },
-                |sparse| sparse.fill(),
-            )
-        });
-        failed.map_or(Ok(kind), Err)
+        if is_small(matrix) {
+            return Ok(Kind::Dense);
+        }
+        let product = (9 * matrix.diagonal.len() + 18 * matrix.lower.len()) as f64;
+        let iterated = iterations(matrix, inverse_mass, tolerance) * product * DENSER;
+        let fill = self.sparse(matrix)?.fill() as f64;
+        Ok(if iterated <= fill * fill / matrix.size() as f64 {
+            Kind::Conjugate
+        } else {
+            Kind::Sparse
+        })
     }
 
-    fn laid_out(&mut self, matrix: &Matrix) -> Result<&mut Sparse, StepError> {
+    fn sparse(&mut self, matrix: &Matrix) -> Result<&mut Sparse, StepError> {
         match &mut self.sparse {
-            Some(_) => {}
-            empty => *empty = Some(Sparse::new(matrix)?),
+            Some(sparse) => Ok(sparse),
+            none => Ok(none.insert(Sparse::new(matrix)?)),
         }
-        self.sparse
-            .as_mut()
-            .ok_or(StepError::Singular { particle: 0 })
-    }
-
-    fn by_sparse(&mut self, matrix: &Matrix, z: &mut [f64]) -> Result<Solved, StepError> {
-        if !self.laid_out(matrix)?.factorise(matrix) {
-            return Ok(Solved::Indefinite);
-        }
-        let Some(sparse) = &mut self.sparse else {
-            return Ok(Solved::Indefinite);
-        };
-        if matrix.is_symmetric() {
-            sparse.solve(z);
-        } else if !refine(matrix, z, &mut self.right, &mut self.left, |left| {
-            sparse.solve(left);
-        }) {
-            z.copy_from_slice(&self.right);
-            self.solve_lu(matrix, z)?;
-        }
-        Ok(Solved::Definite)
     }
 
     /// With the matrix itself, definite or not.
@@ -147,13 +136,12 @@ impl Solver {
     /// # Errors
     /// [`StepError::Singular`].
     pub(super) fn solve_lu(&mut self, matrix: &Matrix, z: &mut [f64]) -> Result<(), StepError> {
-        let particle = super::worst(matrix.coordinates(), z);
-        let solved = if Kind::is_dense(matrix) {
-            dense::solve_lu(matrix, z)
+        let particle = matrix.worst(z);
+        let solved = if is_small(matrix) {
+            solve_dense_lu(matrix, z)
         } else {
-            match &mut self.lu {
-                Some(_) => {}
-                empty => *empty = SparseLu::new(matrix),
+            if self.lu.is_none() {
+                self.lu = SparseLu::new(matrix);
             }
             self.lu.as_ref().is_some_and(|lu| lu.solve(matrix, z))
         };
@@ -178,7 +166,7 @@ impl Solver {
         let enough = tolerance * norm(z);
         let n = z.len();
         let mut left = std::mem::take(&mut self.left);
-        super::super::fit(&mut left, n);
+        fit(&mut left, n);
         left.copy_from_slice(z);
         z.fill(0.0);
         let mut ended = Ended::Slow;
@@ -189,7 +177,7 @@ impl Solver {
             if ended != Ended::Solved {
                 break;
             }
-            super::super::axpy(z, 1.0, &left);
+            axpy(z, 1.0, &left);
             matrix.product(z, &mut left);
             for (left, right) in left.iter_mut().zip(&self.right) {
                 *left = right - *left;
@@ -204,13 +192,21 @@ impl Solver {
     }
 }
 
-/// What theory says conjugate gradients have to gain, in natural digits.
-fn digits(tolerance: f64) -> f64 {
-    (2.0 / tolerance).ln()
+pub(super) fn is_small(matrix: &Matrix) -> bool {
+    matrix.size() <= DENSE
+}
+
+/// What theory expects of conjugate gradients, to a tolerance.
+///
+/// With D the blocks on the diagonal, D⁻¹ A has its eigenvalues between the smallest of M / D and about 2, so
+/// the next ln(2 / tolerance) natural digits take sqrt(2 D / M) / 2 iterations each: the larger γ ω, the more.
+fn iterations(matrix: &Matrix, inverse_mass: &[f64], tolerance: f64) -> f64 {
+    let digits = (2.0 / tolerance).ln();
+    0.5 * digits * (2.0 * matrix.stiffest(inverse_mass)).sqrt()
 }
 
 fn norm(z: &[f64]) -> f64 {
-    super::conjugate::dot(z, z).sqrt()
+    dot(z, z).sqrt()
 }
 
 /// Solves with the whole matrix through `solve`, which knows its symmetric part only; false where
@@ -231,7 +227,7 @@ fn refine(
     let mut before = f64::INFINITY;
     for _ in 0..REFINEMENTS {
         solve(left);
-        super::super::axpy(z, 1.0, left);
+        axpy(z, 1.0, left);
         matrix.product(z, left);
         for (left, right) in left.iter_mut().zip(right.iter()) {
             *left = right - *left;

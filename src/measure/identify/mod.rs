@@ -14,6 +14,7 @@ mod fault;
 mod judge;
 mod mistakes;
 mod replay;
+mod result;
 mod same;
 mod stretch;
 mod sweep;
@@ -24,10 +25,10 @@ pub use candidate::{Candidate, Map, Replayer, Scheme};
 pub use fault::{first_departure, first_fault, moved_anchor};
 pub use mistakes::{MISTAKES, Mistake, Wrong, mistakes};
 pub use replay::{BEYOND, Defect, FIT, Replay};
+pub use result::{Fault, Identified, Quantity, Undecided};
 pub use transition::Transition;
 
-use crate::integrators::{REGISTRY, Settings};
-use crate::outcome::{Identified, Undecided};
+use crate::integrators::{Settings, fixed};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::trajectory::Rows;
@@ -162,7 +163,7 @@ fn bare(weighed: &[Weighed]) -> Vec<Transition> {
 
 /// Every scheme that is known, in the order of preference among equals.
 fn candidates(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
-    let methods = REGISTRY.iter().flat_map(|method| {
+    let methods = fixed().iter().flat_map(|method| {
         let substeps = 1..=MOST_SUBSTEPS;
         substeps.map(|n| Candidate::method(system, method, n))
     });

@@ -12,7 +12,7 @@ pub use observed::{Observed, Point, RATIOS, Reason, TOLERANCE, Verdict, observed
 pub use run::Build;
 
 use crate::integrators::{self, Method, Settings};
-use crate::outcome::{Check, CheckStatus};
+use crate::measure::{Check, CheckStatus};
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
 use crate::truth::Motion;

@@ -4,8 +4,8 @@
 mod measured;
 mod predicted;
 
-pub use measured::{Make, Measured, classify, measure};
-pub use predicted::{Along, Effort, Linearised, Prediction, is_linear};
+pub use measured::{Cell, Make, Measured, classify, measure};
+pub use predicted::{Along, Effort, Linearised, Prediction, TightestLimit, is_linear};
 
 /// The largest step that is stable, with all smaller ones.
 #[derive(Debug, Clone, PartialEq)]

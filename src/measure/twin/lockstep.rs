@@ -40,7 +40,7 @@ impl Path {
     pub(super) fn ours(scene: &Scene, method: &str, h: f64, substeps: u32, steps: u32) -> Self {
         // A missing row would be a fault of this program's; explicit Euler, the first, then fails the
         // proof instead of stopping the run.
-        let method = integrators::find(method).unwrap_or(&integrators::REGISTRY[0]);
+        let method = integrators::find(method).unwrap_or(&integrators::fixed()[0]);
         let none = Self {
             states: Vec::new(),
             failed: None,

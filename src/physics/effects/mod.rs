@@ -6,17 +6,15 @@
 //! [`IntegratorEngine`](crate::solvers::IntegratorEngine) after its integrator, not members of this
 //! trait.
 
-mod cubic;
+mod central;
 mod drag;
-mod gravitational;
 mod gravity;
 mod scaled;
 mod springs;
 mod wind;
 
-pub use cubic::CubicSprings;
+pub use central::Central;
 pub use drag::Drag;
-pub use gravitational::Gravitational;
 pub use gravity::Gravity;
 pub use scaled::Scaled;
 pub use springs::Springs;
@@ -99,10 +97,10 @@ impl std::fmt::Debug for EffectRow {
 pub static REGISTRY: &[EffectRow] = &[
     gravity::ROW,
     springs::ROW,
-    cubic::ROW,
+    central::CUBIC,
     drag::ROW,
     wind::ROW,
-    gravitational::ROW,
+    central::GRAVITATIONAL,
 ];
 
 fn boxed<E: Effect + 'static>(effect: E) -> Box<dyn Effect> {

@@ -1,10 +1,10 @@
 //! The explicit Runge-Kutta method of order 8 of Dormand and Prince, at fixed steps.
 
-pub use crate::integrators::adaptive::coefficients::DORMAND_PRINCE_8;
+pub use crate::integrators::adaptive::DORMAND_PRINCE_8;
 
 use super::stepper::{Precise, Stepper, fit};
 use crate::integrators::Tableau;
-use crate::integrators::adaptive::coefficients::{ERROR_3, ERROR_5, mixed};
+use crate::integrators::adaptive::{ERROR_3, ERROR_5, mixed};
 use crate::integrators::nystrom::{self, LANES, Stage, Weight, sums, weights};
 use crate::physics::System;
 

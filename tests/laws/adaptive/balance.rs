@@ -1,9 +1,9 @@
 //! Work integrals are advanced with the weights of the formula.
 
-use super::{pair, run, slope, tolerances};
+use super::{pair, pairs, run, slope, tolerances};
 use crate::testkit::scenes::shipped;
 use springcheck::integrators::Tableau;
-use springcheck::integrators::adaptive::{Pair, REGISTRY};
+use springcheck::integrators::adaptive::Pair;
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::Scene;
 
@@ -36,9 +36,8 @@ fn law(scene: &Scene, pair: &Pair) -> Result<(), String> {
 #[test]
 fn the_energy_balance_converges_with_the_tolerance() {
     for path in ["order/axial.yml", "order/isotropic.yml"] {
-        for pair in REGISTRY {
-            law(&shipped(path), pair)
-                .unwrap_or_else(|wrong| panic!("{path}, {}: {wrong}", pair.id));
+        for (id, pair) in pairs() {
+            law(&shipped(path), pair).unwrap_or_else(|wrong| panic!("{path}, {}: {wrong}", id));
         }
     }
     // The mutant: work, which alone is advanced with b where the last stage is the end, with two weights

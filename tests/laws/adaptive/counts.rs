@@ -1,9 +1,9 @@
 //! Evaluations, and the stages that are reused.
 
-use super::{pair, run};
+use super::{pair, pairs, run};
 use crate::testkit::built;
 use crate::testkit::scenes::shipped;
-use springcheck::integrators::adaptive::{Adaptive, Pair, REGISTRY};
+use springcheck::integrators::adaptive::{Adaptive, Pair};
 use springcheck::physics::{Power, State, System};
 use springcheck::solvers::{AdaptiveEngine, Engine};
 use std::cell::Cell;
@@ -27,12 +27,12 @@ fn law(id: &str, engine: &AdaptiveEngine, steps: u64) -> Result<(), String> {
 #[test]
 fn evaluations_are_as_stated() {
     let scene = shipped("hard/through_each_other.yml");
-    for right in REGISTRY {
+    for (id, right) in pairs() {
         let (engine, states) = run(&scene, right, 1e-6);
         let steps = states.len() as u64 - 1;
         assert!(steps > 20 && engine.rejected() > 5);
-        law(right.id, &engine, steps).unwrap();
-        let per = match right.id {
+        law(id, &engine, steps).unwrap();
+        let per = match id {
             "dop853" => [12, 11],
             _ => [6, 6],
         };
@@ -48,7 +48,7 @@ fn evaluations_are_as_stated() {
             ..*right
         };
         let (engine, states) = run(&scene, &forgetful, 1e-6);
-        law(right.id, &engine, states.len() as u64 - 1).unwrap_err();
+        law(id, &engine, states.len() as u64 - 1).unwrap_err();
     }
 }
 
@@ -100,23 +100,27 @@ impl System for Turned<'_> {
 #[test]
 fn a_state_that_was_changed_is_evaluated_anew() {
     let (system, start) = built(&shipped("order/axial.yml"));
-    for pair in REGISTRY {
+    for (id, pair) in pairs() {
         let turned = Turned {
             inner: &system,
             turned: Cell::new(false),
         };
         let two = |change: &dyn Fn(&mut State), turn: bool, fresh: bool| {
             turned.turned.set(false);
-            let mut stepper = Adaptive::new(pair, 1e-6, 1.0);
+            let mut stepper = Adaptive::new(pair, 1.0, 1.0);
             let mut state = start.clone();
             let h = 0.01;
-            stepper.step_of(&turned, h, &mut state).expect("a step");
+            let until = state.t + h;
+            stepper.step(&turned, until, &mut state).expect("a step");
+            assert_eq!(state.t, until);
             change(&mut state);
             turned.turned.set(turn);
             if fresh {
-                stepper = Adaptive::new(pair, 1e-6, 1.0);
+                stepper = Adaptive::new(pair, 1.0, 1.0);
             }
-            stepper.step_of(&turned, h, &mut state).expect("a step");
+            let until = state.t + h;
+            stepper.step(&turned, until, &mut state).expect("a step");
+            assert_eq!(state.t, until);
             state
         };
         let flip = |state: &mut State| state.v.iter_mut().for_each(|v| *v = -*v);
@@ -127,11 +131,11 @@ fn a_state_that_was_changed_is_evaluated_anew() {
                 two(change, false, false),
                 two(change, false, true),
                 "{}",
-                pair.id
+                id
             );
         }
         // The mutant: what the stepper cannot see, and a stale stage with it.
         let stale = two(&|_| (), true, false) != two(&|_| (), true, true);
-        assert_eq!(stale, pair.first_same_as_last, "{}", pair.id);
+        assert_eq!(stale, pair.first_same_as_last, "{}", id);
     }
 }

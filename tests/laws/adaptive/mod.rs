@@ -8,13 +8,26 @@ mod orders;
 mod tableaux;
 mod tolerance;
 
-use springcheck::integrators::adaptive::{self, Pair};
+use springcheck::integrators;
+use springcheck::integrators::adaptive::Pair;
 use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::Scene;
 use springcheck::solvers::{AdaptiveEngine, Engine};
 
+/// Every pair and its id.
+fn pairs() -> impl Iterator<Item = (&'static str, &'static Pair)> {
+    let pairs = integrators::pairs().iter();
+    pairs.map(|method| (method.id, method.pair().expect("a pair")))
+}
+
+/// Of the formula that is advanced.
+fn order(id: &str) -> u32 {
+    integrators::find(id).expect("a pair").order
+}
+
 fn pair(id: &str) -> &'static Pair {
-    adaptive::find(id).unwrap_or_else(|| panic!("no pair {id}"))
+    let method = integrators::find(id).and_then(|method| method.pair());
+    method.unwrap_or_else(|| panic!("no pair {id}"))
 }
 
 /// A chain of five links let go sideways, with dampers.

@@ -1,27 +1,18 @@
 //! The observed order of the formulas, at fixed steps.
 
-use super::pair;
+use super::{order, pair, pairs};
 use crate::testkit::built;
 use crate::testkit::gauss::Gauss;
 use crate::testkit::line::released;
 use crate::testkit::scenes::shipped;
-use springcheck::integrators::adaptive::{Adaptive, Pair, REGISTRY};
-use springcheck::integrators::{Integrator, StepError, Tableau};
+use springcheck::integrators::adaptive::Pair;
+use springcheck::integrators::{Integrator, RungeKutta, Tableau};
 use springcheck::measure::order::{Study, Verdict};
 use springcheck::physics::{State, System};
 use springcheck::truth::Motion;
 
-/// A pair whose steps are given to it.
-struct Fixed(Adaptive);
-
-impl Integrator for Fixed {
-    fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
-        self.0.step_of(system, h, state).map(|_| ())
-    }
-}
-
 fn fixed(pair: Pair) -> impl Fn() -> Box<dyn Integrator> + Sync {
-    move || Box::new(Fixed(Adaptive::new(&pair, 1.0, 1.0)))
+    move || Box::new(RungeKutta::new(pair.tableau))
 }
 
 /// Slope of ln error over ln h through runs of these numbers of steps, by least squares; the error is the
@@ -38,10 +29,10 @@ fn slope(
         .iter()
         .map(|&n| {
             let h = until / f64::from(n);
-            let mut stepper = Adaptive::new(pair, 1.0, 1.0);
+            let mut stepper = RungeKutta::new(pair.tableau);
             let mut state = start.clone();
             for _ in 0..n {
-                stepper.step_of(system, h, &mut state).expect("a step");
+                stepper.step(system, h, &mut state).expect("a step");
             }
             let squares = state.x.iter().zip(truth).map(|(a, b)| (a - b) * (a - b));
             (h.ln(), 0.5 * squares.sum::<f64>().ln())
@@ -53,8 +44,9 @@ fn slope(
 /// Steps at which errors, of 1e-5 to 1e-12 m, are far above rounding and their leading term is all but
 /// alone.
 fn steps(pair: &Pair) -> &'static [u32] {
-    match pair.order {
-        5 => &[64, 90, 128, 180, 256],
+    // Stages of order 5, and of order 8.
+    match pair.tableau.b.len() {
+        7 => &[64, 90, 128, 180, 256],
         _ => &[20, 24, 28, 32, 36],
     }
 }
@@ -73,17 +65,21 @@ fn formulas_are_of_their_order_on_designated_scenes() {
         let end = truth.states(&[scene.duration]).x;
         let measured =
             |pair: &Pair| slope(&system, &start, &end, scene.duration, pair, steps(pair));
-        for pair in REGISTRY {
+        for (id, pair) in pairs() {
             let seen = measured(pair);
             assert!(
-                (seen - f64::from(pair.order)).abs() < 0.2,
+                (seen - f64::from(order(id))).abs() < 0.2,
                 "{path}, {}: {seen}",
-                pair.id
+                id
             );
         }
         for wrong in swapped() {
             let seen = measured(&wrong);
-            assert!(seen < 3.0, "{path}, wrong {}: {seen}", wrong.id);
+            assert!(
+                seen < 3.0,
+                "{path}, wrong {}: {seen}",
+                wrong.tableau.b.len()
+            );
         }
     }
 }
@@ -95,10 +91,10 @@ fn formulas_are_of_their_order_on_an_oscillator() {
     let scene = shipped("oscillator/oscillator.yml");
     let (system, start) = built(&scene);
     let truth = released(&scene);
-    for (pair, until) in REGISTRY.iter().zip([5.0, 20.0]) {
+    for ((id, pair), until) in pairs().zip([5.0, 20.0]) {
         let study = Study::new(&system, start.clone(), &truth, 0.1, until);
-        let seen = study.measure(pair.order, &fixed(*pair)).observed;
-        assert_eq!(seen.verdict, Verdict::Meets, "{}: {seen:?}", pair.id);
+        let seen = study.measure(order(id), &fixed(*pair)).observed;
+        assert_eq!(seen.verdict, Verdict::Meets, "{}: {seen:?}", id);
     }
 }
 

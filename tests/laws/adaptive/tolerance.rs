@@ -1,9 +1,9 @@
 //! Errors are proportional to the tolerance.
 
-use super::{chain, pair, run, slope, tolerances};
+use super::{chain, pair, pairs, run, slope, tolerances};
 use crate::testkit::line::released;
 use crate::testkit::scenes::shipped;
-use springcheck::integrators::adaptive::{Estimate, Pair, REGISTRY};
+use springcheck::integrators::adaptive::{Estimate, Pair};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
 use springcheck::truth::{self, Demand, Motion, NoStore};
@@ -56,12 +56,12 @@ fn errors_are_proportional_to_the_tolerance() {
     // A hundredth of the smallest error.
     assert!(found.error_bound < 1e-12, "{:e}", found.error_bound);
     let motion = found.motion().expect("a truth");
-    for pair in REGISTRY {
+    for (id, pair) in pairs() {
         for (scene, truth) in [(&scene, &truth as &dyn Motion), (&chain, motion)] {
             let points = points(scene, pair, truth);
             assert_eq!(points.len(), 15);
             let seen = slope(&points);
-            law(seen).unwrap_or_else(|wrong| panic!("{}: {wrong}", pair.id));
+            law(seen).unwrap_or_else(|wrong| panic!("{}: {wrong}", id));
         }
     }
 }

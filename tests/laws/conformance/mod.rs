@@ -9,8 +9,8 @@ mod mutants;
 use crate::testkit::own;
 use rayon::prelude::*;
 use springcheck::conformance::{Claims, Finding, LAWS, check};
-use springcheck::integrators::{EnergyLaw, Exact, Method, REGISTRY, Stable};
-use springcheck::outcome::CheckStatus;
+use springcheck::integrators::{EnergyLaw, Method, Stable, fixed};
+use springcheck::measure::CheckStatus;
 
 /// What rounding alone leaves: the kit's tolerances have room for solvers that stop at 1e-12, ours
 /// do not.
@@ -62,15 +62,16 @@ fn tight(row: &Method, finding: &Finding) -> bool {
         "momentum" => measured < 6e-15,
         // Ten steps of half a last bit of 8: 1.1e-15 each, measured 3.6e-15. The Eulers are off by
         // h a t / 2 = 0.49.
-        "exactness" => below_or_above(row.exact == Exact::ConstantForce, 1e-14, 0.2),
+        "exactness" => below_or_above(row.exact, 1e-14, 0.2),
         "reuse" => measured == 0.0,
         _ => true,
     }
 }
 
+/// Pairs have laws of their own: at the kit's steps an order of 8 shows no defect of symplecticity.
 #[test]
 fn every_method_of_the_registry_passes_every_law() {
-    REGISTRY.par_iter().for_each(|row| {
+    fixed().par_iter().for_each(|row| {
         let findings = check(&own(row), &Claims::from(row));
         let laws: Vec<&str> = findings.iter().map(|finding| finding.law).collect();
         assert!(laws.iter().eq(LAWS.iter().map(|law| &law.id)), "{laws:?}");
@@ -97,8 +98,8 @@ fn findings_repeat_to_the_last_bit_and_become_checks() {
         (finding.status, finding.measured, finding.bound)
     );
     assert_eq!(
-        (&check.derivation, &check.message),
-        (&finding.derivation, &finding.message)
+        (check.derivation.as_str(), &check.message),
+        (finding.derivation, &finding.message)
     );
 }
 

@@ -12,11 +12,14 @@ mod truths;
 
 use crate::testkit::scenes::{all_shipped, files, shipped};
 use rayon::prelude::*;
-use springcheck::crosscheck::{Choice, Plan, expect};
-use springcheck::outcome::{CheckStatus, Outcome, Report, Status};
+use springcheck::measure::CheckStatus;
 use springcheck::report::json::Tool;
 use springcheck::scene::Scene;
+use springcheck::solvers::Status;
 use springcheck::solvers::rapier;
+use springcheck::verbs::Report;
+use springcheck::verbs::run::Outcome;
+use springcheck::verbs::run::{Choice, Plan, expect};
 use springcheck::{integrators, report};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -155,7 +158,9 @@ fn every_scene_speaks_of_every_engine() {
             let row = ELSEWHERE.iter().find(|(long, ..)| *long == stem);
             row.is_some_and(|(_, _, ids)| ids.contains(&id))
         };
-        let methods = integrators::ids().into_iter().map(|id| (id, true));
+        let methods = integrators::ids(integrators::fixed())
+            .into_iter()
+            .map(|id| (id, true));
         let engines = rapier::IDS.into_iter().map(|id| (id, false));
         let silent = methods
             .chain(engines)

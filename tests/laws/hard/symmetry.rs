@@ -4,21 +4,22 @@
 use super::scene;
 use crate::testkit::{self, built, distance, mutants, own};
 use springcheck::conformance::Build;
-use springcheck::crosscheck::{Choice, Plan, Quiet};
-use springcheck::integrators::{Integrator, REGISTRY, StepError};
+use springcheck::integrators::{Integrator, StepError, fixed};
 use springcheck::physics::{State, System};
 use springcheck::scene::{Scene, Wanted};
 use springcheck::solvers::{Solver, rapier::Settings};
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::{Choice, Plan};
 
 /// Largest position error against the truth, m, of every method of the registry; then the mutant's.
 fn errors(scene: &Scene) -> (Vec<f64>, f64) {
     let choice = Choice {
-        solvers: REGISTRY.iter().map(Solver::method).collect(),
+        solvers: fixed().iter().map(Solver::method).collect(),
         ..Choice::default_for(scene)
     };
     let plan = Plan::new(scene, &choice.with(Solver::own("absolute", absolute)));
     let report = plan.execute(&Quiet).expect("nothing is saved");
-    let error = |o: &springcheck::outcome::Outcome| {
+    let error = |o: &springcheck::verbs::run::Outcome| {
         let error = o.position_error_m.as_ref().expect("a truth");
         error.max
     };
@@ -54,8 +55,8 @@ fn absolute() -> Box<dyn Integrator> {
 /// are not.
 fn same(a: &Scene, b: &Scene, unit: f64, bound: f64) {
     let ((a, mutant_a), (b, mutant_b)) = (errors(a), errors(b));
-    assert_eq!(a.len(), REGISTRY.len());
-    for ((row, a), b) in REGISTRY.iter().zip(a).zip(b) {
+    assert_eq!(a.len(), fixed().len());
+    for ((row, a), b) in fixed().iter().zip(a).zip(b) {
         let off = (a - b / unit).abs();
         assert!(off <= bound, "{}: {a:e} and {:e}", row.id, b / unit);
     }
@@ -119,7 +120,7 @@ fn both_units_expect_the_same() {
     let [tiny, huge] = ["units_tiny", "units_huge"].map(scene);
     assert_eq!(tiny.expect.len(), huge.expect.len());
     for (tiny, huge) in tiny.expect.iter().zip(&huge.expect) {
-        assert_eq!((&tiny.whom, &tiny.key), (&huge.whom, &huge.key));
+        assert_eq!((&tiny.scope, &tiny.key), (&huge.scope, &huge.key));
         let unit = if tiny.key == "position_error_m.max" {
             1e18
         } else {
@@ -196,7 +197,7 @@ fn reversible_methods_come_back_and_others_do_not() {
     let h = scene.solver.timestep;
     // 800 steps that round coordinates of 1: a walk of 3e-15, grown tenfold. Measured up to 2.7e-14.
     let rounding = 8e-14;
-    for row in REGISTRY.iter() {
+    for row in fixed().iter() {
         let off = returned(&own(row), &scene, h);
         if row.reversible {
             assert!(off < rounding, "{}: {off:e}", row.id);

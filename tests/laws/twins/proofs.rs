@@ -2,7 +2,7 @@
 
 use super::{mutated, scenes};
 use springcheck::measure::twin::{prove, prove_pair};
-use springcheck::outcome::{Check, CheckStatus};
+use springcheck::measure::{Check, CheckStatus};
 use springcheck::scene::{DampingModel, Scene, Spring};
 
 fn show(scene: &Scene, h: f64, proof: &Check) -> String {

@@ -3,29 +3,29 @@
 use super::{choice, cost, of};
 use crate::testkit::mutants;
 use crate::testkit::scenes::shipped;
-use springcheck::integrators::{self, Settings, adaptive};
-use springcheck::outcome::{Kind, Status};
+use springcheck::integrators::{self, Settings};
 use springcheck::solvers::Solver;
+use springcheck::solvers::{Kind, Status};
 
 #[test]
 fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {
     let scene = shipped("oscillator/oscillator.yml");
     let mut choice = choice(
-        integrators::REGISTRY
+        integrators::fixed()
             .iter()
             .filter(|m| m.order < 4)
             .collect(),
     );
-    let pairs = adaptive::REGISTRY.iter().map(Solver::pair);
+    let pairs = integrators::pairs().iter().map(Solver::method);
     choice.solvers.extend(pairs);
     choice.targets = vec![1e-7];
     choice.budget_s = 2.0;
     let cost = cost(&scene, &choice);
-    for pair in adaptive::REGISTRY {
-        let curve = of(&cost, pair.id);
+    for method in integrators::pairs() {
+        let curve = of(&cost, method.id);
         assert_eq!(
             (curve.kind, curve.order),
-            (Kind::Integrator, Some(pair.order))
+            (Kind::Integrator, Some(method.order))
         );
         let tolerances: Vec<f64> = curve.points.iter().filter_map(|p| p.tolerance).collect();
         assert_eq!(tolerances.len(), curve.points.len());
@@ -41,7 +41,8 @@ fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {
             let mean = scene.duration / point.steps as f64;
             assert!((point.timestep - mean).abs() <= 1e-12 * mean);
             // Rejected steps and the first one's guess come on top of what accepted ones take.
-            let least = point.steps * u64::from(pair.evaluations()[0]);
+            let [accepted, _] = method.pair().expect("a pair").evaluations();
+            let least = point.steps * u64::from(accepted);
             assert!(point.force_evaluations >= Some(least), "{point:?}");
         }
     }

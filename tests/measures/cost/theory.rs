@@ -3,9 +3,9 @@
 
 use super::{all, choice, cost, of};
 use crate::testkit::scenes::shipped;
-use springcheck::crosscheck::cost::CostChoice;
 use springcheck::integrators::{self, Coefficients, Method, PerStep, Tableau};
-use springcheck::outcome::{Cost, CostCurve, CostPoint};
+use springcheck::verbs::cost::CostChoice;
+use springcheck::verbs::cost::{Cost, CostCurve, CostPoint};
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
@@ -66,7 +66,7 @@ fn slopes(cost: &Cost, method: &'static Method) -> Result<(), String> {
 
 #[test]
 fn slopes_are_orders() {
-    for method in integrators::REGISTRY.iter() {
+    for method in integrators::fixed().iter() {
         if let Err(wrong) = slopes(&OSCILLATOR, method) {
             panic!("{}: {wrong}", method.id);
         }
@@ -80,7 +80,7 @@ static SWAPPED: LazyLock<Method> = LazyLock::new(|| Method {
         b: &[1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0, 1.0 / 3.0],
         c: &[0.0, 0.5, 0.5, 1.0],
     }),
-    ..integrators::REGISTRY[8]
+    ..integrators::fixed()[8]
 });
 
 #[test]
@@ -191,7 +191,8 @@ fn integrators_come_in_the_order_of_theory() {
     }
     // At the finest target: no method of a lower order needs fewer evaluations than one of a higher.
     let finest = OSCILLATOR.targets.last().expect("a target");
-    let reached = |rank: &springcheck::outcome::CostRank| rank.reached.as_ref()?.force_evaluations;
+    let reached =
+        |rank: &springcheck::verbs::cost::CostRank| rank.reached.as_ref()?.force_evaluations;
     for a in &finest.ranking {
         for b in &finest.ranking {
             let orders = [a, b].map(|r| integrators::find(&r.engine).expect("a method").order);

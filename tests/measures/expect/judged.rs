@@ -1,12 +1,15 @@
 //! Each kind of expectation passes and fails, and what is not there never passes.
 
 use super::{oscillator, run};
-use springcheck::crosscheck::{Choice, expect, names};
 use springcheck::integrators;
-use springcheck::outcome::{Body, Check, CheckStatus, Outcome, Report};
-use springcheck::scene::{Expectation, Scene, Wanted, Whom};
+use springcheck::measure::{Check, CheckStatus};
+use springcheck::scene::{Expectation, Scene, Scope, Wanted};
 use springcheck::solvers::rapier;
 use springcheck::truth::Demand;
+use springcheck::verbs::names;
+use springcheck::verbs::run::Outcome;
+use springcheck::verbs::run::{Choice, expect};
+use springcheck::verbs::{Body, Report};
 
 fn judged(expect: &str) -> (Scene, Report, Vec<Check>) {
     let scene = oscillator(expect);
@@ -172,7 +175,7 @@ fn a_status_says_what_led_to_it() {
     let scene = oscillator("  rk4: {status: completed}");
     let mut report = run(&scene, &Choice::expected(&scene));
     let outcome = first(&mut report);
-    outcome.status = springcheck::outcome::Status::Diverged;
+    outcome.status = springcheck::solvers::Status::Diverged;
     outcome.reason = Some("in step 7: particle 1 is no longer finite".into());
     let message = &expect::check(&scene, &report)[0].message;
     assert_eq!(
@@ -182,7 +185,7 @@ fn a_status_says_what_led_to_it() {
     );
 }
 
-/// Whom each word is about, and which key wins.
+/// What each word is about, and which key wins.
 #[test]
 fn all_rest_and_own_lines() {
     let (_, report, checks) = judged(
@@ -190,8 +193,8 @@ fn all_rest_and_own_lines() {
          growing}\n  rest: {energy.class: [bounded, drifting, dissipating, growing]}",
     );
     // Two keys of every integrator, nothing of engines, and nothing else runs.
-    assert_eq!(checks.len(), 2 * integrators::REGISTRY.len());
-    assert_eq!(report.outcomes().len(), integrators::REGISTRY.len());
+    assert_eq!(checks.len(), 2 * integrators::fixed().len());
+    assert_eq!(report.outcomes().len(), integrators::fixed().len());
     assert!(checks.iter().all(|c| c.status == CheckStatus::Pass));
     let from = |subject: &str| {
         let check = checks.iter().find(|c| c.subject == subject);
@@ -248,7 +251,7 @@ fn what_is_left_out_changes_no_key() {
     let mut moved = 0;
     for key in &names().keys {
         scene.expect = vec![Expectation {
-            whom: Whom::Engine("rk4".into()),
+            scope: Scope::Engine("rk4".into()),
             key: key.path.clone(),
             wanted: Wanted::Contains("x".into()),
         }];

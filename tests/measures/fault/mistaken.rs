@@ -2,7 +2,7 @@
 
 use super::record::{PRECISIONS, fault_of, question, rows, run, thinned};
 use crate::testkit::{distance, everything, mutants, part, swinging_triangle};
-use springcheck::integrators::{REGISTRY, Settings};
+use springcheck::integrators::{Settings, fixed};
 use springcheck::measure::identify::{Candidate, MISTAKES, Wrong, first_fault, identify, mistakes};
 use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Scene};
@@ -18,7 +18,7 @@ fn scene(model: DampingModel) -> Scene {
 
 fn built(scene: &Scene) -> (ParticleSystem, Vec<Candidate>, Vec<Candidate>) {
     let system = ParticleSystem::new(scene);
-    let methods = REGISTRY.iter().map(|m| Candidate::method(&system, m, 1));
+    let methods = fixed().iter().map(|m| Candidate::method(&system, m, 1));
     let methods = methods.collect();
     let wrong = mistakes(scene, &system);
     (system, methods, wrong)
@@ -99,7 +99,7 @@ fn every_mistake_can_be_made_and_speaks() {
                 assert!(springcheck::integrators::find(meant).is_some(), "{meant}");
                 1
             }
-            _ => REGISTRY.len(),
+            _ => fixed().len(),
         };
         assert!(forms >= least, "{}: {forms}", mistake.id);
         assert!(mistake.says.len() > 40, "{}", mistake.id);

@@ -6,7 +6,7 @@ use super::injected::{
 };
 use super::record::{PRECISIONS, fault_of, rows, run, thinned};
 use crate::testkit::swinging_triangle;
-use springcheck::outcome::Quantity;
+use springcheck::measure::identify::Quantity;
 use springcheck::physics::effects::EffectRow;
 use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Particle, Spring};
@@ -195,17 +195,16 @@ fn the_particle_is_found_among_two_hundred() {
             velocity: [0.0, 0.1 * (i % 5) as f64, 0.0],
             fixed: i == 0,
             mass: 0.1 + 0.001 * i as f64,
-            radius: 0.1,
-            drag: 0.0,
+            ..Particle::default()
         })
         .collect();
     scene.springs = (0..199)
         .map(|i| Spring {
             ends: [i, i + 1],
             stiffness: 40.0,
-            cubic: 0.0,
             damping: 0.2,
             rest_length: 0.08,
+            ..Spring::default()
         })
         .collect();
     scene.solver.timestep = 1e-3;

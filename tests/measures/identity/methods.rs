@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::testkit::{part, swinging_triangle};
-use springcheck::integrators::REGISTRY;
+use springcheck::integrators::fixed;
 use springcheck::measure::identify::Sameness;
 use springcheck::scene::DampingModel;
 use springcheck::solvers::{Limits, Setting, find};
@@ -29,7 +29,7 @@ fn names(scene: &Scene, rows: &Rows, method: &str, substeps: u32) -> Result<Iden
 fn every_method_is_named_in_any_substeps_to_the_last_bit() {
     for (damping, several) in [(0.0, [1, 3, 8]), (0.7, [1, 4, 16])] {
         let scene = swinging_triangle(damping, DampingModel::Axial);
-        for (at, method) in REGISTRY.iter().enumerate() {
+        for (at, method) in fixed().iter().enumerate() {
             for &substeps in part(&several, 3, at) {
                 let rows = run(&scene, method.id, substeps, 60);
                 let identity = names(&scene, &rows, method.id, substeps).unwrap();
@@ -61,7 +61,7 @@ fn other_last_bits_are_the_same_method() {
     let mut worst = 0.0_f64;
     for damping in [0.0, 0.7] {
         let scene = swinging_triangle(damping, DampingModel::Isotropic);
-        for method in REGISTRY.iter() {
+        for method in fixed().iter() {
             for substeps in [1, 2] {
                 let rows = other_bits(&run(&scene, method.id, substeps, 100));
                 let identity = names(&scene, &rows, method.id, substeps).unwrap();
@@ -78,7 +78,7 @@ fn other_last_bits_are_the_same_method() {
 fn rows_may_lie_unevenly_apart() {
     let mut scene = swinging_triangle(0.7, DampingModel::Axial);
     scene.solver.timestep = 5e-4;
-    for method in REGISTRY.iter() {
+    for method in fixed().iter() {
         let all = run(&scene, method.id, 1, 400);
         // 60 rows a second.
         let steps: Vec<u64> = (0..12).map(|k| (k * 100_u64).div_ceil(3)).collect();

@@ -3,7 +3,7 @@
 use super::*;
 use crate::testkit::part;
 use crate::testkit::scenes::{all_shipped, folders, shipped};
-use springcheck::integrators::REGISTRY;
+use springcheck::integrators::fixed;
 use springcheck::measure::identify::Sameness;
 use std::collections::BTreeSet;
 
@@ -39,7 +39,7 @@ fn every_method_is_named_on_every_shipped_scene() {
     let mut folders = folders();
     folders.retain(|folder| folder != "hard");
     for (at, scene) in all_shipped(&folders).iter().enumerate() {
-        let methods = part(&REGISTRY, 3, at);
+        let methods = part(fixed(), 3, at);
         let classes: Vec<_> = methods
             .iter()
             .map(|method| class(scene, method.id).unwrap())
@@ -97,7 +97,7 @@ fn on_linear_forces_some_methods_are_one() {
         }
     }
     // A spring that turns is not linear: all are told apart.
-    for method in REGISTRY.iter() {
+    for method in fixed().iter() {
         assert_eq!(class(&course(5), method.id), Ok(set(method.id)));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::testkit::swinging_triangle;
-use springcheck::integrators::{Integrator, REGISTRY, RungeKutta, Tableau};
+use springcheck::integrators::{Integrator, RungeKutta, Tableau, fixed};
 use springcheck::measure::identify::Sameness;
 use springcheck::scene::DampingModel;
 
@@ -50,7 +50,7 @@ fn unknown_schemes_are_not_named() {
             unnamed(&of(&scene, Box::new(RungeKutta::new(*tableau)))).unwrap();
         }
         // What is in the list is.
-        for method in REGISTRY.iter() {
+        for method in fixed().iter() {
             let known = of(&scene, method.build(&Settings::default()));
             assert!(unnamed(&known).is_err(), "{}", method.id);
         }

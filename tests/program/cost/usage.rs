@@ -14,8 +14,8 @@ fn integrators_are_methods_and_pairs_once_each_in_their_order() {
     let both = "dop853,rk4,dormand_prince54,dop853,heun";
     assert_eq!(swept(both), "rk4,heun,dop853,dormand_prince54");
     let all = swept("all");
-    let ids = springcheck::integrators::ids();
-    let pairs = springcheck::integrators::adaptive::ids();
+    let ids = springcheck::integrators::ids(springcheck::integrators::fixed());
+    let pairs = springcheck::integrators::ids(springcheck::integrators::pairs());
     assert_eq!(all.split(',').count(), ids.len() + pairs.len());
     assert!(all.starts_with("symplectic_euler,explicit_euler,"));
     assert!(all.ends_with(&pairs.join(",")), "{all}");

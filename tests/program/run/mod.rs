@@ -80,7 +80,7 @@ fn every_pa1_scene_runs_with_every_integrator_and_engine() {
             "rapier,rapier-forces,rapier-converged",
         ]);
         let outcomes = outcomes(&report);
-        assert_eq!(outcomes.len(), springcheck::integrators::REGISTRY.len() + 3);
+        assert_eq!(outcomes.len(), springcheck::integrators::fixed().len() + 3);
         for outcome in outcomes {
             assert_eq!(
                 outcome["status"], "completed",
@@ -183,8 +183,14 @@ fn a_reader_that_leaves_is_no_error() {
 #[test]
 fn lists_show_every_row() {
     let rows: [(&str, Vec<&str>); 4] = [
-        ("integrators", springcheck::integrators::ids()),
-        ("integrators", springcheck::integrators::adaptive::ids()),
+        (
+            "integrators",
+            springcheck::integrators::ids(springcheck::integrators::fixed()),
+        ),
+        (
+            "integrators",
+            springcheck::integrators::ids(springcheck::integrators::pairs()),
+        ),
         (
             "effects",
             springcheck::physics::effects::REGISTRY

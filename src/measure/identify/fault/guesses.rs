@@ -4,7 +4,7 @@ use super::super::candidate::Candidate;
 use super::super::mistakes::{MISTAKES, Wrong};
 use super::spot::Spot;
 use super::words::{rows_lost, spring_name};
-use crate::integrators::REGISTRY;
+use crate::integrators::fixed;
 use crate::physics::ParticleSystem;
 use crate::scene::{Scene, Spring};
 
@@ -154,7 +154,7 @@ fn mistakes(spot: &Spot) -> Vec<Guess> {
 /// Another method, other substeps, or a wrong form of some method.
 fn schemes(spot: &Spot) -> Vec<Guess> {
     let (system, followed) = (spot.question.system, spot.followed);
-    let mut guesses: Vec<Guess> = REGISTRY
+    let mut guesses: Vec<Guess> = fixed()
         .iter()
         .filter(|method| method.id != followed.id)
         .map(|method| {
@@ -162,7 +162,7 @@ fn schemes(spot: &Spot) -> Vec<Guess> {
             scheme(says, Candidate::method(system, method, followed.substeps))
         })
         .collect();
-    let own = REGISTRY.iter().find(|method| method.id == followed.id);
+    let own = fixed().iter().find(|method| method.id == followed.id);
     if let Some(method) = own {
         for substeps in (1..=SUBSTEPS).filter(|n| *n != followed.substeps) {
             let says = match substeps {

@@ -11,12 +11,19 @@ mod spectrum;
 
 use super::Limit;
 use crate::integrators::{Amplification, Method};
-use crate::outcome::TightestLimit;
 use crate::physics::{State, System};
 use crate::scene::{DampingModel, Scene};
 pub(super) use parts::shortest;
 pub use prediction::Prediction;
+use serde::{Deserialize, Serialize};
 use spectrum::{Known, Spectrum};
+
+/// Where along the trajectory the predicted limit is smallest.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct TightestLimit {
+    pub limit_s: f64,
+    pub t_s: f64,
+}
 
 /// x'' = -K x - C v about a state, mass-normalised, as its parts that do not couple.
 #[derive(Debug, Clone)]

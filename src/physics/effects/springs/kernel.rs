@@ -1,11 +1,11 @@
-//! The force loop: springs in blocks, gathered, computed, scattered.
+//! The force loop: springs in blocks, gathered, computed, scattered, and the parts of a network shared
+//! among threads.
 //!
 //! Nothing but plain sums, products, quotients and roots, each rounded once and in one order: scalar
 //! and vector instructions of any width give the same bits.
 
-use super::dashpot::{Pair, one};
-use super::network::Table;
-use super::{AXIAL, ISOTROPIC, NONE, dot};
+use super::network::{Part, Table};
+use super::{AXIAL, ISOTROPIC, NONE, SHORTEST, dot};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Springs computed side by side: enough for the compiler to take vectors, few enough to stay in
@@ -13,7 +13,7 @@ use pulp::{Arch, Simd, WithSimd};
 const BLOCK: usize = 16;
 
 /// A flat vector of length 3n, particle by particle.
-pub(super) type Vectors = [[f64; 3]];
+type Vectors = [[f64; 3]];
 
 /// Where the forces are taken.
 #[derive(Clone, Copy)]
@@ -34,12 +34,56 @@ impl<'a> Motion<'a> {
     }
 }
 
+/// Adds all forces, N, to `f` of length 3n; returns the dissipated power, W. Without `ELASTIC` those
+/// of the dampers alone.
+///
+/// Parts go to whatever threads are free. Each adds to its own particles, and the powers are summed
+/// along the same tree whatever the number of threads, one included.
+#[inline(always)]
+pub(super) fn add<const MODEL: u8, const ELASTIC: bool>(
+    arch: Arch,
+    parts: &[Part],
+    at: Motion,
+    f: &mut [f64],
+) -> f64 {
+    let f = f.as_chunks_mut().0;
+    if let [part] = parts {
+        return add_part::<MODEL, ELASTIC>(arch, &part.table, at, f, 0);
+    }
+    add_parts::<MODEL, ELASTIC>(arch, parts, at, f, rayon::current_num_threads() > 1)
+}
+
+/// `f` begins with the first part's first particle.
+fn add_parts<const MODEL: u8, const ELASTIC: bool>(
+    arch: Arch,
+    parts: &[Part],
+    at: Motion,
+    f: &mut Vectors,
+    parallel: bool,
+) -> f64 {
+    let start = |parts: &[Part]| parts.first().map_or(0, |part| part.particles.start);
+    let (left, right) = match parts {
+        [] => return 0.0,
+        [part] => return add_part::<MODEL, ELASTIC>(arch, &part.table, at, f, start(parts)),
+        parts => parts.split_at(parts.len() / 2),
+    };
+    let (own, others) = f.split_at_mut(start(right) - start(left));
+    let mut left = || add_parts::<MODEL, ELASTIC>(arch, left, at, own, parallel);
+    let mut right = || add_parts::<MODEL, ELASTIC>(arch, right, at, others, parallel);
+    let (left, right) = if parallel {
+        rayon::join(left, right)
+    } else {
+        (left(), right())
+    };
+    left + right
+}
+
 /// Adds the springs' forces, N, to `f`, which begins with particle `first`: to their ends there, and
 /// to no others. Without `ELASTIC` those of the dampers alone.
 ///
 /// Returns the power dissipated, W, by springs whose first end is there.
 #[inline(always)]
-pub(super) fn add<const MODEL: u8, const ELASTIC: bool>(
+fn add_part<const MODEL: u8, const ELASTIC: bool>(
     arch: Arch,
     springs: &Table,
     at: Motion,
@@ -271,4 +315,59 @@ fn apart(x: &Vectors, ends: [u32; 2]) -> [f64; 3] {
         }
     }
     between
+}
+
+/// What a spring knows of its ends.
+struct Pair {
+    /// From the first end to the second, m.
+    between: [f64; 3],
+    /// Relative velocity times `between`, m²/s; with axial dampers.
+    closing: f64,
+    /// Relative velocity, m/s; with isotropic dampers.
+    relative: [f64; 3],
+}
+
+/// The force on the first end of a spring of stiffness, rest length and damping, N, and the power it
+/// dissipates, W.
+#[inline(always)]
+fn one<const MODEL: u8, const ELASTIC: bool>(
+    pair: Pair,
+    [stiffness, rest_length, damping]: [f64; 3],
+) -> ([f64; 3], f64) {
+    let Pair {
+        between,
+        closing,
+        relative,
+    } = pair;
+    let length = dot(between, between).sqrt();
+    // As f64::max: of NaN and a number the number.
+    let length = if length > SHORTEST { length } else { SHORTEST };
+    let mut pull = 0.0;
+    if ELASTIC {
+        pull = stiffness * (length - rest_length);
+    }
+    let mut loss = 0.0;
+    let along = if MODEL == AXIAL {
+        // One division for two: a division costs as much as all the rest.
+        let inverse = 1.0 / length;
+        let rate = closing * inverse;
+        let resistance = damping * rate;
+        loss = resistance * rate;
+        (pull + resistance) * inverse
+    } else {
+        pull / length
+    };
+    let mut force = [along * between[0], along * between[1], along * between[2]];
+    if MODEL == ISOTROPIC {
+        for axis in 0..3 {
+            let resistance = damping * relative[axis];
+            force[axis] = if ELASTIC {
+                force[axis] + resistance
+            } else {
+                resistance
+            };
+        }
+        loss = damping * dot(relative, relative);
+    }
+    (force, loss)
 }

@@ -1,15 +1,13 @@
 //! Springs with dampers, fused in one loop.
 
-mod dashpot;
-mod jacobian;
 mod kernel;
 mod network;
-mod share;
 
 use super::{Effect, EffectRow, boxed};
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
-use crate::scene::{DampingModel, Scene};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Slope};
+use crate::scene::{DampingModel, Scene, Spring};
 use kernel::Motion;
+use nalgebra::{Matrix3, Vector3};
 use network::Network;
 use pulp::Arch;
 
@@ -27,7 +25,7 @@ pub(super) const ROW: EffectRow = EffectRow {
 pub(super) const SHORTEST: f64 = 1e-150;
 
 /// All springs of a scene: their linear part, and their dampers. What `cubic` adds is
-/// [`CubicSprings`](super::CubicSprings)'.
+/// [`Central`](super::Central)'s.
 ///
 /// Coincident ends: no force from a spring or an axial damper, since neither has a direction there;
 /// an isotropic damper still acts.
@@ -97,9 +95,9 @@ impl Effect for Springs {
     fn add_force(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
         let (arch, parts, at) = (self.arch, &self.network.parts, Motion::new(x, v));
         let dissipated = match self.damping {
-            Damping::None => share::add::<NONE, true>(arch, parts, at, f),
-            Damping::Axial => share::add::<AXIAL, true>(arch, parts, at, f),
-            Damping::Isotropic => share::add::<ISOTROPIC, true>(arch, parts, at, f),
+            Damping::None => kernel::add::<NONE, true>(arch, parts, at, f),
+            Damping::Axial => kernel::add::<AXIAL, true>(arch, parts, at, f),
+            Damping::Isotropic => kernel::add::<ISOTROPIC, true>(arch, parts, at, f),
         };
         Power {
             dissipated,
@@ -123,8 +121,8 @@ impl Effect for Springs {
         let (arch, parts, at) = (self.arch, &self.network.parts, Motion::new(x, w));
         match self.damping {
             Damping::None => 0.0,
-            Damping::Axial => share::add::<AXIAL, false>(arch, parts, at, f),
-            Damping::Isotropic => share::add::<ISOTROPIC, false>(arch, parts, at, f),
+            Damping::Axial => kernel::add::<AXIAL, false>(arch, parts, at, f),
+            Damping::Isotropic => kernel::add::<ISOTROPIC, false>(arch, parts, at, f),
         };
     }
 
@@ -137,10 +135,11 @@ impl Effect for Springs {
         out: &mut Jacobian,
     ) {
         self.network.springs().for_each(|spring| {
-            let (position, velocity) = jacobian::blocks(&spring, self.damping, x, v, linearization);
-            let [i, j] = spring.ends;
-            let velocity = (self.damping != Damping::None).then_some(&velocity);
-            out.add_pair(i, j, Some(&position), velocity);
+            let (position, velocity) = blocks(&spring, self.damping, x, v, linearization);
+            out.add_pair(Slope::Position, spring.ends, position);
+            if self.damping != Damping::None {
+                out.add_pair(Slope::Velocity, spring.ends, velocity);
+            }
         });
     }
 
@@ -151,6 +150,53 @@ impl Effect for Springs {
     fn keeps_angular_momentum(&self) -> bool {
         self.damping != Damping::Isotropic
     }
+}
+
+/// ∂f_i/∂(x_j - x_i) and ∂f_i/∂(v_j - v_i) of one spring.
+#[inline]
+fn blocks(
+    spring: &Spring,
+    damping: Damping,
+    x: &[f64],
+    v: &[f64],
+    linearization: Linearization,
+) -> (Matrix3<f64>, Matrix3<f64>) {
+    let [i, j] = spring.ends.map(|end| 3 * end);
+    let d = Vector3::from(difference(x, i, j));
+    let length = d.norm();
+    let (k, c) = (spring.stiffness, spring.damping);
+    let identity = Matrix3::identity();
+    if length <= SHORTEST {
+        // Without a direction n there is no k n nᵀ, although the exact stiffness is k.
+        let exact = linearization != Linearization::Material;
+        let position = if exact && spring.rest_length == 0.0 {
+            identity * k
+        } else {
+            Matrix3::zeros()
+        };
+        let isotropic = damping == Damping::Isotropic;
+        return (position, identity * if isotropic { c } else { 0.0 });
+    }
+    let n = d / length;
+    let axial = n * n.transpose();
+    let velocity = match damping {
+        Damping::None => Matrix3::zeros(),
+        Damping::Axial => axial * c,
+        Damping::Isotropic => identity * c,
+    };
+    let mut position = axial * k;
+    if linearization != Linearization::Material {
+        let definite = linearization == Linearization::Definite;
+        let across = identity - axial;
+        let tension = k * (length - spring.rest_length) / length;
+        position += across * if definite { tension.max(0.0) } else { tension };
+        if !definite && damping == Damping::Axial {
+            let dv = Vector3::from(difference(v, i, j));
+            let turned = n * (dv.transpose() * across) + across * dv.dot(&n);
+            position += turned * (c / length);
+        }
+    }
+    (position, velocity)
 }
 
 /// From particle at offset `i` to the one at offset `j`.

@@ -1,7 +1,7 @@
 //! Springs laid out for the kernel: one array a quantity, cut at particles so that threads share
 //! nothing.
 
-use crate::scene;
+use crate::scene::Spring;
 use std::ops::Range;
 
 /// A network this large is cut, if its numbering allows. Smaller ones are faster on one thread.
@@ -46,19 +46,6 @@ pub(super) struct Network {
     pub members: usize,
 }
 
-/// One spring.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Spring {
-    /// Particle indices.
-    pub ends: [usize; 2],
-    /// k, N/m.
-    pub stiffness: f64,
-    /// L, m.
-    pub rest_length: f64,
-    /// c, N s/m.
-    pub damping: f64,
-}
-
 impl Table {
     /// With room for so many springs and no more.
     fn with_capacity(springs: usize, damped: bool) -> Self {
@@ -70,7 +57,7 @@ impl Table {
         }
     }
 
-    fn push(&mut self, spring: &scene::Spring, damped: bool) {
+    fn push(&mut self, spring: &Spring, damped: bool) {
         self.ends.push(spring.ends.map(|end| end as u32));
         self.stiffness.push(spring.stiffness);
         self.rest_length.push(spring.rest_length);
@@ -87,15 +74,16 @@ impl Table {
             .map(|(((ends, &stiffness), &rest_length), damping)| Spring {
                 ends: ends.map(|end| end as usize),
                 stiffness,
-                rest_length,
+                cubic: 0.0,
                 damping,
+                rest_length,
             })
     }
 }
 
 impl Network {
     /// Of these springs between so many particles; `damped` when any has a damper.
-    pub fn new(springs: &[&scene::Spring], particles: usize, damped: bool) -> Self {
+    pub fn new(springs: &[&Spring], particles: usize, damped: bool) -> Self {
         let cuts = cuts(springs, particles);
         let part_of = |end: usize| cuts.partition_point(|&cut| cut <= end) - 1;
         let bounds = cuts.iter().zip(cuts.iter().skip(1).chain([&particles]));
@@ -117,7 +105,7 @@ impl Network {
         }
     }
 
-    /// Each spring once, in an order that depends on the network alone: that of the scene, unless
+    /// Each spring once, its linear part alone, in an order that depends on the network alone: that of the scene, unless
     /// the network is cut.
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
         self.parts.iter().flat_map(|part| {
@@ -129,9 +117,9 @@ impl Network {
 
 /// Hands every spring to the one or two parts of its ends.
 fn each_part<'a>(
-    springs: &[&'a scene::Spring],
+    springs: &[&'a Spring],
     part_of: impl Fn(usize) -> usize,
-    mut put: impl FnMut(usize, &'a scene::Spring),
+    mut put: impl FnMut(usize, &'a Spring),
 ) {
     for spring in springs {
         let [first, second] = spring.ends.map(&part_of);
@@ -144,7 +132,7 @@ fn each_part<'a>(
 
 /// Where each part begins, 0 first: about as many spring ends in each. Depends on the network
 /// alone, never on the number of threads.
-fn cuts(springs: &[&scene::Spring], particles: usize) -> Vec<usize> {
+fn cuts(springs: &[&Spring], particles: usize) -> Vec<usize> {
     let whole = vec![0];
     if springs.len() < CUT_FROM {
         return whole;
@@ -164,7 +152,7 @@ fn cuts(springs: &[&scene::Spring], particles: usize) -> Vec<usize> {
             before += ends as usize;
         }
         let part_of = |end: usize| cuts.partition_point(|&cut| cut <= end);
-        let crosses = |spring: &&&scene::Spring| {
+        let crosses = |spring: &&&Spring| {
             let [first, second] = spring.ends.map(part_of);
             first != second
         };

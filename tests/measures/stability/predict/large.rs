@@ -191,7 +191,7 @@ fn the_same_bits_come_out_again() {
             ..Effort::FULL
         };
         let linearised = Linearised::new(&system, &state, effort);
-        REGISTRY
+        fixed()
             .iter()
             .map(|m| format!("{:?}", linearised.predict(m, 0.01)))
             .collect::<Vec<_>>()

@@ -164,7 +164,7 @@ fn radius_law(system: &dyn System, method: &Method, build: Build) -> Result<(), 
 #[test]
 fn modes_coupled_by_damping_are_as_every_method_steps_them() {
     let (system, _) = built(&unequal());
-    for method in REGISTRY.iter() {
+    for method in fixed().iter() {
         // The linear implicit methods' own matrices are nearly singular nowhere: any h will do.
         if method.id == "linearized_implicit_material" {
             // At coincidence its springs have no direction; see the test on turning springs.

@@ -1,0 +1,204 @@
+//! `springs.stiffness=1e2..1e8:24`: what a map varies, from where to where, in how many values.
+
+use crate::scene::limits::Quantity;
+use crate::scene::model::{Kind, PARTICLES, PARTS, Part, Row};
+use crate::scene::words::nearest;
+use crate::scene::{Scene, Value};
+use std::fmt;
+use std::str::FromStr;
+
+/// Values where the text does not say how many.
+pub const COUNT: usize = 24;
+/// More than this would be a picture nobody can read.
+const MOST: usize = 200;
+
+/// Why a text varies nothing.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct VaryError(String);
+
+/// `A..B` or `A..B:N`, A below B.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// The first value.
+    pub low: f64,
+    /// The last.
+    pub high: f64,
+    /// Values from end to end.
+    pub count: usize,
+}
+
+impl FromStr for Range {
+    type Err = VaryError;
+
+    fn from_str(text: &str) -> Result<Self, VaryError> {
+        let form = || VaryError(format!("expected A..B or A..B:N, found `{text}`"));
+        let (low, rest) = text.split_once("..").ok_or_else(form)?;
+        let (high, count) = match rest.split_once(':') {
+            Some((high, count)) => (high, Some(count)),
+            None => (rest, None),
+        };
+        let number = |text: &str| {
+            let number = text.trim().parse::<f64>().ok().filter(|n| n.is_finite());
+            number.ok_or_else(|| VaryError(format!("expected a finite number, found `{text}`")))
+        };
+        let (low, high) = (number(low)?, number(high)?);
+        if low >= high {
+            let message = format!("expected a range that rises, found {low} to {high}");
+            return Err(VaryError(message));
+        }
+        let count = count.map_or(Ok(COUNT), |count| {
+            let parsed = count.trim().parse().ok().filter(|n| (2..=MOST).contains(n));
+            parsed.ok_or_else(|| VaryError(format!("expected 2 to {MOST} values, found `{count}`")))
+        })?;
+        Ok(Self { low, high, count })
+    }
+}
+
+impl Range {
+    /// Evenly spaced in their logarithm where both ends are positive, else evenly; the ends exactly.
+    pub fn values(&self) -> Vec<f64> {
+        let last = self.count.saturating_sub(1).max(1);
+        let at = |i: usize| {
+            let part = i as f64 / last as f64;
+            match i {
+                0 => self.low,
+                i if i == last => self.high,
+                _ if self.low > 0.0 => {
+                    (self.low.ln() + part * (self.high.ln() - self.low.ln())).exp()
+                }
+                _ => self.low + part * (self.high - self.low),
+            }
+        };
+        (0..self.count).map(at).collect()
+    }
+}
+
+/// A number of the scene that has a say in the motion, of one member of its part or of all.
+#[derive(Debug, Clone, Copy)]
+struct Key {
+    part: &'static Part,
+    row: &'static Row,
+    quantity: Quantity,
+    member: Option<usize>,
+}
+
+/// Every key there is, of all members.
+fn keys() -> impl Iterator<Item = Key> {
+    let of = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
+    let number = |(part, row): (_, &'static Row)| match row.kind {
+        Kind::Number(quantity) if row.flat.is_some() => Some(Key {
+            part,
+            row,
+            quantity,
+            member: None,
+        }),
+        _ => None,
+    };
+    PARTS.into_iter().flat_map(of).filter_map(number)
+}
+
+impl Key {
+    /// `springs.stiffness`; `springs[3].stiffness` is the same of one member, where there is a list.
+    fn find(id: &str) -> Result<Key, VaryError> {
+        let (list, rest) = id.split_once('[').unwrap_or((id, ""));
+        let (index, field) = rest.split_once(']').unwrap_or(("", rest));
+        let plain = format!("{list}{field}");
+        let member = index.parse().ok();
+        let found = keys().find(|key| {
+            key.to_string() == plain && (plain == id || key.part.list && member.is_some())
+        });
+        found.map(|key| Key { member, ..key }).ok_or_else(|| {
+            let known: Vec<String> = keys().map(|key| key.to_string()).collect();
+            let words: Vec<&str> = known.iter().map(String::as_str).collect();
+            let hint = nearest(&plain, &words).map(|near| format!(" (did you mean `{near}`?)"));
+            VaryError(format!(
+                "unknown key `{id}`{}; known: {}, and of one member such as springs[3].stiffness \
+                 or particles[1].mass",
+                hint.unwrap_or_default(),
+                known.join(", ")
+            ))
+        })
+    }
+
+    /// Whether it means anything of this member: what is fixed neither has inertia nor drags.
+    fn free(&self, scene: &Scene, at: usize) -> bool {
+        self.part.key != PARTICLES.key || scene.particles.get(at).is_some_and(|p| !p.fixed)
+    }
+}
+
+impl fmt::Display for Key {
+    /// As the command line writes it: `springs.stiffness`, `particles[1].mass`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.part.path(self.member, self.row.key))
+    }
+}
+
+/// One quantity of a scene and the values it takes.
+#[derive(Debug, Clone)]
+pub struct Vary {
+    key: Key,
+    /// Ascending.
+    pub values: Vec<f64>,
+}
+
+impl Vary {
+    /// Reads `KEY=A..B[:N]` for this scene.
+    ///
+    /// # Errors
+    /// [`VaryError`] when the key is unknown, the scene has no such member, or the values leave what
+    /// a scene file may say.
+    pub fn parse(text: &str, scene: &Scene) -> Result<Self, VaryError> {
+        let (id, range) = text
+            .split_once('=')
+            .ok_or_else(|| VaryError(format!("expected KEY=A..B or KEY=A..B:N, found `{text}`")))?;
+        let refused = |why: String| VaryError(format!("{id}: {why}"));
+        let key = Key::find(id)?;
+        let count = (key.part.count)(scene);
+        match key.member {
+            Some(at) if at >= count => {
+                return Err(refused(format!("the scene has {count} of these, from 0")));
+            }
+            Some(at) if !key.free(scene, at) => {
+                return Err(refused(format!(
+                    "particle {at} is fixed: it changes nothing"
+                )));
+            }
+            None if count == 0 => return Err(refused("the scene has none".into())),
+            _ => {}
+        }
+        let range: Range = range.parse().map_err(|VaryError(why)| refused(why))?;
+        let Quantity { low, high, unit } = key.quantity;
+        let outside = |end: &f64| !(low..=high).contains(end);
+        if let Some(found) = [range.low, range.high].into_iter().find(outside) {
+            return Err(refused(format!(
+                "expected values from {low:e} to {high:e} ({unit}), found {found}"
+            )));
+        }
+        let values = range.values();
+        Ok(Self { key, values })
+    }
+
+    /// As the command line writes it: `springs.stiffness`, `particles[1].mass`.
+    pub fn id(&self) -> String {
+        self.key.to_string()
+    }
+
+    /// Of the values.
+    pub fn unit(&self) -> &'static str {
+        self.key.quantity.unit
+    }
+
+    /// The scene with this value, in the one member or in all that are free.
+    pub fn apply(&self, scene: &Scene, value: f64) -> Scene {
+        let Key {
+            part, row, member, ..
+        } = self.key;
+        let members = member.map_or(0..(part.count)(scene), |at| at..at + 1);
+        let mut varied = scene.clone();
+        for at in members.filter(|at| self.key.free(scene, *at)) {
+            (row.set)(&mut varied, at, 0, Value::Number(value));
+        }
+        varied
+    }
+}
