@@ -62,7 +62,7 @@ pub(super) enum Stop {
     Found(Found),
     Unsupported(Unsupported),
     /// The budget is spent.
-    Impatient,
+    Spent,
 }
 
 impl From<Unsupported> for Stop {
@@ -138,7 +138,7 @@ impl<'a> Experiment<'a> {
             let mut gauge = ExcessEnergy::new(&runs, system, &scene, self.scale, LOST, never);
             probe(&mut runs, &mut gauge, watch, &mut self.budget)
         };
-        probed.ok_or(Stop::Impatient)
+        probed.ok_or(Stop::Spent)
     }
 
     /// Two runs of a linear map.

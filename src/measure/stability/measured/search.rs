@@ -50,7 +50,7 @@ impl Experiment<'_> {
                 (limit, Some(reason))
             }
             Err(Stop::Unsupported(Unsupported { reason })) => (Limit::Unknown(reason), None),
-            Err(Stop::Impatient) => unfinished(self.known, patience),
+            Err(Stop::Spent) => unfinished(self.known, patience),
         }
     }
 
@@ -150,7 +150,7 @@ impl Experiment<'_> {
         }
         // Briefly they were; once more at length, where nothing was tried at length yet.
         let last = match self.full(stable.h) {
-            Err(Stop::Impatient) => return Err(unconditional(stable.h, ", looked at briefly")),
+            Err(Stop::Spent) => return Err(unconditional(stable.h, ", looked at briefly")),
             last => last?,
         };
         if last.probed.unstable() {

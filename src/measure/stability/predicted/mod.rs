@@ -124,7 +124,7 @@ impl Linearised {
                 other => maps::predict(other, part, timestep, &self.effort),
             });
         let all = parts.chain(self.failed.map(Prediction::unknown));
-        // Where nothing moves but freely, nothing grows.
+        // All motion is free: nothing grows.
         let whole = all
             .reduce(Prediction::and)
             .unwrap_or_else(|| Prediction::only(Limit::Unconditional).growing(Some(0.0), timestep));

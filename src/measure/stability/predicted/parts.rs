@@ -172,7 +172,7 @@ fn separate(whole: &[Matrix; 3], inverse_mass: &[f64]) -> Vec<Part> {
     members.iter().map(part).collect()
 }
 
-/// A square sparse matrix. Of each row its columns, ascending, and their entries.
+/// A square sparse matrix: the columns of each row, ascending, and their entries.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Matrix {
     rows: Vec<Vec<(usize, f64)>>,

@@ -40,8 +40,8 @@ fn of_eigenvalues(
     each.reduce(Prediction::and)
 }
 
-/// Between two samples there may be any mode: what they say holds where the stiffest, which is
-/// known, is the one that binds, or where nothing does.
+/// Between two samples there may be any mode. So a limit holds only where the stiffest mode, which is known,
+/// sets it, or where there is none.
 pub(super) fn stiffest_binds(found: Prediction, modes: &[Mode]) -> Option<Prediction> {
     let binds = found.binding == modes.last().copied();
     if binds || !matches!(found.limit, Limit::At(_)) {
@@ -52,8 +52,8 @@ pub(super) fn stiffest_binds(found: Prediction, modes: &[Mode]) -> Option<Predic
     ))
 }
 
-/// Of outermost eigenvalues: the others lie within the least of them, and where the half disc of that
-/// radius is stable too, nothing was missed.
+/// From outermost eigenvalues. The others are no larger than the least of them, so nothing was missed where
+/// the half disc of that radius is stable.
 fn of_outermost(
     rational: &Rational,
     outermost: &[(Complex<f64>, Mode)],
@@ -98,7 +98,7 @@ fn of_outermost(
     }
 }
 
-/// Of the stiffest vector, and a radius no eigenvalue is beyond.
+/// From the stiffest vector and a radius that no eigenvalue exceeds.
 fn of_bound(rational: &Rational, bound: Bound, known: Option<Prediction>) -> Prediction {
     let stable = rational.half_disc();
     let sure = stable / bound.radius;
