@@ -1,12 +1,12 @@
 //! What 1e-9 m costs with a tolerance, and with fixed steps of rk4. Compare figures of one run only.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use springcheck::crosscheck;
 use springcheck::integrators::{self, Method};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
 use springcheck::solvers::{Limits, Run, Setting, Solver, Unwatched};
 use springcheck::truth::{self, Demand, NoStore};
+use springcheck::verbs;
 use std::fmt::Write;
 
 /// m, at the end.
@@ -15,7 +15,7 @@ const TARGET: f64 = 1e-9;
 const RATIO: f64 = 1.333_521_432_163_324;
 
 fn read(yaml: &str) -> Scene {
-    scene::parse(yaml.as_bytes(), "bench.yml", crosscheck::names()).expect("a valid scene")
+    scene::parse(yaml.as_bytes(), "bench.yml", verbs::names()).expect("a valid scene")
 }
 
 /// The chain of `steps`, 20 links let go sideways, for 2 s.

@@ -29,12 +29,7 @@ fn cloth(n: usize, stiffness: f64) -> Scene {
             }
         }
     }
-    scene::parse(
-        yaml.as_bytes(),
-        "cloth.yml",
-        springcheck::crosscheck::names(),
-    )
-    .expect("a valid scene")
+    scene::parse(yaml.as_bytes(), "cloth.yml", springcheck::verbs::names()).expect("a valid scene")
 }
 
 fn a_step(c: &mut Criterion) {

@@ -1,18 +1,18 @@
 //! What a step costs, and what recording and measuring add. Compare figures of one run only.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use springcheck::crosscheck;
 use springcheck::integrators::{self, Settings};
 use springcheck::measure::{self, EnergySeries};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::{self, Scene};
 use springcheck::solvers::{Limits, Setting, Solver, Unwatched};
 use springcheck::trajectory::Recorder;
+use springcheck::verbs;
 use std::fmt::Write;
 use std::hint::black_box;
 
 fn read(yaml: &str) -> Scene {
-    scene::parse(yaml.as_bytes(), "bench.yml", crosscheck::names()).expect("a valid scene")
+    scene::parse(yaml.as_bytes(), "bench.yml", verbs::names()).expect("a valid scene")
 }
 
 /// One spring and gravity: two effects on one free particle.

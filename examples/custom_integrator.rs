@@ -5,12 +5,14 @@
 //! Exits with 1 if the honest one is accused or the one that lies is believed.
 
 use springcheck::conformance::{Claims, check};
-use springcheck::crosscheck::{self, Choice, Plan, Quiet};
 use springcheck::integrators::{Integrator, PerStep, StepError};
-use springcheck::outcome::CheckStatus;
+use springcheck::measure::CheckStatus;
 use springcheck::physics::{State, System};
 use springcheck::scene;
 use springcheck::solvers::Solver;
+use springcheck::verbs;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::{Choice, Plan};
 use std::process::ExitCode;
 
 /// Kicks and drifts with these coefficients, in turn.
@@ -70,7 +72,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         caught.push(findings.iter().any(|f| f.status == CheckStatus::Fail));
     }
 
-    let scene = scene::read("scenes/oscillator/circle.yml".as_ref(), crosscheck::names())?;
+    let scene = scene::read("scenes/oscillator/circle.yml".as_ref(), verbs::names())?;
     let mut choice = Choice::default_for(&scene);
     for (name, coefficients, _) in rows {
         choice = choice.with(Solver::own(name, move || Box::new(KickDrift(coefficients))));

@@ -18,13 +18,16 @@
 //! - [`trajectory`] keeps a bounded record of a run, or all of it in a file, and reads other people's;
 //! - [`measure`] turns records into errors, energy verdicts, deviations, orders, the scheme they
 //!   follow, the steps they are stable at, and the twin proof;
-//! - [`crosscheck`] runs everything side by side and fills a [`Report`](outcome::Report);
-//! - [`report`] writes it down;
-//! - [`conformance`] holds any integrator, ours or yours, to the facts it claims.
+//! - [`conformance`] holds any integrator, ours or yours, to the facts it claims;
+//! - [`report`] is what all reports are written with: tables, sentences, charts;
+//! - [`verbs`] are the program's, one folder each: arguments, plan, result, text, figures of a
+//!   [`Report`](verbs::Report).
 //!
 //! ```
-//! use springcheck::crosscheck::{self, Choice, Plan, Quiet};
-//! use springcheck::{outcome::EnergyClass, scene};
+//! use springcheck::verbs;
+//! use springcheck::verbs::host::Quiet;
+//! use springcheck::verbs::run::{Choice, Plan};
+//! use springcheck::{measure::EnergyClass, scene};
 //!
 //! let yaml = b"solver: {type: explicit_euler, timestep: 0.01, gravity: 0}
 //! particles:
@@ -32,7 +35,7 @@
 //! - {pos: [0.5, 0, 0], mass: 1}
 //! springs: [{particle_ids: [0, 1], stiffness: 50, rest_length: 0}]
 //! ";
-//! let scene = scene::parse(yaml, "oscillator.yml", crosscheck::names())?;
+//! let scene = scene::parse(yaml, "oscillator.yml", verbs::names())?;
 //! let plan = Plan::new(&scene, &Choice::default_for(&scene));
 //! let report = plan.execute(&Quiet)?;
 //! let energy = report.outcomes()[0].energy.as_ref().expect("it ran");
@@ -41,11 +44,9 @@
 //! ```
 
 pub mod conformance;
-pub mod crosscheck;
 pub mod integrators;
 mod krylov;
 pub mod measure;
-pub mod outcome;
 pub mod physics;
 pub mod report;
 pub mod scene;
@@ -53,3 +54,4 @@ pub mod solvers;
 pub mod trajectory;
 pub mod truth;
 mod vector;
+pub mod verbs;

@@ -1,9 +1,95 @@
 //! The command line: verbs in, exit codes out.
 
-mod cli;
-
+use clap::{Parser, Subcommand, ValueEnum};
+use springcheck::verbs::{compare, cost, list, run, show, stability};
+use std::io::Write;
 use std::process::ExitCode;
 
+/// Is a particle-spring integrator right, and what does being right cost?
+///
+/// Runs hand-written integrators side by side with the equivalent rapier world and the truth, and
+/// reports errors, energy, orders, and the scheme each really follows.
+#[derive(Debug, Parser)]
+#[command(name = "springcheck", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+
+    /// When to colour.
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
+    color: Color,
+
+    /// No progress bar, no notes on stderr; errors still show.
+    #[arg(long, global = true)]
+    quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Cross-check scenes: every chosen integrator beside rapier; a table and reports/<scene>/.
+    Run(run::Args),
+    /// A trajectory some other program computed: is it right, and which scheme is it really?
+    Compare(compare::Args),
+    /// How large a step each integrator may take: predicted, measured, and as a map.
+    Stability(stability::Args),
+    /// What accuracy costs: errors over time and evaluations, and the cheapest way to a target.
+    Cost(cost::Args),
+    /// A stored report once more: printed and drawn as by the verb that made it.
+    Show(show::Args),
+    /// What there is: integrators, effects, engines, mistakes, with their facts.
+    List(list::Args),
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+/// The exit code for usage, scene and input errors.
+const USAGE: u8 = 2;
+
+/// Parses the arguments, runs the verb, and turns whatever happens into an exit code.
 fn main() -> ExitCode {
-    cli::main()
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // clap's own code is 2 for usage and 0 for --help.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(USAGE));
+        }
+    };
+    match cli.color {
+        Color::Auto => anstream::ColorChoice::Auto,
+        Color::Always => anstream::ColorChoice::Always,
+        Color::Never => anstream::ColorChoice::Never,
+    }
+    .write_global();
+    let done = match cli.verb {
+        Verb::Run(args) => run::run(&args, cli.quiet),
+        Verb::Compare(args) => compare::compare(&args, cli.quiet),
+        Verb::Stability(args) => stability::stability(&args, cli.quiet),
+        Verb::Cost(args) => cost::cost(&args, cli.quiet),
+        Verb::Show(args) => show::show(&args, cli.quiet),
+        Verb::List(args) => list::list(&args),
+    };
+    match done {
+        Ok(code) => code,
+        Err(error) => {
+            let _ = writeln!(anstream::stderr(), "{}", message(&error));
+            ExitCode::from(USAGE)
+        }
+    }
+}
+
+/// A scene error stands for itself; anything else is introduced, with its causes.
+fn message(error: &anyhow::Error) -> String {
+    let placed = error.is::<springcheck::scene::SceneError>()
+        || error.is::<springcheck::trajectory::ReadError>();
+    if placed {
+        error.to_string()
+    } else {
+        format!("error: {error:#}")
+    }
 }

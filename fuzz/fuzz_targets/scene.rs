@@ -6,7 +6,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use springcheck::crosscheck::names;
+use springcheck::verbs::names;
 use springcheck::scene::{self, Wanted};
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,6 +1,6 @@
 //! What came of a law.
 
-use crate::outcome::{Check, CheckStatus};
+use crate::measure::{Check, CheckStatus};
 use std::cmp::Ordering;
 use std::fmt::Display;
 

@@ -3,7 +3,7 @@
 //! ```
 //! use springcheck::conformance::{Claims, check};
 //! use springcheck::integrators;
-//! use springcheck::outcome::CheckStatus;
+//! use springcheck::measure::CheckStatus;
 //!
 //! let verlet = integrators::find("velocity_verlet").ok_or("no such method")?;
 //! let build = || verlet.build(&Default::default());

@@ -3,8 +3,8 @@
 use super::subject::{Broken, Subject, advance, distance, largest};
 use super::systems::{Driven, built, dragged_triangle, swinging_triangle};
 use super::{Finding, Law};
+use crate::measure::CheckStatus;
 use crate::measure::order::{Observed, Point, RATIOS, TOLERANCE, Verdict, observed};
-use crate::outcome::CheckStatus;
 use crate::physics::{State, System};
 use crate::scene::{DampingModel, Scene};
 use crate::truth::converged::{Gragg, Precise, Stepper};

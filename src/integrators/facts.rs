@@ -14,7 +14,7 @@ use nalgebra::Complex;
 /// ```
 /// use springcheck::conformance::{Claims, check};
 /// use springcheck::integrators::{Coefficients, Method, Row, Settings, Stable, Tableau};
-/// use springcheck::outcome::CheckStatus;
+/// use springcheck::measure::CheckStatus;
 ///
 /// let kutta3 = Method::new(Row {
 ///     id: "kutta3",

@@ -1,8 +1,18 @@
 //! How far two trajectories are apart.
 
-use crate::outcome::Deviation;
 use crate::trajectory::Trajectory;
 use crate::truth::farthest;
+use serde::{Deserialize, Serialize};
+
+/// Largest distance over the particles, metres, over the instants both engines recorded.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Deviation {
+    #[serde(rename = "final")]
+    pub last: f64,
+    pub max: f64,
+    /// When it first passed the tolerance (1 % of the scene's size); null if never.
+    pub first_exceeds_s: Option<f64>,
+}
 
 /// The distance at which `first_exceeds_s` is read, as a share of the scene's size, or of the way
 /// gone where the scene has no size.

@@ -1,11 +1,43 @@
 //! The energy balance of a run, and the verdict on it.
 
+use super::trend::EnergyClass;
 use super::trend::trend;
-use crate::outcome::{Energy, EnergyClass};
 use crate::physics::effects::Effect;
 use crate::physics::{ParticleSystem, System, Work};
 use crate::trajectory::Trajectory;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+
+/// The energy balance B = E + dissipated - injected.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Energy {
+    pub initial_j: Option<f64>,
+    pub final_j: Option<f64>,
+    /// max |B - B(0)| / S.
+    pub relative_error_max: Option<f64>,
+    /// Fitted trend of B, in units of S per second.
+    pub drift_per_s: Option<f64>,
+    /// 99.9 % interval of the trend, autocorrelation accounted for.
+    pub drift_per_s_ci: Option<[f64; 2]>,
+    /// Half the peak-to-peak of what the trend leaves, in units of S.
+    pub fluctuation: Option<f64>,
+    pub class: Option<EnergyClass>,
+    /// Kinetic energy at the end.
+    pub kinetic_final_j: Option<f64>,
+    /// Potential energy at the end, by the id of the effect that holds it.
+    pub potential_final_j: BTreeMap<String, f64>,
+    /// Taken out and put in by effects over the run; 0 where the scene has neither.
+    pub dissipated_j: Option<f64>,
+    pub injected_j: Option<f64>,
+}
+
+impl Energy {
+    /// Whether less energy is left at the end than there was, both known. Not to be confused with the
+    /// class, which judges the balance: where dampers are booked more than they took, that grows.
+    pub fn lost(&self) -> bool {
+        matches!((self.initial_j, self.final_j), (Some(initial), Some(last)) if last < initial)
+    }
+}
 
 /// Energies at the recorded instants of one run, joules; all finite.
 #[derive(Debug, Clone, PartialEq)]

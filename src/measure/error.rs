@@ -1,8 +1,19 @@
 //! How far a run is from the truth.
 
-use crate::outcome::Spread;
 use crate::trajectory::Trajectory;
 use crate::truth::{States, farthest};
+use serde::{Deserialize, Serialize};
+
+/// Largest distance of a particle from where it truly is (m) or from its true velocity (m/s), over
+/// the recorded instants up to the truth's horizon.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Spread {
+    /// At the last of these instants.
+    #[serde(rename = "final")]
+    pub last: f64,
+    pub max: f64,
+    pub rms: f64,
+}
 
 /// What is true at certain steps.
 #[derive(Debug, Clone, Default)]

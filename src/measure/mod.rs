@@ -1,6 +1,6 @@
 //! What a trajectory shows, as numbers: pure functions of recorded states.
 
-pub mod cost;
+mod check;
 mod deviation;
 mod energy;
 mod error;
@@ -12,10 +12,11 @@ pub mod stability;
 mod trend;
 pub mod twin;
 
-pub use deviation::{TOLERANCE, deviation, reach};
-pub use energy::{EnergySeries, judge};
-pub use error::{Errors, Known, errors};
-pub use momentum::momentum;
+pub use check::{Check, CheckStatus};
+pub use deviation::{Deviation, TOLERANCE, deviation, reach};
+pub use energy::{Energy, EnergySeries, judge};
+pub use error::{Errors, Known, Spread, errors};
 pub(crate) use momentum::totals;
+pub use momentum::{Momentum, momentum};
 pub use scale::{divergence_limit, energy_scale};
-pub use trend::{Trend, trend};
+pub use trend::{EnergyClass, Trend, trend};

@@ -1,10 +1,20 @@
 //! Linear and angular momentum where the scene conserves them.
 
-use crate::outcome::Momentum;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::trajectory::Trajectory;
 use crate::truth::farthest;
+use serde::{Deserialize, Serialize};
+
+/// Largest departure from the initial value; null where the scene does not conserve it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Momentum {
+    #[serde(rename = "linear_error_max_kg_m_s")]
+    pub linear_error_max: Option<f64>,
+    /// About the origin.
+    #[serde(rename = "angular_error_max_kg_m2_s")]
+    pub angular_error_max: Option<f64>,
+}
 
 /// Largest departures from the initial values over the recorded instants; each None where
 /// something is fixed or an effect does not keep it. None where velocities are not known.

@@ -12,7 +12,16 @@ mod evidence;
 #[cfg(test)]
 mod tests;
 
-use crate::outcome::EnergyClass;
+use serde::{Deserialize, Serialize};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EnergyClass {
+    Bounded,
+    Drifting,
+    Dissipating,
+    Growing,
+}
 
 /// The straight-line trend of b(t) and the class of the whole series.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,9 @@
 //! The machine-readable reports: the contract's keys, indented, floats that round-trip, and the way back.
 
-use crate::outcome::Report;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::fmt::Debug;
 
 /// Version of the JSON layout.
 pub const SCHEMA_VERSION: u64 = 2;
@@ -28,14 +29,14 @@ impl Tool {
 }
 
 #[derive(Serialize)]
-struct Envelope<'a> {
+struct Envelope<'a, R> {
     schema_version: u64,
     tool: &'a Tool,
-    reports: &'a [Report],
+    reports: &'a [R],
 }
 
 /// Any number of reports as one object.
-pub fn render(tool: &Tool, reports: &[Report]) -> String {
+pub fn render<R: Serialize + Debug>(tool: &Tool, reports: &[R]) -> String {
     debug_assert!(
         reports.iter().all(is_finite),
         "a report holds NaN or infinity, which JSON would turn into null without a reason"
@@ -76,12 +77,12 @@ pub enum ReadError {
     },
 }
 
-/// What [`render`] wrote. Of reports with series, those are [`Beside::Missing`](crate::outcome::Beside):
+/// What [`render`] wrote. Of reports with series, those are [`Beside::Missing`](crate::verbs::Beside):
 /// [`series::unpack`](super::series::unpack) brings both together.
 ///
 /// # Errors
 /// [`ReadError`], whatever the text.
-pub fn read(text: &[u8]) -> Result<(Tool, Vec<Report>), ReadError> {
+pub fn read<R: DeserializeOwned>(text: &[u8]) -> Result<(Tool, Vec<R>), ReadError> {
     let value: Value = serde_json::from_slice(text).map_err(|why| match why.classify() {
         serde_json::error::Category::Eof => ReadError::Truncated(why),
         _ => ReadError::NoJson(why),
@@ -112,8 +113,8 @@ pub fn read(text: &[u8]) -> Result<(Tool, Vec<Report>), ReadError> {
 
 /// No NaN and no infinity in anything the JSON carries. `Debug` reaches every field, also those a
 /// later version adds, and prints such numbers as bare words.
-fn is_finite(report: &Report) -> bool {
-    let numbers = format!("{:?}", (&report.header, &report.body));
+fn is_finite(report: &impl Debug) -> bool {
+    let numbers = format!("{report:?}");
     let mut text = String::with_capacity(numbers.len());
     let (mut quoted, mut escaped) = (false, false);
     for c in numbers.chars() {

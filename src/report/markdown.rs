@@ -2,18 +2,19 @@
 
 use super::notes::Note;
 use super::table::Table;
-use super::{verdict, view, words};
-use crate::outcome::{Check, CheckStatus, Report};
-use words::NOTHING;
+use super::verdict::verdict;
+use super::{Shown, words};
+use crate::measure::{Check, CheckStatus};
+use words::{NOTHING, escape};
 
 /// One report, with its figures linked as files beside it.
-pub fn render(report: &Report) -> String {
-    view(report).markdown(report)
+pub fn render<R: Shown>(report: &R) -> String {
+    report.view().markdown(report)
 }
 
 /// Name, description and verdict.
-pub(super) fn heading(report: &Report) -> String {
-    let scene = &report.header.scene;
+pub fn heading<R: Shown>(report: &R) -> String {
+    let scene = &report.header().scene;
     let mut text = format!("# {}\n\n", escape(&scene.name));
     if let Some(description) = &scene.description {
         text += &format!("{}\n\n", escape(description));
@@ -22,8 +23,8 @@ pub(super) fn heading(report: &Report) -> String {
 }
 
 /// The table of what the scene is, and `more` of it.
-pub(super) fn scene(report: &Report, more: Vec<(&str, String)>) -> String {
-    let scene = &report.header.scene;
+pub fn scene<R: Shown>(report: &R, more: Vec<(&str, String)>) -> String {
+    let scene = &report.header().scene;
     let mut rows = vec![
         ("file", scene.file.clone()),
         ("particles", scene.particles.to_string()),
@@ -37,13 +38,13 @@ pub(super) fn scene(report: &Report, more: Vec<(&str, String)>) -> String {
     format!("| scene |  |\n|---|---|\n{}\n", rows.collect::<String>())
 }
 
-pub(super) fn images(report: &Report) -> String {
+pub fn images<R: Shown>(report: &R) -> String {
     super::svg::wanted(report)
         .map(|figure| format!("![{}]({})\n\n", figure.description, figure.file))
         .collect()
 }
 
-pub(super) fn remarks(notes: &[Note]) -> String {
+pub fn remarks(notes: &[Note]) -> String {
     let line = |note: &Note| {
         let [subject, sentence] = [&note.subject, &note.sentence].map(|text| escape(text));
         format!("- **{subject}**: {sentence}\n")
@@ -52,14 +53,14 @@ pub(super) fn remarks(notes: &[Note]) -> String {
 }
 
 /// The text below its title; nothing where it is empty.
-pub(super) fn section(title: &str, text: String) -> String {
+pub fn section(title: &str, text: String) -> String {
     if text.is_empty() {
         return text;
     }
     format!("## {title}\n\n{text}\n")
 }
 
-pub(super) fn checks(checks: &[Check]) -> String {
+pub fn checks(checks: &[Check]) -> String {
     if checks.is_empty() {
         return String::new();
     }
@@ -81,27 +82,4 @@ pub(super) fn checks(checks: &[Check]) -> String {
     table.markdown("bound from", |check| escape(&check.derivation));
     table.markdown("message", |check| escape(&check.message));
     format!("## Checks\n\n{}", table.in_markdown())
-}
-
-/// Text with nothing left that Markdown or HTML would read as its own, on one line.
-pub(super) fn escape(text: &str) -> String {
-    let text = words::one_line(text);
-    let mut escaped = String::with_capacity(text.len());
-    let mut before = ' ';
-    let mut rest = text.chars().peekable();
-    while let Some(c) = rest.next() {
-        let after = rest.peek().copied().unwrap_or(' ');
-        match c {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '\\' | '`' | '*' | '[' | ']' | '|' | '~' | '#' | '$' => escaped.extend(['\\', c]),
-            // Inside a word an underscore is itself: ids stay legible in the source.
-            '_' if !(before.is_alphanumeric() && after.is_alphanumeric()) => escaped += "\\_",
-            '+' | '-' if escaped.is_empty() && after == ' ' => escaped.extend(['\\', c]),
-            c => escaped.push(c),
-        }
-        before = c;
-    }
-    escaped
 }

@@ -1,11 +1,11 @@
 //! Tables: each column is declared once, with its headers in the terminal and in Markdown.
 
-use super::markdown::escape;
 use super::terminal::WIDTH;
 use super::terminal::columns::{Column, fitted, laid_out};
 use super::terminal::fit::wrap;
 use super::terminal::paint::{Tone, mark};
 use super::words;
+use super::words::escape;
 use comfy_table::CellAlignment;
 
 /// What sets an engine apart from the others of its table.

@@ -1,21 +1,21 @@
 //! The one sentence that says the most important thing.
 
 use super::notes::listed;
-use super::{view, words};
-use crate::outcome::{Check, CheckStatus, Report};
+use super::{Shown, words};
+use crate::measure::{Check, CheckStatus};
 
 /// A part of the sentence: the same said at length, shorter, and so on. The last may be empty.
-pub(super) type Clause = Vec<String>;
+pub type Clause = Vec<String>;
 
 /// Failed checks first, then what the verb has to say, the scene's own integrator leading. One
 /// sentence, one line.
-pub fn verdict(report: &Report) -> String {
+pub fn verdict<R: Shown>(report: &R) -> String {
     sentence(&clauses(report), &[])
 }
 
 /// The same in at most `columns` characters where that can be done: the least important groups are
 /// counted instead of named, then left out.
-pub fn within(report: &Report, columns: usize) -> String {
+pub fn within<R: Shown>(report: &R, columns: usize) -> String {
     let clauses = clauses(report);
     let mut forms = vec![0; clauses.len()];
     loop {
@@ -28,10 +28,10 @@ pub fn within(report: &Report, columns: usize) -> String {
     }
 }
 
-fn clauses(report: &Report) -> Vec<Clause> {
-    let failed = failed_checks(&report.header.checks);
+fn clauses<R: Shown>(report: &R) -> Vec<Clause> {
+    let failed = failed_checks(&report.header().checks);
     let mut clauses: Vec<Clause> = failed.into_iter().map(|text| vec![text]).collect();
-    clauses.extend(view(report).clauses(report));
+    clauses.extend(report.view().clauses(report));
     clauses
 }
 
@@ -53,7 +53,7 @@ fn sentence(clauses: &[Clause], forms: &[usize]) -> String {
 }
 
 /// The checks that prove rapier's world and the hand-written system are the same scene.
-pub(super) fn is_twin(check: &Check) -> bool {
+pub fn is_twin(check: &Check) -> bool {
     check.id.starts_with("twin")
 }
 

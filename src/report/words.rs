@@ -1,8 +1,9 @@
 //! The words and numbers the human-readable reports share.
 
-use crate::outcome::{
-    Check, CheckStatus, Energy, EnergyClass, Outcome, Report, Status, Truth, TruthKind,
-};
+use crate::measure::{Check, CheckStatus, Energy, EnergyClass};
+use crate::report::TruthFacts;
+use crate::solvers::Status;
+use crate::truth::TruthKind;
 
 /// What stands where there is nothing to say.
 pub const NOTHING: &str = "-";
@@ -146,7 +147,7 @@ pub fn energy_error(energy: &Energy) -> String {
 }
 
 /// An error against the truth; `floor` below ten times the truth's own bar.
-pub fn truth_error(error: f64, truth: &Truth) -> String {
+pub fn truth_error(error: f64, truth: &TruthFacts) -> String {
     match truth.error_bound_m {
         Some(bar) if error < 10.0 * bar => "floor".into(),
         _ => sci(error),
@@ -154,7 +155,7 @@ pub fn truth_error(error: f64, truth: &Truth) -> String {
 }
 
 /// What the truth of this scene is, in one line.
-pub fn truth(truth: &Truth) -> String {
+pub fn truth(truth: &TruthFacts) -> String {
     let mut text = match truth.kind {
         TruthKind::ClosedForm => String::from("closed form"),
         TruthKind::Converged => String::from("converged reference"),
@@ -175,31 +176,6 @@ pub fn truth(truth: &Truth) -> String {
     text
 }
 
-/// Median time, with its spread where that exceeds a tenth: `12.3 ms ±14%`. A run that did not
-/// finish has no speed.
-pub fn wall_time(outcome: &Outcome) -> String {
-    let wall = match &outcome.work.wall_s {
-        Some(wall) if outcome.status == Status::Completed => wall,
-        _ => return NOTHING.into(),
-    };
-    let mut text = seconds(wall.median);
-    if let Some(mad) = wall.mad
-        && mad > 0.1 * wall.median
-    {
-        text += &format!(" ±{:.0}%", (100.0 * mad / wall.median).min(999.0));
-    }
-    text
-}
-
-/// The engine, with rapier's substeps where it takes any: `rapier, dt/4`.
-pub fn engine(outcome: &Outcome) -> String {
-    let ratio = outcome.timestep / outcome.substep;
-    if ratio.is_finite() && ratio > 1.5 && ratio < 1e6 {
-        return format!("{}, dt/{ratio:.0}", outcome.engine);
-    }
-    outcome.engine.clone()
-}
-
 /// One printable line: control characters and runs of white space become single spaces; invisible
 /// characters that could reorder or restyle the line go.
 pub fn one_line(text: &str) -> String {
@@ -216,13 +192,34 @@ fn is_invisible(c: char) -> bool {
     matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{e0100}'..='\u{e01ef}')
 }
 
-/// The step outcomes were run at: `0.0005 s`, or `several, the file's 0.0005 s`.
-pub fn timestep(report: &Report) -> String {
-    let own = report.header.scene.timestep;
-    let mut steps = report.outcomes().iter().map(|o| o.timestep);
-    match steps.next() {
-        None => format!("{} s", short(own)),
-        Some(first) if steps.all(|h| h == first) => format!("{} s", short(first)),
-        Some(_) => format!("several, the file's {} s", short(own)),
+/// The steps outcomes were run at: `0.0005 s`, or `several, the file's 0.0005 s`; `own` is the file's.
+pub fn timestep(own: f64, steps: &[f64]) -> String {
+    match steps {
+        [] => format!("{} s", short(own)),
+        [first, others @ ..] if others.iter().all(|h| h == first) => format!("{} s", short(*first)),
+        _ => format!("several, the file's {} s", short(own)),
     }
+}
+
+/// Text with nothing left that Markdown or HTML would read as its own, on one line.
+pub fn escape(text: &str) -> String {
+    let text = one_line(text);
+    let mut escaped = String::with_capacity(text.len());
+    let mut before = ' ';
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
+        let after = rest.peek().copied().unwrap_or(' ');
+        match c {
+            '&' => escaped += "&amp;",
+            '<' => escaped += "&lt;",
+            '>' => escaped += "&gt;",
+            '\\' | '`' | '*' | '[' | ']' | '|' | '~' | '#' | '$' => escaped.extend(['\\', c]),
+            // Inside a word an underscore is itself: ids stay legible in the source.
+            '_' if !(before.is_alphanumeric() && after.is_alphanumeric()) => escaped += "\\_",
+            '+' | '-' if escaped.is_empty() && after == ' ' => escaped.extend(['\\', c]),
+            c => escaped.push(c),
+        }
+        before = c;
+    }
+    escaped
 }

@@ -43,7 +43,7 @@ use std::path::Path;
 /// Reads a scene from the bytes of a YAML file.
 ///
 /// `file` names the source in errors and, without a `name` in the file, the scene. `names` are the
-/// words of other stages it may use: [`crosscheck::names`](crate::crosscheck::names). A UTF-8 BOM and
+/// words of other stages it may use: [`verbs::names`](crate::verbs::names). A UTF-8 BOM and
 /// CRLF line ends are fine.
 ///
 /// # Errors

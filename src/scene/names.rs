@@ -1,5 +1,5 @@
 //! The words of other stages that a scene may use. The scene module knows none of them by itself:
-//! [`crosscheck::names`](crate::crosscheck::names) is what this program knows.
+//! [`verbs::names`](crate::verbs::names) is what this program knows.
 
 /// What a scene may name.
 #[derive(Debug, Clone, Default)]

@@ -4,11 +4,13 @@ pub mod external;
 mod integrator;
 pub mod rapier;
 mod run;
+mod setting;
 mod solver;
 
 pub use integrator::{AdaptiveEngine, IntegratorEngine, advance};
-pub use run::{Ended, Limits, Observer, Run, Tally, Unwatched};
-pub use solver::{BuildIntegrator, Setting, Solver, catalogue, find};
+pub use run::{Ended, Limits, Observer, Run, Status, Tally, Unwatched};
+pub use setting::Setting;
+pub use solver::{BuildIntegrator, Kind, Solver, catalogue, find, methods, own_first};
 
 use crate::integrators::StepError;
 use crate::physics::{Refused, State};

@@ -1,11 +1,21 @@
 //! A run: advances a solver, hands its states to an observer, and stops what diverges.
 
-use super::solver::Setting;
+use super::setting::Setting;
 use super::{Counts, Engine};
 use crate::integrators::StepError;
 use crate::physics::{ParticleSystem, State, System};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    Completed,
+    Diverged,
+    Failed,
+    Unsupported,
+}
 
 /// Sees the states of a run.
 pub trait Observer {

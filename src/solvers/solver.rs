@@ -4,13 +4,22 @@ use super::external::Program;
 use super::integrator::{AdaptiveEngine, IntegratorEngine};
 use super::rapier::{self, RapierEngine, RapierForces};
 use super::run::Run;
+use super::setting::Setting;
 use super::{Engine, Unsupported};
 use crate::integrators::{self, Integrator, Method, Settings};
-use crate::outcome::Kind;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::Arc;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    Integrator,
+    Rapier,
+    External,
+}
 
 /// Something that can run a scene: an integrator, an adaptive pair, a rapier world, another program.
 #[derive(Clone)]
@@ -29,13 +38,13 @@ pub struct Solver {
     /// The timestep it takes whatever others take, s.
     pub timestep: Option<f64>,
     /// Why it loses energy by design, `{n}` standing for its substeps.
-    pub(super) dissipates: Option<&'static str>,
-    pub(super) source: Source,
+    dissipates: Option<&'static str>,
+    source: Source,
 }
 
 /// Where a solver's trajectory comes from.
 #[derive(Clone)]
-pub(super) enum Source {
+enum Source {
     Method(&'static Method),
     Own(Arc<BuildIntegrator>),
     /// rapier's world in its own terms.
@@ -47,74 +56,6 @@ pub(super) enum Source {
 
 /// Makes a fresh integrator for each run.
 pub type BuildIntegrator = dyn Fn() -> Box<dyn Integrator> + Send + Sync;
-
-/// What a solver runs at.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Setting {
-    /// A number of equal steps of this size, s.
-    Steps { timestep: f64, steps: u64 },
-    /// The tolerance of an adaptive pair, relative to the scene's size.
-    Tolerance {
-        tolerance: f64,
-        /// When the run ends, s.
-        duration: f64,
-        /// About how many steps it takes.
-        steps: u64,
-        /// It is stopped after so many, accepted or not.
-        most: u64,
-    },
-}
-
-impl Setting {
-    /// A fixed step, s, for as long as the caller goes on.
-    pub fn step(timestep: f64) -> Self {
-        Self::Steps {
-            timestep,
-            steps: u64::MAX,
-        }
-    }
-
-    /// `steps` equal steps over a duration, s.
-    pub fn divided(duration: f64, steps: u64) -> Self {
-        Self::Steps {
-            timestep: duration / steps as f64,
-            steps,
-        }
-    }
-
-    /// The step, s; of a pair about the mean one.
-    pub fn timestep(&self) -> f64 {
-        match self {
-            Self::Steps { timestep, .. } => *timestep,
-            Self::Tolerance {
-                duration, steps, ..
-            } => duration / *steps as f64,
-        }
-    }
-
-    /// Steps to the end; of a pair about so many.
-    pub fn steps(&self) -> u64 {
-        match self {
-            Self::Steps { steps, .. } | Self::Tolerance { steps, .. } => *steps,
-        }
-    }
-
-    /// Of a pair; None for a fixed step.
-    pub fn tolerance(&self) -> Option<f64> {
-        match self {
-            Self::Steps { .. } => None,
-            Self::Tolerance { tolerance, .. } => Some(*tolerance),
-        }
-    }
-
-    /// Whether it is as coarse as another setting of the same solver, or coarser.
-    pub fn is_no_finer(&self, other: &Self) -> bool {
-        match (self.tolerance(), other.tolerance()) {
-            (Some(own), Some(other)) => own >= other,
-            _ => self.steps() <= other.steps(),
-        }
-    }
-}
 
 impl Solver {
     /// A method of the registry; a pair chooses its own steps.
@@ -153,11 +94,11 @@ impl Solver {
         Self {
             id: format!("rapier({})", settings.changes()).into(),
             summary: "rapier with settings of your own",
-            ..rapier::joints(settings)
+            ..joints(settings)
         }
     }
 
-    pub(super) fn integrator(id: Cow<'static, str>, summary: &'static str, source: Source) -> Self {
+    fn integrator(id: Cow<'static, str>, summary: &'static str, source: Source) -> Self {
         Self {
             id,
             kind: Kind::Integrator,
@@ -270,13 +211,64 @@ impl std::fmt::Debug for Solver {
     }
 }
 
+/// rapier's worlds at fixed settings.
+fn worlds() -> [Solver; 3] {
+    let converged = Solver {
+        id: rapier::IDS[2].into(),
+        summary: "rapier's spring joints swept until they converge: linearly implicit Euler",
+        follows: integrators::find("linearized_implicit_material"),
+        ..joints(rapier::Settings::CONVERGED)
+    };
+    let forces = Solver {
+        id: rapier::IDS[1].into(),
+        summary: "rapier's bodies under this program's forces: symplectic Euler",
+        follows: integrators::find("symplectic_euler"),
+        substeps: rapier::Settings::FORCES.iterations,
+        dissipates: None,
+        source: Source::Forces,
+        ..joints(rapier::Settings::FORCES)
+    };
+    [joints(rapier::Settings::DEFAULT), forces, converged]
+}
+
+/// rapier's spring joints under these settings; only at the defaults is it what people ship.
+fn joints(settings: rapier::Settings) -> Solver {
+    Solver {
+        kind: Kind::Rapier,
+        substeps: settings.iterations.max(1),
+        reference: true,
+        dissipates: Some(
+            "rapier's spring joint is linearly implicit Euler at h = dt/{n}, which loses energy by \
+             design: distance from it is no error of yours",
+        ),
+        ..Solver::integrator(
+            rapier::IDS[0].into(),
+            "rapier at its defaults: spring joints, 4 substeps, one sweep each",
+            Source::Joints(settings),
+        )
+    }
+}
+
 /// Every solver that ships, in the order reports list them: methods, adaptive pairs, rapier's worlds.
 pub fn catalogue() -> impl Iterator<Item = Solver> {
     let methods = integrators::REGISTRY.iter().map(Solver::method);
-    methods.chain(rapier::solvers())
+    methods.chain(worlds())
 }
 
 /// The solver of this id.
 pub fn find(id: &str) -> Option<Solver> {
     catalogue().find(|solver| solver.id == id)
+}
+
+/// These methods after the integrator of the id `own`, which a scene names.
+pub fn own_first(own: &str, methods: impl Iterator<Item = Solver>) -> Vec<Solver> {
+    let first = integrators::fixed().iter().find(|method| method.id == own);
+    (first.map(Solver::method).into_iter())
+        .chain(methods.filter(|method| method.id != own))
+        .collect()
+}
+
+/// Every method of fixed steps, the one with the id `own` first.
+pub fn methods(own: &str) -> Vec<Solver> {
+    own_first(own, integrators::fixed().iter().map(Solver::method))
 }

@@ -6,10 +6,17 @@
 pub mod closed;
 pub mod converged;
 
-use crate::outcome::TruthKind;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TruthKind {
+    ClosedForm,
+    Converged,
+    None,
+}
 
 /// A known motion.
 pub trait Motion: Send + Sync {

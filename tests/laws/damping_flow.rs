@@ -4,11 +4,12 @@
 use crate::testkit::scenes::{free, spring};
 use crate::testkit::{Build, Random, advance, built, method, own, swinging_triangle};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use springcheck::crosscheck::{Choice, Plan, Quiet};
 use springcheck::integrators::{DampingTreatment, Integrator, Splitting, Stage};
 use springcheck::physics::{Counting, State, System};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
 use springcheck::solvers::Solver;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::{Choice, Plan};
 
 /// The kick alone: positions stay where they are.
 const KICK: &[Stage] = &[Stage::Kick(1.0)];

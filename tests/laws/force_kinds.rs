@@ -3,15 +3,17 @@
 
 use crate::testkit::{Random, everything, force, method, sample};
 use nalgebra::{DMatrix, DVector};
-use springcheck::crosscheck::{self, Choice, Plan, Quiet};
 use springcheck::integrators::adaptive::Adaptive;
 use springcheck::integrators::{Method, Settings, StepError, fixed, pairs};
-use springcheck::outcome::Status;
 use springcheck::physics::effects::{self, Effect, EffectRow};
 use springcheck::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem};
 use springcheck::physics::{Power, State, System};
 use springcheck::scene::{self, DampingModel};
 use springcheck::solvers::Solver;
+use springcheck::solvers::Status;
+use springcheck::verbs;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::{Choice, Plan};
 
 /// f = q B v x e_z on every particle, with this q B, kg/s.
 struct Magnetic(f64, ForceKinds);
@@ -365,7 +367,7 @@ fn who_says_nothing_is_taken_only_where_nothing_is_asked() {
 #[test]
 fn a_run_shows_who_refused_what_and_why() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/oscillator/circle.yml");
-    let scene = scene::read(path.as_ref(), crosscheck::names()).expect("a scene");
+    let scene = scene::read(path.as_ref(), verbs::names()).expect("a scene");
     let mut choice = Choice::default_for(&scene);
     let build = |id| move || method(id).build(&Settings::default());
     choice.solvers = vec![

@@ -7,7 +7,7 @@ use crate::testkit::{Build, advance, built, method, own, swinging_triangle};
 use springcheck::conformance::systems::Driven;
 use springcheck::conformance::{self, Claims};
 use springcheck::integrators::{Integrator, Method, StepError, fixed};
-use springcheck::outcome::CheckStatus;
+use springcheck::measure::CheckStatus;
 use springcheck::physics::{Counting, ForceKinds, Jacobian, Linearization, Power, State, System};
 use springcheck::scene::DampingModel;
 

@@ -2,15 +2,19 @@
 
 use crate::testkit::scenes::{self, parsed};
 use crate::testkit::{free_triangle, swinging_triangle};
-use springcheck::crosscheck::{Choice, Plan, Quiet};
 use springcheck::integrators;
+use springcheck::measure::EnergyClass;
 use springcheck::measure::{self, deviation};
-use springcheck::outcome::{EnergyClass, Outcome, Report, Status};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::{DampingModel, Scene, Wind};
+use springcheck::solvers::Status;
 use springcheck::solvers::{Limits, Setting, Solver};
 use springcheck::trajectory::{Recorder, Trajectory};
 use springcheck::truth::Demand;
+use springcheck::verbs::Report;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::Outcome;
+use springcheck::verbs::run::{Choice, Plan};
 
 /// The oscillator k = 50, m = 1, A = 0.5 at rest length 0, without gravity.
 fn oscillator(timestep: f64, damping: f64) -> Scene {

@@ -1,11 +1,13 @@
 //! Distances from a reference engine: of what has no size, and at which timestep.
 
 use crate::testkit::scenes::parsed;
-use springcheck::crosscheck::{Choice, Plan, Quiet};
-use springcheck::outcome::{Deviation, Report};
+use springcheck::measure::Deviation;
 use springcheck::physics::effects;
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::{DampingModel, Scene};
+use springcheck::verbs::Report;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::{Choice, Plan};
 
 /// Explicit Euler and rapier, whose four iterations a step are four steps of symplectic Euler.
 fn report(scene: &Scene, timesteps: &[f64]) -> Report {

@@ -1,11 +1,14 @@
 //! A row of the caller's own in a plan.
 
 use crate::testkit::scenes::shipped;
-use springcheck::crosscheck::{Choice, Plan, Quiet};
 use springcheck::integrators::{self, Settings};
-use springcheck::outcome::{Kind, Outcome, Report};
 use springcheck::scene::Scene;
+use springcheck::solvers::Kind;
 use springcheck::solvers::Solver;
+use springcheck::verbs::Report;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::Outcome;
+use springcheck::verbs::run::{Choice, Plan};
 
 fn circle() -> Scene {
     shipped("oscillator/circle.yml")

@@ -2,13 +2,16 @@
 
 use crate::testkit::program::{altered, files, output, refuse_all, word};
 use crate::testkit::scenes;
-use springcheck::crosscheck::cost::{CostChoice, CostPlan};
-use springcheck::crosscheck::stability::StabilityPlan;
-use springcheck::crosscheck::{Choice, Plan, Quiet};
-use springcheck::outcome::{Beside, Report};
 use springcheck::report::json::{self, Tool};
-use springcheck::report::{FORMATS, series, svg};
+use springcheck::report::svg;
 use springcheck::truth::Demand;
+use springcheck::verbs::cost::{CostChoice, CostPlan};
+use springcheck::verbs::formats::FORMATS;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::{Choice, Plan};
+use springcheck::verbs::series;
+use springcheck::verbs::stability::StabilityPlan;
+use springcheck::verbs::{Beside, Report};
 use std::path::{Path, PathBuf};
 
 const CIRCLE: &str = "scenes/oscillator/circle.yml";

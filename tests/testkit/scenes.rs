@@ -1,7 +1,7 @@
 //! One way to a scene: a shipped file, a text, or particles and springs put together in code.
 
-use springcheck::crosscheck::names;
 use springcheck::scene::{self, Axis, DampingModel, Particle, Scene, Solver, Spring};
+use springcheck::verbs::names;
 use std::path::{Path, PathBuf};
 
 /// A file below `scenes/`: `oscillator/circle.yml`.

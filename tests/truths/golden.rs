@@ -3,11 +3,12 @@
 
 use crate::testkit::scenes::shipped;
 use crate::testkit::{advance, method, own};
-use springcheck::crosscheck::{Choice, Expectations, Orders, Plan, Quiet};
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::{self, Scene};
 use springcheck::solvers::{Solver, rapier::Settings};
 use springcheck::truth::Demand;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::{Choice, Expectations, Orders, Plan};
 
 const SIXTIETH: f64 = 1.0 / 60.0;
 
@@ -53,7 +54,7 @@ fn rounds_to(value: f64, published: f64, decimals: i32) -> bool {
 /// E/E0 at the end, as the report has it.
 fn energy_left(scene: &Scene, choice: &Choice) -> Vec<f64> {
     let report = Plan::new(scene, choice).execute(&Quiet).expect("a run");
-    let left = |o: &springcheck::outcome::Outcome| {
+    let left = |o: &springcheck::verbs::run::Outcome| {
         let energy = o.energy.as_ref().expect("it ran");
         energy.final_j.expect("finite") / energy.initial_j.expect("finite")
     };

@@ -18,7 +18,7 @@ use super::replay::{BEYOND, Replay};
 use super::transition::Transition;
 use super::{Identity, Question, Sameness, candidates};
 use crate::integrators;
-use crate::outcome::Fault;
+use crate::measure::identify::Fault;
 use crate::trajectory::Rows;
 use rayon::prelude::*;
 use spot::Spot;

@@ -2,7 +2,7 @@
 
 use super::observed::{Point, TOLERANCE, Verdict};
 use super::study::Measured;
-use crate::outcome::{Check, CheckStatus};
+use crate::measure::{Check, CheckStatus};
 
 /// The check `order` of this method: passes at the stated order minus [`TOLERANCE`] or above.
 pub fn check(subject: &str, measured: &Measured) -> Check {

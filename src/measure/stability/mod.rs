@@ -5,7 +5,7 @@ mod matrix;
 mod measured;
 mod predicted;
 
-pub use measured::{Make, Measured, classify, measure};
+pub use measured::{Cell, Make, Measured, classify, measure};
 pub use predicted::{Along, Effort, Excluded, Linearised, Prediction, Tightest, is_linear};
 
 /// The largest step that is stable, with all smaller ones.

@@ -3,7 +3,8 @@
 
 use super::WIDTH;
 use super::axis::Axis;
-use super::canvas::{Align, Canvas, FAINT, INK, Stroke, Symbol};
+use super::canvas::{Align, Canvas, FAINT, INK};
+use super::key::{Key, Look, SWATCH};
 use super::marks::{Anchor, Frame, Mark, Window};
 
 /// Pixels left of the first panel, for tick labels and the axis title.
@@ -16,9 +17,6 @@ const POINTS: usize = 20_000;
 const PITCH: f64 = 16.0;
 /// Pixels from a panel's edge to the labels beside it, crossed by the thin lines that lead there.
 const LEADER: f64 = 16.0;
-/// Pixels of the piece of line before a text, and of a character, on the wide side.
-const SWATCH: f64 = 24.0;
-const CHARACTER: f64 = 6.9;
 /// Smallest size of a panel with equal scales.
 const SMALLEST: [f64; 2] = [240.0, 160.0];
 
@@ -58,55 +56,6 @@ pub struct Panel {
     /// Stand beside the panel from the top down. Not to be confused with the labels of lines, which
     /// stand at their lines' ends.
     pub keys: Vec<Key>,
-}
-
-/// What stands before a text to say what it is about.
-#[derive(Clone, Copy)]
-pub enum Look {
-    /// Nothing: the text is a remark.
-    Remark,
-    Line(Stroke),
-    /// A line whose points are marked.
-    Marked(Stroke, Symbol),
-    Symbol(Symbol),
-    Fill(&'static str),
-}
-
-/// A text and the look of what it stands for.
-pub struct Key {
-    pub text: String,
-    pub look: Look,
-}
-
-impl Key {
-    pub fn new(text: impl Into<String>, look: Look) -> Key {
-        let text = text.into();
-        Key { text, look }
-    }
-
-    /// The look within `wide` pixels from `at` on, and the text after it.
-    fn draw(&self, canvas: &mut Canvas, at: [f64; 2], wide: f64) {
-        let [x, y] = at;
-        let (middle, piece) = ([x + wide / 2.0, y], format!("M{x:.1} {y:.1}h{wide}"));
-        let mut colour = INK;
-        match self.look {
-            Look::Remark => colour = FAINT,
-            Look::Line(stroke) => canvas.path(&piece, stroke),
-            Look::Marked(stroke, symbol) => {
-                canvas.path(&piece, stroke);
-                canvas.symbol(middle, symbol);
-            }
-            Look::Symbol(symbol) => canvas.symbol(middle, symbol),
-            Look::Fill(fill) => canvas.rectangle([x, y - 6.0], [12.0, 12.0], fill, FAINT),
-        }
-        let at = [x + wide + 6.0, y + 4.0];
-        canvas.text(at, Align::Start, 12.0, colour, &self.text);
-    }
-
-    /// Pixels of the text, and of the gaps before and after it.
-    fn width(&self) -> f64 {
-        6.0 + CHARACTER * self.text.chars().count() as f64 + 10.0
-    }
 }
 
 impl Chart {

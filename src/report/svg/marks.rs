@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::canvas::{Align, Canvas, FAINT, Stroke, Symbol, px};
-use super::chart::Key;
+use super::key::Key;
 
 /// Something a panel shows. All numbers are values on the panel's axes.
 pub enum Mark {

@@ -1,13 +1,13 @@
 //! The terminal's report: what ran, what holds of the whole scene, the verb's own part, what is notable
 //! about single engines, and whether the harness proved itself. No line exceeds [`WIDTH`] columns.
 
-pub(in crate::report) mod columns;
-pub(in crate::report) mod fit;
-pub(in crate::report) mod paint;
+pub mod columns;
+pub mod fit;
+pub mod paint;
 
 use super::notes::{Note, grouped};
-use super::{verdict, view, words};
-use crate::outcome::{Check, CheckStatus, Report};
+use super::{Shown, verdict, words};
+use crate::measure::{Check, CheckStatus};
 use fit::{clip, pad, width, wrap};
 use paint::{Tone, mark, paint};
 
@@ -16,15 +16,15 @@ pub const WIDTH: usize = 100;
 
 /// The report with ANSI colours, which the caller's stream strips where they are not wanted. Ends
 /// with the verdict and a newline.
-pub fn render(report: &Report) -> String {
-    let view = view(report);
+pub fn render<R: Shown>(report: &R) -> String {
+    let view = report.view();
     let mut lines = scene(report);
     let facts = view.facts(report).into_iter();
     let facts = facts.map(|(label, text)| (label, words::one_line(&text)));
     lines.extend(labelled(facts.collect()));
     lines.extend(view.lines(report));
     lines.extend(apart(notes(&view.notes(report))));
-    lines.extend(apart(checks(&report.header.checks)));
+    lines.extend(apart(checks(&report.header().checks)));
     lines.extend(apart(labelled(view.last(report))));
     lines.push(String::new());
     let verdict = wrap(&verdict::within(report, WIDTH), WIDTH, "");
@@ -43,14 +43,14 @@ fn apart(mut lines: Vec<String>) -> Vec<String> {
 }
 
 /// Its name and size, and what its file says of it.
-fn scene(report: &Report) -> Vec<String> {
-    let scene = &report.header.scene;
+fn scene<R: Shown>(report: &R) -> Vec<String> {
+    let scene = &report.header().scene;
     let facts = format!(
         "  {}, {}, {} s at h = {}, {}",
         words::plural(scene.particles, "particle"),
         words::plural(scene.springs, "spring"),
         words::short(scene.duration),
-        words::timestep(report),
+        words::timestep(scene.timestep, &report.view().timesteps()),
         clip(&words::one_line(&scene.own_integrator), 28),
     );
     let room = WIDTH.saturating_sub(width(&facts)).max(12);

@@ -1,8 +1,8 @@
 //! Odd but right: what a scene may look like, and what it then means.
 
 use super::{complete, parse, shipped};
-use springcheck::crosscheck;
 use springcheck::scene::{self, Axis, DampingModel, Expectation, Scene, Wanted, Whom};
+use springcheck::verbs;
 
 fn accepted(text: &str) -> Scene {
     parse(&complete(text)).unwrap_or_else(|error| panic!("{error}"))
@@ -212,7 +212,7 @@ fn shipped_scenes_load() {
     let scenes: Vec<Scene> = shipped()
         .iter()
         .map(|(path, _)| {
-            scene::read(path, crosscheck::names()).unwrap_or_else(|error| panic!("{error}"))
+            scene::read(path, verbs::names()).unwrap_or_else(|error| panic!("{error}"))
         })
         .collect();
     // The hard ones are counted by no one: there will be more.

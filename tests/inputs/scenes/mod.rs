@@ -5,8 +5,8 @@ mod refused;
 mod upset;
 
 use crate::testkit::scenes::{files, folders};
-use springcheck::crosscheck;
 use springcheck::scene::{self, Names, Scene, SceneError};
+use springcheck::verbs;
 use std::sync::LazyLock;
 
 /// The integrators `solver.type` may name here.
@@ -23,7 +23,7 @@ const METHODS: &[&str] = &[
 /// With these few integrators, so that messages that list them stay as they are.
 static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
     methods: METHODS.to_vec(),
-    ..crosscheck::names().clone()
+    ..verbs::names().clone()
 });
 
 fn parse(text: &str) -> Result<Scene, SceneError> {

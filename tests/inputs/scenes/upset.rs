@@ -2,9 +2,9 @@
 
 use super::shipped;
 use proptest::prelude::*;
-use springcheck::crosscheck;
 use springcheck::integrators;
 use springcheck::scene::{self, Scene, Wanted};
+use springcheck::verbs;
 
 /// Pieces that mean something in YAML or in a scene.
 const PIECES: &[&str] = &[
@@ -134,12 +134,12 @@ fn assert_sound(scene: &Scene) {
 #[test]
 fn what_is_changed_was_sound() {
     for bytes in seeds() {
-        assert_sound(&scene::parse(&bytes, "x.yml", crosscheck::names()).unwrap());
+        assert_sound(&scene::parse(&bytes, "x.yml", verbs::names()).unwrap());
     }
 }
 
 fn answers(bytes: &[u8]) {
-    match scene::parse(bytes, "x.yml", crosscheck::names()) {
+    match scene::parse(bytes, "x.yml", verbs::names()) {
         Ok(scene) => assert_sound(&scene),
         Err(error) => {
             assert!(error.line.is_some() && error.column.is_some(), "{error}");

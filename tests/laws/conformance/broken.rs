@@ -2,7 +2,7 @@
 
 use springcheck::conformance::{Claims, LAWS, check};
 use springcheck::integrators::{EnergyLaw, Integrator, Oscillator, PerStep, Stable, StepError};
-use springcheck::outcome::CheckStatus;
+use springcheck::measure::CheckStatus;
 use springcheck::physics::{State, System};
 
 #[derive(Clone, Copy)]

@@ -4,7 +4,7 @@ use crate::testkit::{method, own, part};
 use rayon::prelude::*;
 use springcheck::conformance::{self, Claims, check};
 use springcheck::integrators::{EnergyLaw, Method, PerStep, Stable, fixed};
-use springcheck::outcome::CheckStatus;
+use springcheck::measure::CheckStatus;
 
 fn status(law: &str, row: &'static Method, claims: &Claims) -> CheckStatus {
     conformance::find(law)

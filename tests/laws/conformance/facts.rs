@@ -6,7 +6,7 @@ use springcheck::integrators::{
     Amplification, Coefficients, DampingTreatment, EnergyLaw, Method, REGISTRY, Row, Settings,
     Stable, Stage, Tableau, fixed,
 };
-use springcheck::outcome::CheckStatus;
+use springcheck::measure::CheckStatus;
 
 /// Hairer, Nørsett, Wanner, Solving ODEs I; Hairer, Lubich, Wanner, Geometric Numerical Integration; and the
 /// papers on the rows: id, order, order with damping, symplectic, reversible.

@@ -4,7 +4,7 @@ use crate::testkit::{method, own};
 use springcheck::conformance::systems::Driven;
 use springcheck::conformance::{self, Claims, check};
 use springcheck::integrators::{Integrator, StepError};
-use springcheck::outcome::CheckStatus;
+use springcheck::measure::CheckStatus;
 use springcheck::physics::{State, System};
 
 /// Yoshida's triple jump (Phys. Lett. A 150, 1990): three steps of a symmetric method of order 2n make

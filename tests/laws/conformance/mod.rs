@@ -10,7 +10,7 @@ use crate::testkit::own;
 use rayon::prelude::*;
 use springcheck::conformance::{Claims, Finding, LAWS, check};
 use springcheck::integrators::{EnergyLaw, Method, Stable, fixed};
-use springcheck::outcome::CheckStatus;
+use springcheck::measure::CheckStatus;
 
 /// What rounding alone leaves: the kit's tolerances have room for solvers that stop at 1e-12, ours
 /// do not.

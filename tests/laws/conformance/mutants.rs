@@ -4,7 +4,7 @@ use crate::testkit::mutants::{self, Step, mutant};
 use crate::testkit::{Build, method, own};
 use springcheck::conformance::{self, Claims};
 use springcheck::integrators::{Integrator, StepError};
-use springcheck::outcome::CheckStatus;
+use springcheck::measure::CheckStatus;
 use springcheck::physics::{State, System};
 
 /// What a law says of an integrator that claims to be a row's.

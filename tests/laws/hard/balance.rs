@@ -2,10 +2,11 @@
 
 use super::{remembering, scene};
 use crate::testkit::method;
-use springcheck::crosscheck::{Choice, Plan};
-use springcheck::outcome::{EnergyClass, Report};
+use springcheck::measure::EnergyClass;
 use springcheck::report;
 use springcheck::solvers::Solver;
+use springcheck::verbs::Report;
+use springcheck::verbs::run::{Choice, Plan};
 
 /// Explicit Euler as the scene's own integrator.
 fn run(name: &str) -> Report {
@@ -31,7 +32,7 @@ fn a_growing_balance_is_not_called_a_gain() {
         remarks.contains("grows, though E itself falls"),
         "{remarks}"
     );
-    let verdict = report::verdict(&report);
+    let verdict = report::verdict::verdict(&report);
     assert!(
         verdict.contains("has a growing energy balance"),
         "{verdict}"
@@ -47,6 +48,6 @@ fn a_gain_is() {
         remarks.contains("energy grows as its law says"),
         "{remarks}"
     );
-    let verdict = report::verdict(&report);
+    let verdict = report::verdict::verdict(&report);
     assert!(verdict.contains("gains energy"), "{verdict}");
 }

@@ -12,11 +12,14 @@ mod truths;
 
 use crate::testkit::scenes::{all_shipped, files, shipped};
 use rayon::prelude::*;
-use springcheck::crosscheck::{Choice, Plan, expect};
-use springcheck::outcome::{CheckStatus, Outcome, Report, Status};
+use springcheck::measure::CheckStatus;
 use springcheck::report::json::Tool;
 use springcheck::scene::Scene;
+use springcheck::solvers::Status;
 use springcheck::solvers::rapier;
+use springcheck::verbs::Report;
+use springcheck::verbs::run::Outcome;
+use springcheck::verbs::run::{Choice, Plan, expect};
 use springcheck::{integrators, report};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};

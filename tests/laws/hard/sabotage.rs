@@ -7,10 +7,10 @@ mod c;
 
 use super::{each_scene, scenes, truths::remembering};
 use crate::testkit::mutants::{self, Step, mutant};
-use springcheck::crosscheck::{Choice, Plan, expect};
-use springcheck::outcome::CheckStatus;
+use springcheck::measure::CheckStatus;
 use springcheck::scene::Scene;
 use springcheck::solvers::Solver;
+use springcheck::verbs::run::{Choice, Plan, expect};
 
 /// Scene (a file's stem), whom it replaces, and what runs instead.
 type Row = (&'static str, &'static str, Step);

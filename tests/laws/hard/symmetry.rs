@@ -4,11 +4,12 @@
 use super::scene;
 use crate::testkit::{self, built, distance, mutants, own};
 use springcheck::conformance::Build;
-use springcheck::crosscheck::{Choice, Plan, Quiet};
 use springcheck::integrators::{Integrator, StepError, fixed};
 use springcheck::physics::{State, System};
 use springcheck::scene::{Scene, Wanted};
 use springcheck::solvers::{Solver, rapier::Settings};
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::{Choice, Plan};
 
 /// Largest position error against the truth, m, of every method of the registry; then the mutant's.
 fn errors(scene: &Scene) -> (Vec<f64>, f64) {
@@ -18,7 +19,7 @@ fn errors(scene: &Scene) -> (Vec<f64>, f64) {
     };
     let plan = Plan::new(scene, &choice.with(Solver::own("absolute", absolute)));
     let report = plan.execute(&Quiet).expect("nothing is saved");
-    let error = |o: &springcheck::outcome::Outcome| {
+    let error = |o: &springcheck::verbs::run::Outcome| {
         let error = o.position_error_m.as_ref().expect("a truth");
         error.max
     };

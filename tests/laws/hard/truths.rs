@@ -1,8 +1,8 @@
 //! A host that computes a truth once, however many runs ask for it.
 
-use springcheck::crosscheck::{Host, Label, Saver};
 use springcheck::trajectory::SaveError;
 use springcheck::truth::Store;
+use springcheck::verbs::host::{Host, Label, Saver};
 use std::collections::HashMap;
 use std::sync::Mutex;
 

@@ -2,8 +2,8 @@
 //! published elsewhere are in `tests/golden.rs`.
 
 use super::{apart, build, mutated, ours, scenes, theirs};
-use springcheck::outcome::Kind;
 use springcheck::scene::Scene;
+use springcheck::solvers::Kind;
 use springcheck::solvers::rapier::{IDS, Settings};
 use springcheck::solvers::{Solver, catalogue, find};
 

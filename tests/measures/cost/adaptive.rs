@@ -4,8 +4,8 @@ use super::{choice, cost, of};
 use crate::testkit::mutants;
 use crate::testkit::scenes::shipped;
 use springcheck::integrators::{self, Settings};
-use springcheck::outcome::{Kind, Status};
 use springcheck::solvers::Solver;
+use springcheck::solvers::{Kind, Status};
 
 #[test]
 fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {

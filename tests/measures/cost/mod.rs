@@ -4,13 +4,13 @@ mod adaptive;
 mod sweep;
 mod theory;
 
-use springcheck::crosscheck::Quiet;
-use springcheck::crosscheck::cost::{CostChoice, CostPlan};
 use springcheck::integrators::{self, Method};
-use springcheck::outcome::{Cost, CostCurve};
 use springcheck::scene::Scene;
 use springcheck::solvers::Solver;
 use springcheck::truth::Demand;
+use springcheck::verbs::cost::{Cost, CostCurve};
+use springcheck::verbs::cost::{CostChoice, CostPlan};
+use springcheck::verbs::host::Quiet;
 
 /// These methods over a small budget, no engines.
 fn choice(methods: Vec<&'static Method>) -> CostChoice {

@@ -2,13 +2,15 @@
 
 use super::{all, choice, cost, of};
 use crate::testkit::scenes::shipped;
-use springcheck::crosscheck::Quiet;
-use springcheck::crosscheck::cost::{CostChoice, CostPlan};
 use springcheck::integrators;
-use springcheck::outcome::{Body, Cost, Kind, Report, Status};
 use springcheck::scene::Scene;
 use springcheck::solvers;
+use springcheck::solvers::{Kind, Status};
 use springcheck::truth::Demand;
+use springcheck::verbs::cost::Cost;
+use springcheck::verbs::cost::{CostChoice, CostPlan};
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::{Body, Report};
 
 /// Everything but the clock's: points, slopes, fronts, who reaches what and why not.
 fn counted(report: &Report) -> String {

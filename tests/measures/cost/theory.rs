@@ -3,9 +3,9 @@
 
 use super::{all, choice, cost, of};
 use crate::testkit::scenes::shipped;
-use springcheck::crosscheck::cost::CostChoice;
 use springcheck::integrators::{self, Coefficients, Method, PerStep, Tableau};
-use springcheck::outcome::{Cost, CostCurve, CostPoint};
+use springcheck::verbs::cost::CostChoice;
+use springcheck::verbs::cost::{Cost, CostCurve, CostPoint};
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
@@ -191,7 +191,8 @@ fn integrators_come_in_the_order_of_theory() {
     }
     // At the finest target: no method of a lower order needs fewer evaluations than one of a higher.
     let finest = OSCILLATOR.targets.last().expect("a target");
-    let reached = |rank: &springcheck::outcome::CostRank| rank.reached.as_ref()?.force_evaluations;
+    let reached =
+        |rank: &springcheck::verbs::cost::CostRank| rank.reached.as_ref()?.force_evaluations;
     for a in &finest.ranking {
         for b in &finest.ranking {
             let orders = [a, b].map(|r| integrators::find(&r.engine).expect("a method").order);

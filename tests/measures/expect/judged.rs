@@ -1,12 +1,15 @@
 //! Each kind of expectation passes and fails, and what is not there never passes.
 
 use super::{oscillator, run};
-use springcheck::crosscheck::{Choice, expect, names};
 use springcheck::integrators;
-use springcheck::outcome::{Body, Check, CheckStatus, Outcome, Report};
+use springcheck::measure::{Check, CheckStatus};
 use springcheck::scene::{Expectation, Scene, Wanted, Whom};
 use springcheck::solvers::rapier;
 use springcheck::truth::Demand;
+use springcheck::verbs::names;
+use springcheck::verbs::run::Outcome;
+use springcheck::verbs::run::{Choice, expect};
+use springcheck::verbs::{Body, Report};
 
 fn judged(expect: &str) -> (Scene, Report, Vec<Check>) {
     let scene = oscillator(expect);
@@ -172,7 +175,7 @@ fn a_status_says_what_led_to_it() {
     let scene = oscillator("  rk4: {status: completed}");
     let mut report = run(&scene, &Choice::expected(&scene));
     let outcome = first(&mut report);
-    outcome.status = springcheck::outcome::Status::Diverged;
+    outcome.status = springcheck::solvers::Status::Diverged;
     outcome.reason = Some("in step 7: particle 1 is no longer finite".into());
     let message = &expect::check(&scene, &report)[0].message;
     assert_eq!(

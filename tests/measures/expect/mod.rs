@@ -4,9 +4,10 @@ mod judged;
 mod table;
 
 use crate::testkit::scenes::parsed;
-use springcheck::crosscheck::{Choice, Plan, Quiet};
-use springcheck::outcome::Report;
 use springcheck::scene::Scene;
+use springcheck::verbs::Report;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::{Choice, Plan};
 
 /// One mass on one spring without rest length, a turn and a half in 100 steps; with this `expect`.
 fn oscillator(expect: &str) -> Scene {

@@ -3,10 +3,13 @@
 use super::run;
 use serde_json::Value;
 use springcheck::conformance::systems::free_triangle;
-use springcheck::crosscheck::{Choice, names};
-use springcheck::outcome::{EnergyClass, Status, Undecided};
+use springcheck::measure::EnergyClass;
+use springcheck::measure::identify::Undecided;
 use springcheck::scene::{DampingModel, KeyKind};
 use springcheck::solvers;
+use springcheck::solvers::Status;
+use springcheck::verbs::names;
+use springcheck::verbs::run::Choice;
 use std::collections::BTreeMap;
 
 /// Stated by the expectation itself, different in every run, or lists.

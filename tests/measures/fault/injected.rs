@@ -3,7 +3,7 @@
 use super::record::{PRECISIONS, fault_of, rows, run};
 use crate::testkit::{everything, method};
 use springcheck::measure::identify::Candidate;
-use springcheck::outcome::Fault;
+use springcheck::measure::identify::Fault;
 use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Scene};
 use springcheck::trajectory::{Precision, Rows};

@@ -1,8 +1,8 @@
 //! Trajectories step by step, with whatever went wrong, and written down with so many digits.
 
 use springcheck::integrators::Settings;
+use springcheck::measure::identify::Fault;
 use springcheck::measure::identify::{Candidate, Question, first_departure};
-use springcheck::outcome::Fault;
 use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::Scene;
 use springcheck::trajectory::{Precision, Rows};

@@ -6,7 +6,7 @@ use super::injected::{
 };
 use super::record::{PRECISIONS, fault_of, rows, run, thinned};
 use crate::testkit::swinging_triangle;
-use springcheck::outcome::Quantity;
+use springcheck::measure::identify::Quantity;
 use springcheck::physics::effects::EffectRow;
 use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Particle, Spring};

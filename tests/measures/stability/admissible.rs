@@ -1,9 +1,10 @@
 //! The picture of a stiff spring, against what a step from rest does by hand.
 
 use crate::testkit::scenes::shipped;
-use springcheck::crosscheck::{Quiet, stability::StabilityPlan};
-use springcheck::outcome::Admissible;
 use springcheck::scene::Scene;
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::stability::Admissible;
+use springcheck::verbs::stability::StabilityPlan;
 
 fn pair() -> Scene {
     shipped("hard/stiff_pair.yml")

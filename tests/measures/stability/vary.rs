@@ -1,8 +1,8 @@
 //! What a map varies.
 
 use crate::testkit::scenes::shipped;
-use springcheck::crosscheck::stability::{Range, Vary};
 use springcheck::scene::Scene;
+use springcheck::verbs::stability::{Range, Vary};
 
 fn circle() -> Scene {
     shipped("oscillator/circle.yml")

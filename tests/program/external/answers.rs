@@ -1,14 +1,18 @@
 //! The library's side, without any process: what becomes of the rows a program gives.
 
 use crate::testkit::scenes::parsed;
-use springcheck::crosscheck::{Choice, Plan, Quiet};
 use springcheck::integrators::{self, Settings};
-use springcheck::outcome::{EnergyClass, Kind, Outcome, Status, Undecided};
+use springcheck::measure::EnergyClass;
+use springcheck::measure::identify::Undecided;
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
 use springcheck::solvers::Solver;
 use springcheck::solvers::external::{Failure, Program, Recording, Task};
+use springcheck::solvers::{Kind, Status};
 use springcheck::trajectory::{Precision, Rows};
+use springcheck::verbs::host::Quiet;
+use springcheck::verbs::run::Outcome;
+use springcheck::verbs::run::{Choice, Plan};
 use std::sync::Arc;
 
 /// A program in this process.

@@ -1,6 +1,6 @@
 //! Fixed particles that move: no scheme does that.
 
-use crate::outcome::{Fault, Quantity};
+use crate::measure::identify::{Fault, Quantity};
 use crate::scene::Scene;
 use crate::trajectory::Rows;
 

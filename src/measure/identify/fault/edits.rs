@@ -1,9 +1,9 @@
 //! Numbers that were overwritten: what a row shows without any step that explains it.
 
 use super::super::replay::FIT;
-use super::spot::Spot;
-use super::words::{short, vector};
-use crate::outcome::Quantity;
+use super::spot::{Spot, vector};
+use super::words::short;
+use crate::measure::identify::Quantity;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 

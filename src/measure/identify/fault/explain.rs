@@ -4,10 +4,9 @@ use super::super::candidate::Candidate;
 use super::super::replay::FIT;
 use super::super::transition::Transition;
 use super::guesses::{Guess, Way};
-use super::spot::Spot;
-use super::words;
+use super::spot::{Spot, vector};
 use super::{edits, fit, guesses, is_finite, within};
-use crate::outcome::Fault;
+use crate::measure::identify::{Fault, Quantity};
 
 /// A guess this near needs no better one: what data of a scheme itself can reach.
 const GOOD: f64 = 0.25 * FIT;
@@ -43,7 +42,7 @@ impl Spot<'_> {
         if alone {
             let says = edits::of_row(self)
                 .or_else(|| edits::rewritten(self))
-                .unwrap_or_else(|| words::off_by(self));
+                .unwrap_or_else(|| off_by(self));
             return self.fault(step, format!("{ALONE}: {says}"));
         }
         let guesses = guesses::all(self);
@@ -73,7 +72,7 @@ impl Spot<'_> {
         match (says, fitted) {
             (None, Some(fault)) => fault,
             (says, _) => {
-                let says = says.unwrap_or_else(|| words::unexplained(self));
+                let says = says.unwrap_or_else(|| unexplained(self));
                 self.fault(step, format!("{}: {says}", self.how_often()))
             }
         }
@@ -193,4 +192,20 @@ impl Spot<'_> {
             _ => self.fault(self.step(), format!("{when}: {says}")),
         }
     }
+}
+
+/// By how much the worst particle is off.
+fn off_by(spot: &Spot) -> String {
+    let x = vector(spot, Quantity::Position, 1.0);
+    let i = spot.worst;
+    if spot.replay.rows.v.is_none() {
+        return format!("particle {i} is off by {x} m");
+    }
+    let v = vector(spot, Quantity::Velocity, 1.0);
+    format!("particle {i} is off by {x} m and {v} m/s")
+}
+
+/// The same, where nothing explains it.
+fn unexplained(spot: &Spot) -> String {
+    format!("{}, which no single change explains", off_by(spot))
 }

@@ -6,7 +6,7 @@ use super::super::replay::{BEYOND, Replay};
 use super::super::transition::Transition;
 use super::NUDGES;
 use super::words;
-use crate::outcome::{Fault, Quantity};
+use crate::measure::identify::{Fault, Quantity};
 use crate::physics::State;
 
 /// Two errors within this share of each other are equally large.
@@ -229,4 +229,18 @@ impl<'a> Spot<'a> {
             explanation: words::with_count(says, self.off.len(), particles),
         }
     }
+}
+
+/// (x, y, z) with what rounding explains as 0.
+pub(super) fn vector(spot: &Spot, quantity: Quantity, factor: f64) -> String {
+    let axis = |axis: usize| {
+        let at = 3 * spot.worst + axis;
+        let difference = spot.difference(quantity, at);
+        if difference.abs() > spot.unit(quantity, at) {
+            words::short(factor * difference)
+        } else {
+            "0".to_owned()
+        }
+    };
+    format!("({}, {}, {})", axis(0), axis(1), axis(2))
 }

@@ -1,7 +1,5 @@
 //! The sentences of an explanation.
 
-use super::spot::Spot;
-use crate::outcome::Quantity;
 use crate::scene::Spring;
 
 /// Four digits.
@@ -67,34 +65,4 @@ pub(super) fn with_count(says: String, off: usize, particles: usize) -> String {
         _ if off == particles => format!("{says}; all {particles} particles leave the scheme"),
         _ => format!("{says}; {off} of {particles} particles leave the scheme"),
     }
-}
-
-/// (x, y, z) with what rounding explains as 0.
-pub(super) fn vector(spot: &Spot, quantity: Quantity, factor: f64) -> String {
-    let axis = |axis: usize| {
-        let at = 3 * spot.worst + axis;
-        let difference = spot.difference(quantity, at);
-        if difference.abs() > spot.unit(quantity, at) {
-            short(factor * difference)
-        } else {
-            "0".to_owned()
-        }
-    };
-    format!("({}, {}, {})", axis(0), axis(1), axis(2))
-}
-
-/// By how much the worst particle is off.
-pub(super) fn off_by(spot: &Spot) -> String {
-    let x = vector(spot, Quantity::Position, 1.0);
-    let i = spot.worst;
-    if spot.replay.rows.v.is_none() {
-        return format!("particle {i} is off by {x} m");
-    }
-    let v = vector(spot, Quantity::Velocity, 1.0);
-    format!("particle {i} is off by {x} m and {v} m/s")
-}
-
-/// The same, where nothing explains it.
-pub(super) fn unexplained(spot: &Spot) -> String {
-    format!("{}, which no single change explains", off_by(spot))
 }

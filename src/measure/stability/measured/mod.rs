@@ -11,15 +11,29 @@ mod watched;
 use super::Limit;
 use super::matrix::Matrix;
 use crate::measure::energy_scale;
-use crate::outcome::Cell;
 use crate::physics::{Jacobian, Linearization, ParticleSystem, System, Triplets};
 use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
 use perturbation::Perturbation;
 use probe::{Budget, Fate, Watch, probe};
 use search::{Search, Stop};
+use serde::{Deserialize, Serialize};
 use setup::Setup;
 use watched::{ExcessEnergy, Runs};
+
+/// What a run at one step does: one cell of a stability map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cell {
+    /// None of the others: it keeps its energy, or loses what dampers take.
+    Stable,
+    /// Half of the energy scale S is gone at the end that no damper took (numerical dissipation).
+    Dissipating,
+    /// Energy that nothing put in keeps growing, or stays at a hundred times S.
+    Growing,
+    /// A step fails, a number is not finite, the energy passes 1e12 S, or the engine cannot run.
+    Failed,
+}
 
 /// Starts a run of a scene at a timestep, s, or says why there can be none.
 pub type Make<'a> = dyn Fn(&Scene, f64) -> Result<Run, Unsupported> + Sync + 'a;

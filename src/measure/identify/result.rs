@@ -1,0 +1,65 @@
+//! What identification found, as data.
+
+use serde::{Deserialize, Serialize};
+
+/// The scheme a trajectory follows, by one-step replay.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Identified {
+    /// A method's id, or a common mistake's.
+    pub method: String,
+    /// Steps it takes inside one timestep.
+    pub substeps: u32,
+    /// Largest distance of a replayed step from the recorded one over the steps that follow the
+    /// scheme, in units of what rounding explains; the median over all where nothing fits.
+    pub defect: f64,
+    /// The nearest scheme that is not equivalent, as `method` or `method/substeps`.
+    pub runner_up: Option<String>,
+    pub runner_up_defect: Option<f64>,
+    /// One scheme and no other explains the data.
+    pub decisive: bool,
+    /// Others that explain it as well.
+    pub equivalent: Vec<String>,
+    /// Why it is not decisive; null where it is.
+    pub undecided: Option<Undecided>,
+}
+
+/// Why a trajectory has not one scheme.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Undecided {
+    /// The equivalent ones are the same map where this trajectory goes: no data could tell.
+    SameMap,
+    /// They differ by less than the data is rounded.
+    DataTooCoarse,
+    /// Rounding explains none.
+    NothingFits,
+}
+
+/// The first step of a trajectory that does not follow its scheme.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Fault {
+    /// Step n leads from t_n to t_n+1, zero-based; of rows several steps apart, the first of the
+    /// steps between them.
+    pub step: u64,
+    /// t_n, seconds.
+    pub t_s: f64,
+    /// The particle that is off farthest.
+    pub particle: usize,
+    /// What `expected` and `found` are of it, at the end of the step or of the span: x, y, z.
+    pub quantity: Quantity,
+    /// By the scheme, from the row before.
+    pub expected: [f64; 3],
+    /// As recorded; null where that is not a finite number.
+    pub found: [Option<f64>; 3],
+    /// The change that explains it, when it acts, and how many particles are off.
+    pub explanation: String,
+}
+
+/// What a fault shows in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Quantity {
+    #[serde(rename = "position_m")]
+    Position,
+    #[serde(rename = "velocity_m_s")]
+    Velocity,
+}

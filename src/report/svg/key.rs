@@ -1,0 +1,56 @@
+//! What a legend or a label says: a text, and the look of what it stands for.
+
+use super::canvas::{Align, Canvas, FAINT, INK, Stroke, Symbol};
+
+/// Pixels of the piece of line before a text, and of a character, on the wide side.
+pub const SWATCH: f64 = 24.0;
+pub const CHARACTER: f64 = 6.9;
+
+/// A text and the look of what it stands for.
+pub struct Key {
+    pub text: String,
+    pub look: Look,
+}
+
+/// What stands before a text to say what it is about.
+#[derive(Clone, Copy)]
+pub enum Look {
+    /// Nothing: the text is a remark.
+    Remark,
+    Line(Stroke),
+    /// A line whose points are marked.
+    Marked(Stroke, Symbol),
+    Symbol(Symbol),
+    Fill(&'static str),
+}
+
+impl Key {
+    pub fn new(text: impl Into<String>, look: Look) -> Key {
+        let text = text.into();
+        Key { text, look }
+    }
+
+    /// The look within `wide` pixels from `at` on, and the text after it.
+    pub fn draw(&self, canvas: &mut Canvas, at: [f64; 2], wide: f64) {
+        let [x, y] = at;
+        let (middle, piece) = ([x + wide / 2.0, y], format!("M{x:.1} {y:.1}h{wide}"));
+        let mut colour = INK;
+        match self.look {
+            Look::Remark => colour = FAINT,
+            Look::Line(stroke) => canvas.path(&piece, stroke),
+            Look::Marked(stroke, symbol) => {
+                canvas.path(&piece, stroke);
+                canvas.symbol(middle, symbol);
+            }
+            Look::Symbol(symbol) => canvas.symbol(middle, symbol),
+            Look::Fill(fill) => canvas.rectangle([x, y - 6.0], [12.0, 12.0], fill, FAINT),
+        }
+        let at = [x + wide + 6.0, y + 4.0];
+        canvas.text(at, Align::Start, 12.0, colour, &self.text);
+    }
+
+    /// Pixels of the text, and of the gaps before and after it.
+    pub fn width(&self) -> f64 {
+        6.0 + CHARACTER * self.text.chars().count() as f64 + 10.0
+    }
+}

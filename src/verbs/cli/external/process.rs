@@ -1,0 +1,188 @@
+//! Starts a program, takes what it prints, and stops it when it takes too long.
+
+use super::tree;
+use crate::solvers::external::Failure;
+use std::ffi::OsString;
+use std::io::{ErrorKind, Read, Write};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::{Duration, Instant};
+
+/// A program that ended well.
+#[derive(Debug)]
+pub struct Ended {
+    pub stdout: Vec<u8>,
+    /// From its start to its end, s.
+    pub seconds: f64,
+}
+
+/// What the two readers report.
+enum Event {
+    /// All of stdout, or one byte more than is taken.
+    Stdout(std::io::Result<Vec<u8>>),
+    /// stderr is closed.
+    Stderr,
+}
+
+/// Runs the words as program and arguments, in the working directory, without a shell and without
+/// input. What it writes to stderr goes to stderr as it comes; of stdout up to `limit` bytes are
+/// taken.
+///
+/// # Errors
+/// [`Failure`] unless it ends with exit code 0 in time. Then nothing it started is left running,
+/// as far as can be found out.
+pub fn run(words: &[OsString], timeout: Duration, limit: usize) -> Result<Ended, Failure> {
+    let (program, arguments) = words.split_first().ok_or(Failure::Silent)?;
+    let start = Instant::now();
+    let mut child = Command::new(program)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(|cause| not_started(program, cause))?;
+    let deadline = Deadline { start, timeout };
+    let watched = watch(&mut child, &deadline, limit);
+    let seconds = start.elapsed().as_secs_f64();
+    let (stdout, status) = watched.inspect_err(|_| tree::kill(&mut child))?;
+    judged(status)?;
+    Ok(Ended { stdout, seconds })
+}
+
+fn not_started(program: &OsString, cause: std::io::Error) -> Failure {
+    let program = program.to_string_lossy().into_owned();
+    match cause.kind() {
+        ErrorKind::NotFound => Failure::NotFound { program },
+        _ => Failure::NotStarted { program, cause },
+    }
+}
+
+/// Waits until both streams are closed and the program has ended.
+fn watch(
+    child: &mut Child,
+    deadline: &Deadline,
+    limit: usize,
+) -> Result<(Vec<u8>, ExitStatus), Failure> {
+    let events = listen(child, limit);
+    let mut stdout = None;
+    let mut errors_open = true;
+    while stdout.is_none() || errors_open {
+        let left = deadline.left(child)?;
+        match events.recv_timeout(left) {
+            Ok(Event::Stdout(bytes)) => {
+                let bytes = bytes.map_err(Failure::io("read its stdout"))?;
+                if bytes.len() > limit {
+                    return Err(Failure::TooMuch { limit });
+                }
+                stdout = Some(bytes);
+            }
+            Ok(Event::Stderr) => errors_open = false,
+            // Too late: asking for what is left says so.
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+    }
+    // Closed streams mostly mean that it ends about now.
+    let mut pause = Duration::from_micros(50);
+    loop {
+        let status = child.try_wait();
+        if let Some(status) = status.map_err(Failure::io("wait for it"))? {
+            return Ok((stdout.unwrap_or_default(), status));
+        }
+        std::thread::sleep(pause.min(deadline.left(child)?));
+        pause = (2 * pause).min(Duration::from_millis(20));
+    }
+}
+
+/// A thread for each stream. They are not waited for: something the program left behind may keep
+/// a stream open.
+fn listen(child: &mut Child, limit: usize) -> Receiver<Event> {
+    let (sender, events) = channel();
+    if let Some(stdout) = child.stdout.take() {
+        let sender = sender.clone();
+        std::thread::spawn(move || {
+            let mut bytes = Vec::new();
+            let read = stdout.take(limit as u64 + 1).read_to_end(&mut bytes);
+            // Nobody listens any more: it was too late.
+            let _ = sender.send(Event::Stdout(read.map(|_| bytes)));
+        });
+    }
+    if let Some(stderr) = child.stderr.take() {
+        std::thread::spawn(move || pass_on(stderr, &sender));
+    }
+    events
+}
+
+/// To our stderr, and to nowhere once that is closed, so that the program is never held up.
+fn pass_on(mut stderr: impl Read, sender: &Sender<Event>) {
+    let mut buffer = [0; 4096];
+    loop {
+        match stderr.read(&mut buffer) {
+            Ok(0) => break,
+            Ok(n) => {
+                let _ = std::io::stderr().write_all(&buffer[..n]);
+            }
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(_) => break,
+        }
+    }
+    let _ = sender.send(Event::Stderr);
+}
+
+struct Deadline {
+    start: Instant,
+    timeout: Duration,
+}
+
+impl Deadline {
+    /// Time left, more than 0.
+    ///
+    /// # Errors
+    /// When there is none. If the program itself has ended badly and only a stream was kept open,
+    /// that is the error.
+    fn left(&self, child: &mut Child) -> Result<Duration, Failure> {
+        match self.timeout.checked_sub(self.start.elapsed()) {
+            Some(left) if !left.is_zero() => Ok(left),
+            _ => {
+                if let Ok(Some(status)) = child.try_wait() {
+                    judged(status)?;
+                }
+                Err(Failure::TimedOut {
+                    after: self.timeout,
+                })
+            }
+        }
+    }
+}
+
+fn judged(status: ExitStatus) -> Result<(), Failure> {
+    #[cfg(unix)]
+    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
+        return Err(Failure::Signalled { signal });
+    }
+    match status.code() {
+        Some(0) => Ok(()),
+        code => Err(Failure::Exited {
+            code: code.unwrap_or(-1),
+        }),
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_prints_without_end_is_stopped_at_the_limit() {
+        let run = |words: &[&str], limit| {
+            let words: Vec<OsString> = words.iter().map(OsString::from).collect();
+            run(&words, Duration::from_secs(60), limit)
+        };
+        let endless = run(&["sh", "-c", "while :; do echo more; done"], 10_000);
+        assert!(matches!(endless, Err(Failure::TooMuch { limit: 10_000 })));
+        // To the last byte.
+        let exact = |limit| run(&["printf", "%s", "12345"], limit);
+        assert_eq!(exact(5).expect("five bytes").stdout, b"12345");
+        assert!(matches!(exact(4), Err(Failure::TooMuch { .. })));
+    }
+}

@@ -1,0 +1,185 @@
+//! `springcheck cost SCENE`
+
+use crate::scene::{self, Scene};
+use crate::solvers::Solver;
+use crate::verbs;
+use crate::verbs::Report;
+use crate::verbs::cli::announce;
+use crate::verbs::cli::cache::Cache;
+use crate::verbs::cli::chosen;
+use crate::verbs::cli::chosen::Truth;
+use crate::verbs::cli::host::host;
+use crate::verbs::cli::progress::Progress;
+use crate::verbs::cli::rapier::Custom;
+use crate::verbs::cli::shown::{self, HUMAN, format_ids};
+use crate::verbs::cli::time::Time;
+use crate::verbs::cost::{self, CostChoice, CostPlan};
+use anyhow::{Context, bail};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The scene file (YAML).
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+
+    /// Integrators to sweep, in this order: ids separated by commas, or `all`.
+    /// Default: all, the scene's own first.
+    #[arg(long, value_name = "A,B|all", value_delimiter = ',')]
+    integrators: Vec<String>,
+
+    /// Reference engines: ids separated by commas, or `none`. Default: rapier at 4, 1 and 16 iterations.
+    #[arg(long, value_name = "A,B|none", value_delimiter = ',')]
+    engines: Vec<String>,
+
+    /// One more rapier row with these settings, such as `iterations=8,pgs=4`; repeatable.
+    #[arg(long, value_name = "KEY=VALUE,...")]
+    rapier: Vec<Custom>,
+
+    /// Errors to reach, metres, separated by commas.
+    #[arg(long, value_name = "M,...", value_delimiter = ',', default_value = "1e-3,1e-6,1e-9",
+          value_parser = target, allow_hyphen_values = true)]
+    targets: Vec<f64>,
+
+    /// Steps (of adaptive pairs: tolerances) to try of each engine.
+    #[arg(long, value_name = "N", default_value_t = cost::SETTINGS as u32, value_parser = clap::value_parser!(u32).range(2..=200))]
+    steps: u32,
+
+    /// About what the sweep may take: 30s, 2m. It sets the finest step of each engine, by counted work on
+    /// a nominal machine, so that every machine tries the same steps.
+    #[arg(long, value_name = "TIME", default_value = "30s")]
+    budget: Time,
+
+    /// Exactly these timesteps, seconds, separated by commas, and a picture of them side by side; without
+    /// adaptive pairs, which choose their own.
+    #[arg(long, value_name = "H,...", value_delimiter = ',', conflicts_with_all = ["steps", "budget"])]
+    timestep: Vec<f64>,
+
+    /// Seconds to simulate. Default: the scene's.
+    #[arg(long, value_name = "SECONDS")]
+    duration: Option<f64>,
+
+    /// What errors are measured against: a closed form or else a converged reference (auto), a
+    /// closed form or nothing (closed), nothing (none).
+    #[arg(long, value_enum, default_value_t = Truth::Auto, value_name = "KIND")]
+    truth: Truth,
+
+    /// What goes to stdout.
+    #[arg(long, default_value = HUMAN, value_parser = format_ids())]
+    format: String,
+
+    /// Where reports go [default: reports; with a --format other than human, nowhere].
+    #[arg(long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+/// What shortens this verb.
+const SHORTER: &str = "--budget, fewer --steps, --integrators A,B, --engines none";
+/// Errors anybody may want, m.
+const TARGETS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+/// More targets or steps than this are a mistake.
+const MOST: usize = 32;
+
+/// An error to reach, m.
+fn target(text: &str) -> Result<f64, String> {
+    let metres = text.parse().ok().filter(|metres| TARGETS.contains(metres));
+    metres.ok_or_else(|| "expected metres from 1e-30 to 1e30".to_owned())
+}
+
+/// Runs the verb.
+pub fn cost(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
+    let scene = read(args)?;
+    let plan = CostPlan::new(&scene, &choice(args, &scene)?);
+    let place = shown::place(args.output.as_deref(), &args.format, &args.scene);
+    let estimates = plan.estimate();
+    let expected = estimates.iter().map(|e| e.seconds).sum();
+    if !quiet {
+        announce::announce(&estimates, expected, SHORTER);
+    }
+    let progress = Progress::new(plan.work(), expected, quiet);
+    let report = plan.execute(&host(&progress, None, &Cache::new()));
+    progress.finish();
+    let report = shown::written(report, place.as_ref())?;
+    let next = next(args, &scene, &report);
+    let otherwise = "springcheck cost --help";
+    shown::print_one(&args.format, &report, place.as_ref(), next, otherwise)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn read(args: &Args) -> anyhow::Result<Scene> {
+    let mut scene = scene::read(&args.scene, verbs::names())?;
+    if let Some(duration) = args.duration {
+        scene.duration = duration;
+    }
+    let file = args.scene.display();
+    if args.timestep.is_empty() {
+        // The file's step is not run here, so a duration below it is none of its business.
+        let step = scene.solver.timestep;
+        let within = scene.duration > 0.0 && scene.duration < step;
+        let step = if within { scene.duration } else { step };
+        scene::check_times(step, scene.duration).with_context(|| file.to_string())?;
+    }
+    for &timestep in &args.timestep {
+        scene::check_times(timestep, scene.duration)
+            .with_context(|| format!("{file}: timestep {timestep}"))?;
+    }
+    Ok(scene)
+}
+
+fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
+    chosen::without_timestep(&args.rapier, "swept; leave dt out, or give --timestep")?;
+    if args.targets.len() > MOST || args.timestep.len() > MOST {
+        bail!("at most {MOST} targets and {MOST} timesteps");
+    }
+    let usual = CostChoice::default_for(scene);
+    let mut targets = args.targets.clone();
+    targets.sort_by(|a, b| b.total_cmp(a));
+    targets.dedup();
+    let mut solvers = chosen::with_pairs(&args.integrators, scene, &usual.solvers)?;
+    solvers.extend(chosen::engines(
+        &args.engines,
+        &args.rapier,
+        &usual.solvers,
+    )?);
+    let choice = CostChoice {
+        solvers,
+        targets,
+        settings: args.steps as usize,
+        budget_s: args.budget.0.as_secs_f64(),
+        timesteps: (!args.timestep.is_empty()).then(|| args.timestep.clone()),
+        truth: args.truth.demand(),
+    };
+    if choice.solvers.is_empty() {
+        bail!("nothing to sweep: no integrators and no engines");
+    }
+    let swept = |solver: &Solver| solver.as_pair().is_none();
+    if choice.timesteps.is_some() && !choice.solvers.iter().any(swept) {
+        bail!("nothing to sweep: adaptive pairs choose their own steps; leave --timestep out");
+    }
+    Ok(choice)
+}
+
+/// The classic picture, or after it the cheapest integrator in a cross-check.
+fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
+    let path = shown::quoted(&args.scene)?;
+    let flag = |duration| format!(" --duration {duration}");
+    let duration = args.duration.map_or_else(String::new, flag);
+    let step = |h: f64| shown::rounded(h).min(scene.duration);
+    if args.timestep.is_empty() {
+        let h = scene.solver.timestep;
+        let mut steps = [4.0 * h, 2.0 * h, h].map(|h| step(h).to_string()).to_vec();
+        steps.dedup();
+        let steps = steps.join(",");
+        return Some(format!(
+            "springcheck cost {path}{duration} --timestep {steps}"
+        ));
+    }
+    let targets = &report.cost()?.targets;
+    let cheapest = targets.iter().rev().find_map(|t| t.cheapest.as_ref())?;
+    Some(format!(
+        "springcheck run {path}{duration} --integrators {} --timestep {}",
+        cheapest.engine,
+        step(cheapest.timestep)
+    ))
+}

@@ -1,0 +1,236 @@
+//! Work-precision diagrams: error over cost, both axes logarithmic, one line an engine with a point a
+//! setting.
+
+use crate::report::svg::axis::{Axis, range};
+use crate::report::svg::canvas::{FAINT, Shape, Stroke, Symbol, WHITE};
+use crate::report::svg::chart::{Chart, Panel};
+use crate::report::svg::key::{Key, Look};
+use crate::report::svg::marks::{self, Mark};
+use crate::report::svg::palette::{COLOURS, SHAPES, look};
+use crate::report::svg::{NAME, heading, palette, shortened};
+use crate::report::words;
+use crate::solvers::Kind;
+use crate::solvers::Status;
+use crate::verbs::Report;
+use crate::verbs::cost::text::{Diagram, is_timed, metres};
+use crate::verbs::cost::{Cost, CostCurve, CostPoint};
+
+/// What an axis may hold: nothing overflows within.
+const SMALLEST: f64 = 1e-250;
+const LARGEST: f64 = 1e250;
+
+/// Error over wall time.
+pub const TIME: Diagram = Diagram {
+    judged: true,
+    timed: true,
+};
+
+/// Error over force evaluations.
+pub const EVALUATIONS: Diagram = Diagram {
+    judged: true,
+    timed: false,
+};
+
+/// Energy error over time, or over evaluations where nothing was timed.
+pub fn energy(report: &Report) -> Option<Chart> {
+    let timed = report.cost().is_some_and(is_timed);
+    let judged = false;
+    chart(report, Diagram { judged, timed })
+}
+
+/// One engine's part of a diagram.
+struct Line<'a> {
+    curve: &'a CostCurve,
+    look: (Stroke, Shape),
+    /// Cost and error of each setting with both, and which of the curve's points it is.
+    points: Vec<(usize, [f64; 2])>,
+    /// What runs that ended early would have cost.
+    ended: Vec<f64>,
+}
+
+/// The diagram, where some setting has both an error and a cost.
+pub fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
+    let cost = report.cost()?;
+    let looks = marked(report, &cost.curves);
+    let lines = cost.curves.iter().zip(looks).map(|(curve, look)| Line {
+        curve,
+        look,
+        points: points(curve, diagram),
+        ended: ended(curve, diagram),
+    });
+    let (mut lines, silent): (Vec<_>, Vec<_>) = lines.partition(|line| !line.points.is_empty());
+    if lines.is_empty() {
+        return None;
+    }
+    let targets = cost.targets.iter().map(|target| target.error_m);
+    let targets = targets.filter(|error| diagram.judged && *error > 0.0);
+    let targets: Vec<f64> = targets.collect();
+    let placed = || lines.iter().flat_map(|line| &line.points);
+    let costs = placed().map(|(_, [cost, _])| *cost);
+    let ended = lines.iter().flat_map(|line| &line.ended).copied();
+    let errors = placed().map(|(_, [_, error])| *error);
+    let errors = errors.chain(targets.iter().copied());
+    let axes = [axis(costs.chain(ended)), axis(errors)];
+    let legend = legend(diagram, &lines);
+
+    let mut marks = levels(cost, &targets, axes, diagram);
+    // The scene's own last: its line lies over the others.
+    lines.sort_by_key(|line| line.curve.engine == report.header.scene.own_integrator);
+    marks.extend(lines.iter().flat_map(|line| line.marks(axes, diagram)));
+    let silent: Vec<String> = silent.iter().map(Line::name).collect();
+    let note = format!("without numbers for this: {}", silent.join(", "));
+    let note = (!silent.is_empty()).then(|| shortened(&note, 130));
+    let paid = match diagram.timed {
+        true => ["time", "wall time of a run, median (s)"],
+        false => ["force evaluations", "force evaluations of a run"],
+    };
+    let (title, error) = match diagram.judged {
+        true => (
+            format!("what accuracy costs in {}", paid[0]),
+            "largest error (m)",
+        ),
+        false => (
+            "what energy accuracy costs".into(),
+            "largest |B − B(0)| / S",
+        ),
+    };
+    Some(Chart {
+        title: heading(report, &title),
+        legend,
+        titles: [paid[1], error].map(str::to_owned),
+        panels: vec![Panel::new(String::new(), 430.0, axes, marks)],
+        note: note.unwrap_or_default(),
+        ..Chart::default()
+    })
+}
+
+fn points(curve: &CostCurve, diagram: Diagram) -> Vec<(usize, [f64; 2])> {
+    let points = curve.points.iter().enumerate();
+    let completed = points.filter(|(_, point)| point.status == Status::Completed);
+    let placed = completed.filter_map(|(at, point)| {
+        let cost = diagram.cost(point).filter(|cost| *cost > 0.0)?;
+        let error = diagram.error(point)?.clamp(0.0, LARGEST);
+        Some((at, [cost.clamp(SMALLEST, LARGEST), error]))
+    });
+    placed.collect()
+}
+
+/// What runs that diverged or failed would have cost, by the nearest finer one that completed: a step
+/// costs the same.
+fn ended(curve: &CostCurve, diagram: Diagram) -> Vec<f64> {
+    let cost = |(at, point): (usize, &CostPoint)| {
+        let early = matches!(point.status, Status::Diverged | Status::Failed);
+        let finer = curve.points.iter().skip(at + 1);
+        let (paid, step) = finer
+            .filter(|other| other.status == Status::Completed)
+            .find_map(|other| Some((diagram.cost(other)?, other.timestep)))
+            .filter(|_| early)?;
+        let cost = paid * (step / point.timestep);
+        (cost > SMALLEST && cost < LARGEST).then_some(cost)
+    };
+    curve.points.iter().enumerate().filter_map(cost).collect()
+}
+
+/// Half a decade more than the values span, at most; a lone value in the middle of a decade.
+fn axis(values: impl Iterator<Item = f64>) -> Axis {
+    let positive = values.filter(|v| *v > 0.0);
+    let [lo, hi] = range(positive).unwrap_or([1.0, 1.0]);
+    let [lo, hi] = [lo, hi].map(|end| end.clamp(SMALLEST, LARGEST));
+    let room = 10_f64.powf((0.04 * (hi.log10() - lo.log10())).clamp(0.05, 0.5));
+    let room = if hi < 2.0 * lo { 3.0 } else { room };
+    Axis::logarithmic([lo / room, hi * room])
+}
+
+impl Line<'_> {
+    fn name(&self) -> String {
+        shortened(&words::one_line(&self.curve.engine), NAME)
+    }
+
+    fn marks(&self, [x, y]: [Axis; 2], diagram: Diagram) -> Vec<Mark> {
+        let (stroke, shape) = self.look;
+        let solid = Symbol::new(shape, stroke.colour, stroke.colour);
+        // An error of 0 lies on the lower edge.
+        let points = self.points.iter();
+        let points = points.map(|(at, [cost, error])| (*at, [*cost, error.max(y.range[0])]));
+        let mut line = marks::Line::new(points.clone().map(|(_, point)| point), stroke);
+        let slope = self.curve.observed_order;
+        let slope = slope.filter(|slope| diagram.judged && slope.abs() < 99.5);
+        let slope = slope.map_or(String::new(), |slope| format!(", slope {slope:.2}"));
+        let label = Key::new(self.name() + &slope, Look::Marked(stroke, solid));
+        line.label = Some(label);
+
+        let mut marks = vec![Mark::Line(line)];
+        for (at, point) in points {
+            let wall = self.curve.points.get(at).and_then(|p| p.wall_s.as_ref());
+            if let Some(wall) = wall.filter(|_| diagram.timed) {
+                let ends = [wall.min, wall.median + wall.mad.unwrap_or(0.0)];
+                let ends = ends.map(|end| end.max(SMALLEST));
+                // Within the symbol itself a whisker says nothing.
+                if x.place(ends[1]) - x.place(ends[0]) > 0.02 {
+                    let thin = Stroke::new(stroke.colour, "", 1.0);
+                    marks.push(Mark::line(ends.map(|end| [end, point[1]]), thin));
+                }
+            }
+            let filled = !diagram.judged || self.curve.pareto.contains(&at);
+            let fill = if filled { stroke.colour } else { WHITE };
+            let symbol = Symbol::new(shape, fill, stroke.colour);
+            marks.push(Mark::Symbols(symbol, vec![point]));
+        }
+        let ended = self.ended.iter().map(|cost| [*cost, y.at(0.985)]);
+        let cross = Symbol::new(Shape::Cross, stroke.colour, stroke.colour);
+        marks.push(Mark::Symbols(cross, ended.collect()));
+        marks
+    }
+}
+
+/// Grey from the floor down, and a line for each target.
+fn levels(cost: &Cost, targets: &[f64], [x, y]: [Axis; 2], diagram: Diagram) -> Vec<Mark> {
+    let [[left, right], [bottom, _]] = [x.range, y.range];
+    let mut marks = Vec::new();
+    if let Some(floor) = cost
+        .floor_m
+        .filter(|floor| diagram.judged && *floor > bottom)
+    {
+        let below = [[left, bottom], [right, floor]];
+        marks.push(Mark::Area(palette::BELOW_FLOOR, vec![below]));
+    }
+    for &error in targets {
+        let ends = [[left, error], [right, error]];
+        marks.push(Mark::line(ends, palette::TARGET));
+        marks.push(Mark::Text(ends[0], format!("{} m", metres(error))));
+    }
+    marks
+}
+
+/// What the symbols mean.
+fn legend(diagram: Diagram, lines: &[Line]) -> Vec<Key> {
+    let symbol = |shape, fill| Look::Symbol(Symbol::new(shape, fill, FAINT));
+    let front = "none of its settings beats it in error and evaluations";
+    let early = "diverged or failed, at what all its steps would cost";
+    let mut legend = Vec::new();
+    if diagram.judged {
+        legend.push(Key::new(front, symbol(Shape::Disc, FAINT)));
+        legend.push(Key::new("beaten", symbol(Shape::Disc, WHITE)));
+    }
+    if lines.iter().any(|line| !line.ended.is_empty()) {
+        legend.push(Key::new(early, symbol(Shape::Cross, FAINT)));
+    }
+    legend
+}
+
+/// Looks of lines whose points are marked: what shares a colour differs in its marks, so that only
+/// what is no integrator is dashed.
+fn marked(report: &Report, curves: &[CostCurve]) -> Vec<(Stroke, Shape)> {
+    let look = |(at, curve): (usize, &CostCurve)| {
+        let before = curves.iter().take(at);
+        let place = before.filter(|other| other.kind == curve.kind).count();
+        let own = curve.engine == report.header.scene.own_integrator;
+        let mut stroke = look(curve.kind, place, own);
+        if curve.kind == Kind::Integrator {
+            stroke.dash = "";
+            return (stroke, SHAPES[place / COLOURS.len() % SHAPES.len()]);
+        }
+        (stroke, SHAPES[place % SHAPES.len()])
+    };
+    curves.iter().enumerate().map(look).collect()
+}

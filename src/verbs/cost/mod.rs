@@ -1,0 +1,186 @@
+//! What accuracy costs: every chosen engine over a range of settings, its error against the truth, and
+//! what it took, counted and timed.
+//!
+//! Errors are found in parallel; then, with nothing else running, what completed is timed one after the
+//! other. Only wall times, and what is chosen by them, differ between two runs.
+
+mod answer;
+mod args;
+mod clock;
+mod errors;
+mod figures;
+mod panels;
+mod price;
+pub mod rank;
+mod refine;
+mod result;
+mod sampler;
+mod settings;
+mod sweep;
+mod text;
+mod view;
+
+pub use args::{Args, cost};
+pub use result::{
+    Cost, CostCurve, CostLine, CostPanel, CostPanels, CostPoint, CostRank, CostReached, CostTarget,
+};
+
+use crate::integrators;
+use crate::measure;
+use crate::physics::ParticleSystem;
+use crate::report::Header;
+use crate::scene::Scene;
+use crate::solvers::rapier::Settings;
+use crate::solvers::{self, Limits, Setting, Solver};
+use crate::truth::{self, Demand};
+use crate::verbs::host::{Estimate, Host, Label};
+use crate::verbs::run::{ledger, truths};
+use crate::verbs::{Beside, Body, Report, Series};
+use errors::Errors;
+use rayon::prelude::*;
+use sweep::{Ground, Sweep, Swept};
+
+/// What is asked.
+#[derive(Debug, Clone)]
+pub struct CostChoice {
+    /// In the order of the curves; adaptive pairs are swept over their tolerance. A timestep of their own
+    /// is not looked at: the step is what is swept.
+    pub solvers: Vec<Solver>,
+    /// Errors somebody wants to reach, m.
+    pub targets: Vec<f64>,
+    /// Settings of each solver, at least 2; a few more where a target lies between two of them.
+    pub settings: usize,
+    /// What the whole may take, in seconds of a nominal machine: work is counted, so that every machine
+    /// tries the same settings.
+    pub budget_s: f64,
+    /// Exactly these steps, s, instead of a range; adaptive pairs, which choose theirs, are left out.
+    pub timesteps: Option<Vec<f64>>,
+    /// What errors are measured against.
+    pub truth: Demand,
+}
+
+/// Errors to reach when none are named, m.
+pub const TARGETS: [f64; 3] = [1e-3, 1e-6, 1e-9];
+/// Settings of each engine when their number is not given.
+pub const SETTINGS: usize = 12;
+/// The budget when none is given, s.
+pub const BUDGET_S: f64 = 30.0;
+/// rapier's iterations that are swept beside its default.
+const ITERATIONS: [u32; 2] = [1, 16];
+
+impl CostChoice {
+    /// Every method and pair, and rapier at three numbers of iterations.
+    pub fn default_for(scene: &Scene) -> Self {
+        let others = ITERATIONS.map(|iterations| {
+            Solver::rapier(Settings {
+                iterations,
+                ..Settings::DEFAULT
+            })
+        });
+        let mut solvers = crate::solvers::methods(&scene.solver.method);
+        solvers.extend(integrators::pairs().iter().map(Solver::method));
+        solvers.extend(solvers::find("rapier").into_iter().chain(others));
+        Self {
+            solvers,
+            targets: TARGETS.to_vec(),
+            settings: SETTINGS,
+            budget_s: BUDGET_S,
+            timesteps: None,
+            truth: Demand::Auto,
+        }
+    }
+}
+
+/// The settings of every engine on one scene.
+pub struct CostPlan<'a> {
+    scene: &'a Scene,
+    system: ParticleSystem,
+    choice: CostChoice,
+    sweeps: Vec<Sweep>,
+}
+
+impl<'a> CostPlan<'a> {
+    pub fn new(scene: &'a Scene, choice: &CostChoice) -> Self {
+        let system = ParticleSystem::new(scene);
+        let sweeps = sweep::plan(scene, &system, choice);
+        Self {
+            scene,
+            system,
+            choice: choice.clone(),
+            sweeps,
+        }
+    }
+
+    /// What a progress bar counts against and [`Host::progress`] is told: nominal microseconds.
+    pub fn work(&self) -> u64 {
+        self.sweeps.iter().map(Sweep::work).sum()
+    }
+
+    /// How long each engine will take, from its nominal work.
+    pub fn estimate(&self) -> Vec<Estimate> {
+        let estimate = |sweep: &Sweep| Estimate {
+            label: Label {
+                engine: sweep.solver.id.to_string(),
+                timestep: sweep.settings.last().map_or(0.0, Setting::timestep),
+                steps: sweep.settings.iter().map(Setting::steps).sum(),
+                particles: self.scene.particles.len(),
+            },
+            seconds: 1e-6 * sweep.work() as f64,
+        };
+        self.sweeps.iter().map(estimate).collect()
+    }
+
+    /// Sweeps, times and judges. Whatever an engine does is a point with its reason.
+    pub fn execute(&self, host: &dyn Host) -> Report {
+        let (scene, system) = (self.scene, &self.system);
+        let truth = truth::find(scene, system, self.choice.truth, self.until(), host.store());
+        let scale = measure::energy_scale(scene, system, truths::peak(system, &truth));
+        // When a run stops must not depend on whether a truth was asked for.
+        let before = measure::energy_scale(scene, system, None);
+        let limit = measure::divergence_limit(scene, before);
+        let limits = Limits::new(system.clone(), limit).now_and_then();
+        let errors = Errors::new(scene, system, &truth, scale);
+        let named = self.choice.timesteps.is_some();
+        let ground = Ground {
+            scene,
+            system,
+            errors: &errors,
+            limits: &limits,
+            host,
+            panels: named,
+        };
+        let run = |sweep: &Sweep| {
+            let mut swept = ground.sweep(sweep, !named);
+            if !named {
+                refine::toward(&ground, sweep, &mut swept, &self.choice.targets);
+            }
+            swept
+        };
+        let mut swept: Vec<Swept> = self.sweeps.par_iter().map(run).collect();
+        for (sweep, swept) in self.sweeps.iter().zip(&mut swept) {
+            clock::time(&ground, sweep, swept);
+        }
+        let counted = Swept::evaluations(&swept, &self.sweeps);
+        let panels = named.then(|| panels::panels(scene, &errors, &self.sweeps, &swept));
+        let facts = ledger::facts(scene, ledger::effects(scene, system, counted), scale);
+        let cost = answer::answer(scene, &errors, &self.choice, &self.sweeps, swept);
+        Report {
+            header: Header {
+                scene: facts,
+                truth: truths::facts(&truth),
+                checks: ledger::no_scale(scale).into_iter().collect(),
+            },
+            body: Body::Cost { outcomes: [], cost },
+            beside: panels.map_or(Beside::Nothing, |panels| {
+                Beside::Here(Series::Panels(panels))
+            }),
+        }
+    }
+
+    /// When the last run ends, s.
+    fn until(&self) -> f64 {
+        let asked = self.choice.timesteps.iter().flatten();
+        let ends = asked.map(|h| self.scene.steps(*h) as f64 * h);
+        ends.fold(self.scene.duration, f64::max)
+    }
+}

@@ -1,0 +1,77 @@
+//! The classic picture: a coordinate over time at a few steps, engine by engine, beside the truth.
+
+use super::errors::Errors;
+use super::sampler::Samples;
+use super::sweep::{Sweep, Swept};
+use crate::scene::Scene;
+use crate::verbs::cost::{CostLine, CostPanel, CostPanels, CostPoint};
+
+/// Points of the truth's curve.
+const POINTS: u32 = 600;
+
+pub fn panels(scene: &Scene, errors: &Errors, sweeps: &[Sweep], swept: &[Swept]) -> CostPanels {
+    let [particle, axis] = shown(scene, swept);
+    let at = 3 * particle + axis;
+    let panel = |(sweep, swept): (&Sweep, &Swept)| CostPanel {
+        engine: sweep.solver.id.to_string(),
+        lines: swept
+            .points
+            .iter()
+            .zip(&swept.kept)
+            .map(|(point, kept)| line(errors, point, kept, at))
+            .collect(),
+    };
+    CostPanels {
+        label: format!("particle {particle}, {} (m)", ["x", "y", "z"][axis]),
+        truth: truth(errors, at),
+        panels: sweeps.iter().zip(swept).map(panel).collect(),
+    }
+}
+
+/// The coordinate the scene asks for, else the one that moves farthest: particle and axis.
+fn shown(scene: &Scene, swept: &[Swept]) -> [usize; 2] {
+    if let Some(plot) = &scene.plot {
+        return [plot.particle, plot.dof];
+    }
+    let finest = swept.iter().filter_map(|swept| swept.kept.last());
+    let mut best = ([0, 0], -1.0);
+    for kept in finest {
+        for at in 0..kept.dim {
+            let values = (0..kept.t.len()).map(|k| kept.x(k)[at]);
+            let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+                [low.min(x), high.max(x)]
+            });
+            if high - low > best.1 {
+                best = ([at / 3, at % 3], high - low);
+            }
+        }
+    }
+    best.0
+}
+
+fn line(errors: &Errors, point: &CostPoint, kept: &Samples, at: usize) -> CostLine {
+    let finite = |p: &[f64; 2]| p.iter().all(|c| c.is_finite());
+    let curve = (0..kept.t.len()).map(|k| [kept.t[k], kept.x(k)[at]]);
+    let difference = errors.states(kept).map(|(times, states)| {
+        let off = |k: usize| [times[k], kept.x(k + 1)[at] - states.x(k)[at]];
+        (0..times.len()).map(off).filter(finite).collect()
+    });
+    CostLine {
+        timestep: point.timestep,
+        status: point.status,
+        curve: curve.filter(finite).collect(),
+        difference: difference.unwrap_or_default(),
+    }
+}
+
+fn truth(errors: &Errors, at: usize) -> Vec<[f64; 2]> {
+    let Some(motion) = errors.truth.motion() else {
+        return Vec::new();
+    };
+    let until = errors.truth.horizon;
+    let part = |k: u32| until * f64::from(k) / f64::from(POINTS);
+    let times: Vec<f64> = (0..=POINTS).map(part).collect();
+    let states = motion.states(&times);
+    let points = times.iter().enumerate().map(|(k, t)| [*t, states.x(k)[at]]);
+    points.filter(|p| p.iter().all(|c| c.is_finite())).collect()
+}

@@ -1,0 +1,167 @@
+//! The answer for one target as a paragraph: who reaches it cheapest, how much dearer the others are,
+//! and who does not reach it.
+
+use super::{evaluations, metres, price, ratio, setting};
+use crate::report::notes::{grouped, listed};
+use crate::report::words;
+use crate::verbs::cost::{Cost, CostRank, CostReached, CostTarget};
+
+/// `1e-6 m`.
+pub fn label(target: &CostTarget) -> String {
+    format!("{} m", metres(target.error_m))
+}
+
+/// `rk4 at h = 0.02 s, 0.10 ms (1,000 evaluations)`.
+pub fn reached(reached: &CostReached) -> String {
+    format!(
+        "{} at {}, {}",
+        words::one_line(&reached.engine),
+        setting(reached.timestep, reached.tolerance),
+        price(reached)
+    )
+}
+
+/// What there is to say of each target, labels first; targets that share a reason not to be judged are
+/// one paragraph.
+pub fn paragraphs(cost: &Cost) -> Vec<(String, String)> {
+    let said = cost.targets.iter().enumerate().map(|(at, target)| {
+        let alone = target.reason.is_none().then_some(at);
+        (metres(target.error_m), (alone, paragraph(target)))
+    });
+    let labelled = grouped(said).into_iter();
+    labelled
+        .map(|((_, text), errors)| (format!("{} m", listed(&errors)), text))
+        .collect()
+}
+
+/// Everything there is to say of one target, without its label.
+fn paragraph(target: &CostTarget) -> String {
+    let mut clauses = Vec::new();
+    if let Some(reason) = &target.reason {
+        clauses.push(words::one_line(reason));
+    }
+    let mut there = target.ranking.iter().filter(|rank| rank.reached.is_some());
+    let first = there.next().and_then(|rank| rank.reached.as_ref());
+    if let Some(first) = first {
+        clauses.push(reached(first));
+        let rest = there.filter_map(|rank| dearer(rank, first));
+        clauses.extend(rest);
+        clauses.extend(fewest(target, first));
+        clauses.extend(extrapolated(target));
+    }
+    let nobody = first.is_none() && target.reason.is_none();
+    clauses.extend(match missing(&target.ranking, true) {
+        Some(_) if nobody => Some(format!(
+            "no integrator reaches it: {}",
+            misses(&target.ranking, true).join(", ")
+        )),
+        None if nobody => Some("no integrator reaches it".to_owned()),
+        missing => missing,
+    });
+    let beside = target.reference.iter().filter_map(|rank| {
+        let dear = rank.wall_ratio.map(|r| format!(", {}", ratio(r)));
+        Some(reached(rank.reached.as_ref()?) + &dear.unwrap_or_default())
+    });
+    let beside: Vec<String> = beside.collect();
+    if !beside.is_empty() {
+        clauses.push(format!("beside them, not ranked: {}", listed(&beside)));
+    }
+    clauses.extend(missing(&target.reference, false));
+    clauses.join("; ")
+}
+
+/// `velocity_verlet 18x`; by evaluations where the clock did not run.
+fn dearer(rank: &CostRank, first: &CostReached) -> Option<String> {
+    let found = rank.reached.as_ref()?;
+    let name = words::one_line(&rank.engine);
+    if let Some(dear) = rank.wall_ratio {
+        return Some(format!("{name} {}", ratio(dear)));
+    }
+    Some(match (first.wall_median_s, found.wall_median_s) {
+        (None, None) => match (first.force_evaluations, found.force_evaluations) {
+            (Some(least), Some(count)) if least > 0 => {
+                format!("{name} {}", ratio(count as f64 / least as f64))
+            }
+            _ => format!("{name}, {}", price(found)),
+        },
+        _ => format!("{name}, {}", price(found)),
+    })
+}
+
+/// Who evaluates least, where that is not who is fastest.
+fn fewest(target: &CostTarget, first: &CostReached) -> Option<String> {
+    let fewest = target.fewest_evaluations.as_ref()?;
+    if fewest.engine == first.engine {
+        return None;
+    }
+    let count = fewest.force_evaluations?;
+    Some(format!(
+        "fewest evaluations: {} at {}, {}",
+        words::one_line(&fewest.engine),
+        setting(fewest.timestep, fewest.tolerance),
+        evaluations(count)
+    ))
+}
+
+/// Who would reach it at finer settings than were tried, and at what price.
+fn extrapolated(target: &CostTarget) -> Option<String> {
+    let would = target.ranking.iter().filter_map(|rank| {
+        let dear = ratio(rank.extrapolated_wall_ratio?);
+        Some(format!("{} {dear}", words::one_line(&rank.engine)))
+    });
+    let would: Vec<String> = would.collect();
+    (!would.is_empty()).then(|| {
+        format!(
+            "not reached, but by their slopes about: {}",
+            would.join(", ")
+        )
+    })
+}
+
+/// Who does not reach it.
+fn missing(ranks: &[CostRank], ranked: bool) -> Option<String> {
+    let texts = misses(ranks, ranked);
+    (!texts.is_empty()).then(|| format!("not reached by {}", texts.join(", ")))
+}
+
+/// Who does not reach it and why. Equal reasons are said once, and of those that differ in a number
+/// alone only the number, after the first.
+fn misses(ranks: &[CostRank], ranked: bool) -> Vec<String> {
+    // Of integrators with a price by their slope, that is said instead.
+    let priced = |rank: &&CostRank| rank.extrapolated_wall_ratio.is_some() && ranked;
+    let missing = ranks.iter().filter(|rank| rank.reached.is_none());
+    let said = grouped(missing.filter(|rank| !priced(rank)).map(|rank| {
+        let reason = rank.reason.as_deref().map(words::one_line);
+        (words::one_line(&rank.engine), reason.unwrap_or_default())
+    }));
+    let because = |at: usize, reason: &str| {
+        let mut before = said.iter().take(at);
+        let number = before.find_map(|(known, _)| other_number(known, reason));
+        match number.map_or(reason.to_owned(), str::to_owned).as_str() {
+            "" => String::new(),
+            text => format!(" ({text})"),
+        }
+    };
+    let texts = said.iter().enumerate();
+    texts
+        .map(|(at, (reason, names))| format!("{}{}", listed(names), because(at, reason)))
+        .collect()
+}
+
+/// The one number in which `text` differs from `known`; None where they differ otherwise.
+fn other_number<'a>(known: &str, text: &'a str) -> Option<&'a str> {
+    let (mut old, mut new) = (known.split(' '), text.split(' '));
+    let mut found = None;
+    loop {
+        match (old.next(), new.next()) {
+            (None, None) => return found,
+            (Some(a), Some(b)) if a == b => {}
+            (Some(a), Some(b)) if found.is_none() => {
+                a.parse::<f64>().ok()?;
+                b.parse::<f64>().ok()?;
+                found = Some(b);
+            }
+            _ => return None,
+        }
+    }
+}

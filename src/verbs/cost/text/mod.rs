@@ -1,0 +1,257 @@
+//! What `cost` found, for people: how settings, prices and ratios are written.
+
+pub mod answer;
+pub mod markdown;
+pub mod notes;
+pub mod scatter;
+pub mod terminal;
+pub mod verdict;
+
+use crate::report::table::{Mark, Table};
+use crate::report::words::{self, NOTHING};
+use crate::solvers::Status;
+use crate::verbs::Report;
+use crate::verbs::cost::{Cost, CostCurve, CostPoint, CostReached};
+
+/// The table of engines, in the terminal, where it also has the targets, and in Markdown.
+fn table<'a>(report: &Report, cost: &'a Cost) -> Table<'a, CostCurve> {
+    let own = &report.header.scene.own_integrator;
+    let timed = is_timed(cost);
+    let paid = if timed { "time" } else { "evaluations" };
+    let mut table = Table::new(&cost.curves);
+    table.engines(|curve| {
+        let mark = match Mark::of(&curve.engine, own) {
+            Mark::Plain if !curve.is_ranked() => Mark::Unranked,
+            mark => mark,
+        };
+        (curve.engine.clone(), mark)
+    });
+    table.right("order", "order", 4, order);
+    table.right("slope", "slope", 2, slope);
+    for target in cost.targets.iter().filter(|target| target.reason.is_none()) {
+        let header = format!("{}\nh (s), {paid}", answer::label(target));
+        table.toned(&header, 1, |curve| terminal::cell(target, curve, timed));
+    }
+    table.right(
+        "smallest\nerror (m)",
+        "smallest error (m)",
+        3,
+        nearest_error,
+    );
+    table.right("energy\nerror", "smallest energy error", 5, nearest_energy);
+    table.right("settings", "settings", 6, tried);
+    table
+}
+
+/// A target or a floor, at most two digits: `1e-6`, `2.5e-4`.
+pub(super) fn metres(value: f64) -> String {
+    words::sci(value).replacen(".0e", "e", 1)
+}
+
+/// `h = 0.02 s`, or the tolerance of an adaptive pair and the steps it comes to.
+fn setting(timestep: f64, tolerance: Option<f64>) -> String {
+    let h = words::short(timestep);
+    match tolerance {
+        Some(tolerance) => format!("tolerance {} (mean h = {h} s)", metres(tolerance)),
+        None => format!("h = {h} s"),
+    }
+}
+
+/// The same in few characters, for tables: `0.02`, `tol 1e-8`.
+fn brief(timestep: f64, tolerance: Option<f64>) -> String {
+    tolerance.map_or_else(
+        || words::short(timestep),
+        |tolerance| format!("tol {}", metres(tolerance)),
+    )
+}
+
+fn evaluations(count: u64) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{} evaluation{ending}", words::count(count))
+}
+
+/// `0.10 ms (1,000 evaluations)`, or what is known of it.
+fn price(reached: &CostReached) -> String {
+    let count = reached.force_evaluations.map(evaluations);
+    match (reached.wall_median_s, count) {
+        (Some(wall), Some(count)) => format!("{} ({count})", words::seconds(wall)),
+        (Some(wall), None) => words::seconds(wall),
+        (None, Some(count)) => count,
+        (None, None) => "not timed".to_owned(),
+    }
+}
+
+/// How many times as dear, two digits: `1.3x`, `18x`, `6,200x`.
+fn ratio(value: f64) -> String {
+    if !value.is_finite() {
+        return NOTHING.into();
+    }
+    match value {
+        v if !(0.0995..995_000.0).contains(&v) => format!("{}x", words::sci(v)),
+        v if v < 0.995 => format!("{v:.2}x"),
+        v if v < 9.95 => format!("{v:.1}x"),
+        v => {
+            // Below a million, so exact.
+            let power = 10_f64.powf(v.log10().floor() - 1.0);
+            let rounded = (v / power).round() * power;
+            format!("{}x", words::count(rounded.round() as u64))
+        }
+    }
+}
+
+/// The point with the smallest error against the truth.
+fn nearest(curve: &CostCurve) -> Option<&CostPoint> {
+    smallest(curve, |point| point.error_m)
+}
+
+/// The completed point where `value` is smallest, the first of equal ones.
+fn smallest(curve: &CostCurve, value: fn(&CostPoint) -> Option<f64>) -> Option<&CostPoint> {
+    let known = |point: &&CostPoint| point.status == Status::Completed && value(point).is_some();
+    let size = |point: &CostPoint| value(point).unwrap_or(f64::INFINITY);
+    let points = curve.points.iter().filter(known);
+    points.min_by(|a, b| size(a).total_cmp(&size(b)))
+}
+
+/// The smallest error, `floor` where nothing below it could be told from the truth.
+fn nearest_error(curve: &CostCurve) -> String {
+    let Some(point) = nearest(curve) else {
+        return NOTHING.into();
+    };
+    match point.error_m {
+        Some(_) if point.at_floor => "floor".into(),
+        error => error.map_or(NOTHING.into(), words::sci),
+    }
+}
+
+/// The smallest energy error of all settings.
+fn nearest_energy(curve: &CostCurve) -> String {
+    let error = smallest(curve, |point| point.energy_error).and_then(|point| point.energy_error);
+    error.map_or(NOTHING.into(), words::sci)
+}
+
+/// How many settings were tried, and how many of them completed where not all did.
+fn tried(curve: &CostCurve) -> String {
+    let all = curve.points.len();
+    let done = |point: &&CostPoint| point.status == Status::Completed;
+    match curve.points.iter().filter(done).count() {
+        done if done == all => all.to_string(),
+        done => format!("{done} of {all}"),
+    }
+}
+
+/// The stated order.
+fn order(curve: &CostCurve) -> String {
+    curve
+        .order
+        .map_or(NOTHING.into(), |order| order.to_string())
+}
+
+/// The fitted order: two decimals.
+fn slope(curve: &CostCurve) -> String {
+    match curve.observed_order {
+        Some(order) if order.abs() < 99.5 => format!("{order:.2}"),
+        Some(order) => words::sci(order),
+        None => NOTHING.into(),
+    }
+}
+
+/// Which numbers a work-precision diagram shows: an error over a cost.
+#[derive(Clone, Copy)]
+pub struct Diagram {
+    /// Whether the error is the one targets, floor, front and slope are about; else that of the energy.
+    pub judged: bool,
+    /// Whether the cost is a time, which has a spread; else force evaluations.
+    pub timed: bool,
+}
+
+impl Diagram {
+    pub fn cost(self, point: &CostPoint) -> Option<f64> {
+        if self.timed {
+            point.wall_s.as_ref().map(|wall| wall.median)
+        } else {
+            point.force_evaluations.map(|count| count as f64)
+        }
+    }
+
+    pub fn error(self, point: &CostPoint) -> Option<f64> {
+        if self.judged {
+            point.error_m
+        } else {
+            point.energy_error
+        }
+    }
+}
+
+/// Whether anything was timed.
+pub fn is_timed(cost: &Cost) -> bool {
+    let mut points = cost.curves.iter().flat_map(|curve| &curve.points);
+    points.any(|point| point.wall_s.is_some())
+}
+
+/// What holds of the whole answer, line by line: label and text.
+pub fn facts(report: &Report, cost: &Cost) -> Vec<(&'static str, String)> {
+    let mut facts = vec![("truth", words::truth(&report.header.truth))];
+    if let Some(horizon) = cost.horizon_s {
+        let whole = if horizon < cost.duration_s {
+            format!(
+                "{} of {} s",
+                words::short(horizon),
+                words::short(cost.duration_s)
+            )
+        } else {
+            format!("{} s, the whole run", words::short(cost.duration_s))
+        };
+        facts.push((
+            "errors",
+            format!("the largest distance of a particle from the truth up to {whole}"),
+        ));
+    }
+    if let Some(floor) = cost.floor_m {
+        facts.push((
+            "floor",
+            format!(
+                "{} m: errors below ten times the truth's own bar are not told apart",
+                metres(floor)
+            ),
+        ));
+    }
+    facts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{metres, ratio};
+
+    #[test]
+    fn ratios_have_two_digits() {
+        for (value, text) in [
+            (0.5, "0.50x"),
+            (1.0, "1.0x"),
+            (1.26, "1.3x"),
+            (9.949, "9.9x"),
+            (9.96, "10x"),
+            (17.7, "18x"),
+            (994.0, "990x"),
+            (6_203.0, "6,200x"),
+            (994_000.0, "990,000x"),
+            (996_000.0, "1.0e6x"),
+            (2.5e7, "2.5e7x"),
+            (1e-3, "1.0e-3x"),
+            (f64::NAN, "-"),
+        ] {
+            assert_eq!(ratio(value), text);
+        }
+    }
+
+    #[test]
+    fn targets_are_as_short_as_they_were_typed() {
+        for (value, text) in [
+            (1e-6, "1e-6"),
+            (2.5e-4, "2.5e-4"),
+            (0.01, "1e-2"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(metres(value), text);
+        }
+    }
+}

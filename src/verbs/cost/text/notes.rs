@@ -1,0 +1,73 @@
+//! What is to be said of single engines: why a reference's line is what it is, and which settings
+//! have no error.
+
+use crate::report::notes::{self, Note, listed};
+use crate::report::words;
+use crate::solvers::Status;
+use crate::verbs::cost::{Cost, CostCurve, CostPoint};
+
+/// More settings than this are given by their first and last.
+const NAMED: usize = 4;
+
+/// What each engine has to say, in the order of the curves.
+pub fn notes(cost: &Cost) -> Vec<Note> {
+    let said = cost.curves.iter().flat_map(|curve| {
+        let name = words::one_line(&curve.engine);
+        let sentences = sentences(curve).into_iter();
+        sentences.map(move |sentence| (name.clone(), sentence))
+    });
+    notes::notes(said, listed)
+}
+
+fn sentences(curve: &CostCurve) -> Vec<String> {
+    // What takes the scene at no setting has no line to explain.
+    let mut points = curve.points.iter();
+    let runs = points.any(|point| point.status != Status::Unsupported);
+    let explanation = curve.explanation.as_deref().filter(|_| runs);
+    let explanation = explanation.map(words::one_line);
+    let endings = [Status::Diverged, Status::Failed, Status::Unsupported];
+    let endings = endings.into_iter().filter_map(|s| ending(curve, s));
+    explanation.into_iter().chain(endings).collect()
+}
+
+/// `diverged at h = 0.2 and 0.1 s`; with the reason unless that is a divergence, which says the same of
+/// each step in other numbers.
+fn ending(curve: &CostCurve, status: Status) -> Option<String> {
+    let ended = curve.points.iter().filter(|point| point.status == status);
+    let ended: Vec<&CostPoint> = ended.collect();
+    let first = ended.first()?;
+    let mut text = words::status(status).to_owned();
+    if ended.len() < curve.points.len() {
+        text += &format!(" at {}", settings(&ended));
+    } else if ended.len() > 1 {
+        text += " at every setting";
+    }
+    if let (true, Some(reason)) = (status != Status::Diverged, &first.reason) {
+        text += &format!(": {}", words::one_line(reason));
+        if ended.iter().any(|point| point.reason != first.reason) {
+            text += " (the first; others differ)";
+        }
+    }
+    Some(text)
+}
+
+/// `h = 0.2 and 0.1 s`, `h = 0.2 to 0.01 s (7 settings)`, or tolerances.
+fn settings(points: &[&CostPoint]) -> String {
+    let adaptive = points.iter().all(|point| point.tolerance.is_some());
+    let value = |point: &&CostPoint| match point.tolerance {
+        Some(tolerance) if adaptive => super::metres(tolerance),
+        _ => words::short(point.timestep),
+    };
+    let values: Vec<String> = points.iter().map(value).collect();
+    let (name, unit) = if adaptive {
+        ("tolerance ", "")
+    } else {
+        ("h = ", " s")
+    };
+    match values.as_slice() {
+        [first, .., last] if values.len() > NAMED => {
+            format!("{name}{first} to {last}{unit} ({} settings)", values.len())
+        }
+        values => format!("{name}{}{unit}", listed(values)),
+    }
+}

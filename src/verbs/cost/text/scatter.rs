@@ -1,0 +1,255 @@
+//! The work-precision diagram in characters: one letter a setting, both axes logarithmic.
+
+use super::{Diagram, answer, is_timed};
+use crate::report::terminal::WIDTH;
+use crate::report::terminal::fit::{clip, wrap};
+use crate::report::terminal::paint::{Tone, mark};
+use crate::report::words;
+use crate::verbs::Report;
+use crate::verbs::cost::{Cost, CostCurve};
+
+/// Characters of the field.
+const COLUMNS: usize = 80;
+const LINES: usize = 22;
+/// Before the field: a label and the axis.
+const LABEL: usize = 7;
+/// Characters from one label below the axis to the next, at least.
+const APART: f64 = 10.0;
+
+/// One engine's letter and its settings as logarithms of cost and error.
+struct Engine {
+    letter: char,
+    name: String,
+    tone: Option<Tone>,
+    points: Vec<[f64; 2]>,
+}
+
+/// Decades shown along one axis.
+#[derive(Clone, Copy)]
+struct Decades {
+    first: i32,
+    last: i32,
+}
+
+impl Decades {
+    /// Whole ones around the logarithms.
+    fn around(values: impl Iterator<Item = f64>) -> Option<Decades> {
+        let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| {
+            (lo.min(v), hi.max(v))
+        });
+        (lo <= hi).then(|| {
+            let first = lo.floor() as i32;
+            Decades {
+                first,
+                last: (hi.ceil() as i32).max(first + 1),
+            }
+        })
+    }
+
+    /// The place of a logarithm among `count`; None outside.
+    fn place(self, value: f64, count: usize) -> Option<usize> {
+        let part = (value - f64::from(self.first)) / f64::from(self.last - self.first);
+        (0.0..=1.0)
+            .contains(&part)
+            .then(|| (part * (count - 1) as f64).round() as usize)
+    }
+
+    /// Every n-th, so that they stand at least `apart` of `count` characters from each other.
+    fn labelled(self, count: usize, apart: f64) -> impl Iterator<Item = i32> {
+        let each = (count - 1) as f64 / f64::from(self.last - self.first);
+        let every = (apart / each).ceil().max(1.0) as i32;
+        (self.first..=self.last).filter(move |decade| decade.rem_euclid(every) == 0)
+    }
+}
+
+/// The characters of the diagram with their tones, the highest row first.
+struct Field {
+    rows: [[(char, Option<Tone>); COLUMNS]; LINES],
+    /// What stands beside each row.
+    beside: [String; LINES],
+    x: Decades,
+    y: Decades,
+}
+
+impl Field {
+    fn row(&self, error: f64) -> Option<usize> {
+        Some(LINES - 1 - self.y.place(error, LINES)?)
+    }
+
+    /// A line across the field with a label, unless another has one there.
+    fn level(&mut self, error: f64, symbol: char, label: String) {
+        if let Some(row) = self.row(error.log10()).filter(|_| error > 0.0) {
+            self.rows[row] = [(symbol, Some(Tone::Dim)); COLUMNS];
+            if self.beside[row].is_empty() {
+                self.beside[row] = label;
+            }
+        }
+    }
+
+    /// A letter, unless another stands there.
+    fn point(&mut self, [cost, error]: [f64; 2], engine: &Engine) {
+        if let (Some(column), Some(row)) = (self.x.place(cost, COLUMNS), self.row(error)) {
+            let place = &mut self.rows[row][column];
+            if !place.0.is_alphanumeric() {
+                *place = (engine.letter, engine.tone);
+            }
+        }
+    }
+
+    /// The rows with the axis of errors, equal tones in one mark.
+    fn lines(&self) -> impl Iterator<Item = String> {
+        let mut labels = [const { String::new() }; LINES];
+        for decade in self.y.labelled(LINES, 2.0) {
+            if let Some(row) = self.row(f64::from(decade)) {
+                labels[row] = clip(&format!("1e{decade}"), LABEL);
+            }
+        }
+        let rows = self.rows.iter().zip(labels).zip(&self.beside);
+        rows.map(|((row, label), beside)| {
+            let runs = row.chunk_by(|a, b| a.1 == b.1).map(|run| {
+                let text: String = run.iter().map(|(symbol, _)| symbol).collect();
+                run[0].1.map_or(text.clone(), |tone| mark(tone, &text))
+            });
+            let text: String = runs.collect();
+            let tick = if label.is_empty() { '│' } else { '┤' };
+            let beside = clip(beside, WIDTH - LABEL - 2 - COLUMNS);
+            let line = format!("{label:>LABEL$}{tick}{text} {}", mark(Tone::Dim, &beside));
+            line.trim_end().to_owned()
+        })
+    }
+}
+
+/// The diagram with its legend; nothing where no setting has both an error and a cost.
+pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
+    let mut points = cost.curves.iter().flat_map(|curve| &curve.points);
+    let judged = points.any(|point| point.error_m.is_some());
+    let timed = is_timed(cost);
+    let engines = engines(report, cost, Diagram { judged, timed });
+    let all = || engines.iter().flat_map(|engine| &engine.points);
+    let targets = || cost.targets.iter().filter(|_| judged);
+    let marked = targets().map(|target| target.error_m).filter(|e| *e > 0.0);
+    let (Some(x), Some(y)) = (
+        Decades::around(all().map(|p| p[0])),
+        Decades::around(all().map(|p| p[1]).chain(marked.map(f64::log10))),
+    ) else {
+        return Vec::new();
+    };
+    let mut field = Field {
+        rows: [[(' ', None); COLUMNS]; LINES],
+        beside: [const { String::new() }; LINES],
+        x,
+        y,
+    };
+    for target in targets() {
+        field.level(target.error_m, '┈', answer::label(target));
+    }
+    let floor = cost.floor_m.filter(|_| judged);
+    if let Some(floor) = floor {
+        field.level(floor, '═', "floor".to_owned());
+    }
+    for engine in &engines {
+        for point in &engine.points {
+            field.point(*point, engine);
+        }
+    }
+    let error = if judged { "error (m)" } else { "energy error" };
+    let over = if timed {
+        "wall time (median)"
+    } else {
+        "force evaluations"
+    };
+    let mut lines = vec![String::new(), format!("{error} over {over}")];
+    lines.extend(field.lines());
+    lines.extend(axis(x, timed));
+    lines.extend(legend(&engines, floor.is_some()));
+    lines
+}
+
+/// Every engine with something to show: the scene's own first, then as listed; integrators have small
+/// letters, references capitals.
+fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
+    let own = |curve: &CostCurve| curve.engine == report.header.scene.own_integrator;
+    let mut curves: Vec<&CostCurve> = cost.curves.iter().collect();
+    curves.sort_by_key(|curve| !own(curve));
+    let (mut small, mut capital) = ('a'..='z', 'A'..='Z');
+    let engines = curves.into_iter().filter_map(|curve| {
+        let log = |value: f64| (value > 0.0).then(|| value.log10());
+        let points = curve.points.iter();
+        let points = points.filter_map(|p| Some([log(diagram.cost(p)?)?, log(diagram.error(p)?)?]));
+        let points: Vec<[f64; 2]> = points.collect();
+        if points.is_empty() {
+            return None;
+        }
+        let (letter, tone) = match curve.is_ranked() {
+            true => (small.next(), own(curve).then_some(Tone::Strong)),
+            false => (capital.next(), Some(Tone::Warn)),
+        };
+        Some(Engine {
+            // More than 26 of a kind share the last.
+            letter: letter.unwrap_or('0'),
+            name: words::one_line(&curve.engine),
+            tone,
+            points,
+        })
+    });
+    engines.collect()
+}
+
+/// The rule below the field and its labels.
+fn axis(x: Decades, timed: bool) -> [String; 2] {
+    let mut rule = vec!['─'; COLUMNS];
+    let mut labels = String::new();
+    for decade in x.labelled(COLUMNS, APART) {
+        let Some(column) = x.place(f64::from(decade), COLUMNS) else {
+            continue;
+        };
+        if let Some(tick) = rule.get_mut(column) {
+            *tick = '┴';
+        }
+        let label = power(decade, timed);
+        // Centred on its tick, as far as the one before leaves room.
+        let middle = (LABEL + 1 + column).saturating_sub(label.chars().count() / 2);
+        let gap = middle.saturating_sub(labels.chars().count());
+        labels += &" ".repeat(gap);
+        labels += &label;
+    }
+    let rule: String = rule.into_iter().collect();
+    [format!("{:>LABEL$}└{rule}", ""), clip(&labels, WIDTH)]
+}
+
+/// A power of ten of seconds or of evaluations.
+fn power(decade: i32, timed: bool) -> String {
+    let unit = match decade.div_euclid(3) {
+        -3 => "ns",
+        -2 => "µs",
+        -1 => "ms",
+        0 if decade < 3 => "s",
+        _ => "",
+    };
+    match (timed, unit) {
+        (false, _) => format!("1e{decade}"),
+        (true, "") => format!("1e{decade} s"),
+        (true, unit) => format!("{} {unit}", 10_i32.pow(decade.rem_euclid(3) as u32)),
+    }
+}
+
+fn legend(engines: &[Engine], floor: bool) -> Vec<String> {
+    // An entry stays on one line: its spaces are made unbreakable for the wrapping.
+    const JOINED: char = '\u{a0}';
+    let entry = |engine: &Engine| {
+        let name = clip(&engine.name, 34).replace(' ', &JOINED.to_string());
+        format!("{}{JOINED}{name}", engine.letter)
+    };
+    let entries: Vec<String> = engines.iter().map(entry).collect();
+    let names = wrap(&entries.join(&format!("{JOINED} ")), WIDTH, "  ");
+    let mut lines: Vec<String> = names
+        .iter()
+        .map(|line| line.replace(JOINED, " ").trim_end().to_owned())
+        .collect();
+    let mut about = "where several meet, the first of them is shown | ┈ target".to_owned();
+    if floor {
+        about += " | ═ floor";
+    }
+    lines.push(mark(Tone::Dim, &about));
+    lines
+}

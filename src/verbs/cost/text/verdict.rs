@@ -1,0 +1,98 @@
+//! The sentence that says what to use.
+
+use super::{answer, metres, ratio};
+use crate::report::notes::listed;
+use crate::report::verdict::Clause;
+use crate::report::words;
+use crate::verbs::Report;
+use crate::verbs::cost::{Cost, CostReached, CostTarget};
+
+/// For each target the cheapest, beside the hardest somebody reaches what the scene's own integrator
+/// takes, and last the targets nobody reaches.
+pub fn clauses(report: &Report, cost: &Cost) -> Vec<Clause> {
+    let mut clauses: Vec<Clause> = Vec::new();
+    // The hardest first: what is left out for width is the easy end.
+    let mut hardest: Vec<&CostTarget> = cost.targets.iter().collect();
+    hardest.sort_by(|a, b| a.error_m.total_cmp(&b.error_m));
+    for target in hardest {
+        let leads = clauses.is_empty();
+        let Some(clause) = cheapest(target, leads) else {
+            continue;
+        };
+        clauses.push(clause);
+        clauses.extend(own(report, target).filter(|_| leads));
+    }
+    let nobody = |target: &&CostTarget| first(target).is_none();
+    let (open, unreached): (Vec<_>, Vec<_>) = cost
+        .targets
+        .iter()
+        .filter(nobody)
+        .partition(|target| target.reason.is_some());
+    clauses.extend(group("no integrator reaches", &unreached));
+    if let Some(reason) = open.first().and_then(|target| target.reason.as_ref()) {
+        let reason = words::one_line(reason);
+        let named = group("nobody can be said to reach", &open);
+        clauses
+            .extend(named.map(|clause| clause.iter().map(|c| format!("{c}: {reason}")).collect()));
+    }
+    if clauses.is_empty() {
+        let known = cost
+            .curves
+            .iter()
+            .filter(|curve| super::nearest(curve).is_some());
+        clauses.push(vec![match known.count() {
+            0 => "no setting gave an error against the truth".to_owned(),
+            _ => "no target was asked about".to_owned(),
+        }]);
+    }
+    clauses
+}
+
+/// Who leads a target's ranking.
+fn first(target: &CostTarget) -> Option<&CostReached> {
+    target.ranking.iter().find_map(|rank| rank.reached.as_ref())
+}
+
+fn cheapest(target: &CostTarget, leads: bool) -> Option<Clause> {
+    let found = first(target)?;
+    let lead = if leads { "cheapest to " } else { "to " };
+    let label = answer::label(target);
+    let name = words::one_line(&found.engine);
+    let h = match found.tolerance {
+        Some(tolerance) => format!("tolerance {}", metres(tolerance)),
+        None => format!("h = {} s", words::short(found.timestep)),
+    };
+    let timed = found.wall_median_s.map(words::seconds);
+    let paid = timed.or(found.force_evaluations.map(super::evaluations));
+    let paid = paid.map_or(String::new(), |paid| format!(", {paid}"));
+    let mut forms = vec![format!("{lead}{label}: {name} at {h}{paid}")];
+    if !leads {
+        forms.extend([format!("{lead}{label}: {name}"), String::new()]);
+    }
+    Some(forms)
+}
+
+/// `symplectic_euler, the scene's own, takes 6,200x the time`.
+fn own(report: &Report, target: &CostTarget) -> Option<Clause> {
+    let mut ranks = target.ranking.iter();
+    let rank = ranks.find(|rank| rank.engine == report.header.scene.own_integrator)?;
+    let name = words::one_line(&rank.engine);
+    let [long, short] = match (&rank.reached, rank.wall_ratio) {
+        (None, _) => ["does not reach it".to_owned(), "does not".to_owned()],
+        (Some(_), Some(dear)) if dear > 1.0 => {
+            let dear = ratio(dear);
+            [format!("takes {dear} the time"), dear]
+        }
+        _ => return None,
+    };
+    Some(vec![
+        format!("{name}, the scene's own, {long}"),
+        format!("{name} {short}"),
+        String::new(),
+    ])
+}
+
+fn group(lead: &str, targets: &[&CostTarget]) -> Option<Clause> {
+    let errors: Vec<String> = targets.iter().map(|t| metres(t.error_m)).collect();
+    (!errors.is_empty()).then(|| vec![format!("{lead} {} m", listed(&errors))])
+}

@@ -1,0 +1,183 @@
+//! `springcheck list integrators|effects|engines|mistakes`
+
+use crate::integrators::adaptive::Estimate;
+use crate::integrators::{self, EnergyLaw, Method, PerStep, Stable};
+use crate::measure::identify::{MISTAKES, Mistake, Wrong};
+use crate::physics::effects;
+use crate::solvers::Kind;
+use crate::solvers::catalogue;
+use clap::ValueEnum;
+use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
+use std::process::ExitCode;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[arg(value_enum)]
+    what: What,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum What {
+    Integrators,
+    Effects,
+    Engines,
+    /// Wrong integrators that `compare` knows by name.
+    Mistakes,
+}
+
+/// Prints a registry.
+pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
+    let text = match args.what {
+        What::Integrators => {
+            let (fixed, adaptive, from) = (of_integrators(), of_pairs(), sources());
+            format!("{fixed}\n\nadaptive (cost only)\n{adaptive}\n\n{from}")
+        }
+        What::Effects => {
+            let rows = effects::REGISTRY.iter();
+            table(
+                &["effect", "what", "formula"],
+                rows.map(|row| vec![row.id.into(), row.summary.into(), row.source.into()]),
+            )
+            .to_string()
+        }
+        What::Engines => {
+            let rows = catalogue().filter(|solver| solver.kind == Kind::Rapier);
+            table(
+                &["engine", "what"],
+                rows.map(|row| vec![row.id.to_string(), row.summary.into()]),
+            )
+            .to_string()
+        }
+        What::Mistakes => {
+            let rows = MISTAKES.iter();
+            table(
+                &["mistake", "meant to be", "what is wrong"],
+                rows.map(|row| vec![row.id.into(), meant(row).into(), row.says.into()]),
+            )
+            .to_string()
+        }
+    };
+    crate::verbs::cli::print(&format!("{text}\n"))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn of_integrators() -> Table {
+    table(
+        &[
+            "integrator",
+            "order",
+            "geometry",
+            "forces a step",
+            "stable, z = hω",
+            "energy a step",
+        ],
+        integrators::fixed().iter().map(|method| {
+            vec![
+                method.id.into(),
+                order(method),
+                geometry(method),
+                match method.evaluations {
+                    PerStep::Exactly(n) => n.to_string(),
+                    PerStep::PerIteration { plus } => format!("solves + {plus}"),
+                },
+                match method.oscillator.stable {
+                    Stable::Never => "never".into(),
+                    Stable::Below(z) => format!("z < {z:.4}"),
+                    Stable::Always => "linear springs".into(),
+                    Stable::AlwaysAlong { across } => format!("along; across z < {across}"),
+                },
+                match method.oscillator.energy {
+                    EnergyLaw::Factor { formula, .. } => format!("times {formula}"),
+                    EnergyLaw::Band { formula, .. } => format!("within {formula}"),
+                    EnergyLaw::Bounded => "bounded".into(),
+                },
+            ]
+        }),
+    )
+}
+
+/// Pairs that choose their own steps, which only costs are measured of.
+fn of_pairs() -> Table {
+    table(
+        &[
+            "pair",
+            "order",
+            "estimate",
+            "stages",
+            "forces a step",
+            "and a rejected one",
+        ],
+        integrators::pairs().iter().filter_map(|method| {
+            let pair = method.pair()?;
+            let [accepted, rejected] = pair.evaluations();
+            Some(vec![
+                method.id.into(),
+                method.order.to_string(),
+                match pair.estimate {
+                    Estimate::Embedded { order, .. } => format!("of order {order}"),
+                    Estimate::Mixed53 { .. } => "of orders 5 and 3, mixed".into(),
+                },
+                pair.stages().to_string(),
+                accepted.to_string(),
+                rejected.to_string(),
+            ])
+        }),
+    )
+}
+
+/// The method a mistake is a wrong form of.
+fn meant(mistake: &Mistake) -> &'static str {
+    match mistake.wrong {
+        Wrong::Step { meant, .. } => meant,
+        Wrong::Physics(_) | Wrong::Length(_) => "any",
+    }
+}
+
+/// Where each method is from and what it is not.
+fn sources() -> Table {
+    let methods = integrators::REGISTRY.iter();
+    table(
+        &["integrator", "from", "not to be confused with"],
+        methods.map(|method| {
+            [method.id, method.source, method.not]
+                .map(String::from)
+                .into()
+        }),
+    )
+}
+
+fn order(method: &Method) -> String {
+    if method.order == method.order_damped {
+        method.order.to_string()
+    } else {
+        format!("{} (damped {})", method.order, method.order_damped)
+    }
+}
+
+fn geometry(method: &Method) -> String {
+    let mut facts = Vec::new();
+    if method.symplectic {
+        facts.push("symplectic");
+    }
+    if method.reversible {
+        facts.push("reversible");
+    }
+    facts.join(", ")
+}
+
+fn table(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {
+    let mut table = Table::new();
+    table
+        .load_style(presets::NOTHING)
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_width(100)
+        .set_header(header.to_vec());
+    for row in rows {
+        table.add_row(row);
+    }
+    // Ids stay whole, to be copied.
+    if let Some(ids) = table.column_mut(0) {
+        ids.set_constraint(ColumnConstraint::ContentWidth);
+    }
+    table
+}

@@ -1,0 +1,155 @@
+//! The curves behind the plots.
+
+use super::plan::Plan;
+use super::ran::Run;
+use super::truths::Truths;
+use crate::measure::EnergySeries;
+use crate::measure::Known;
+use crate::scene::Scene;
+use crate::solvers::Status;
+use crate::verbs::run::{Curves, Figures, PlotAxis, TruthCurves};
+
+/// At most so many particles' paths are drawn.
+const PATHS: usize = 8;
+
+pub fn figures(
+    plan: &Plan,
+    runs: &[Run],
+    energies: &[Option<EnergySeries>],
+    truths: &Truths,
+    scale: Option<f64>,
+) -> Figures {
+    let scene = plan.scene;
+    let plane = plane(scene, runs);
+    let drawn = drawn(scene);
+    let mut curves = Vec::new();
+    for (outcome, (run, energy)) in runs.iter().zip(energies).enumerate() {
+        let Run::Ran(ran) = run else {
+            continue;
+        };
+        let trajectory = &ran.trajectory;
+        let instants = match energy {
+            Some(energy) => &energy.instants,
+            // Without velocities there is motion all the same.
+            None if !trajectory.has_velocities() => &(0..trajectory.len()).collect(),
+            None => continue,
+        };
+        curves.push(Curves {
+            outcome,
+            t: instants.iter().map(|&k| trajectory.time(k)).collect(),
+            energy: energy
+                .as_ref()
+                .map_or_else(Vec::new, |energy| energy.error(scale.unwrap_or(1.0))),
+            plot: plotted(scene, || instants.iter().map(|&k| trajectory.x(k))),
+            paths: paths(&drawn, plane, || instants.iter().map(|&k| trajectory.x(k))),
+        });
+    }
+    let timesteps = plan.cases.iter().map(|case| case.label.timestep);
+    let finest = timesteps.fold(f64::INFINITY, f64::min);
+    Figures {
+        curves,
+        truth: truths
+            .at(finest)
+            .map(|known| truth(scene, &drawn, plane, known, finest)),
+        plot: scene.plot.as_ref().map(|plot| PlotAxis {
+            label: format!(
+                "particle {}, {} (m)",
+                plot.particle,
+                ["x", "y", "z"][plot.dof]
+            ),
+            y_range: plot.y_range,
+        }),
+        plane,
+        fixed: scene
+            .particles
+            .iter()
+            .filter(|p| p.fixed)
+            .map(|p| plane.map(|axis| p.position[axis]))
+            .collect(),
+    }
+}
+
+fn truth(
+    scene: &Scene,
+    drawn: &[usize],
+    plane: [usize; 2],
+    known: &Known,
+    timestep: f64,
+) -> TruthCurves {
+    let states = || (0..known.steps.len()).map(|k| known.states.x(k));
+    TruthCurves {
+        t: known.steps.iter().map(|s| *s as f64 * timestep).collect(),
+        plot: plotted(scene, states),
+        paths: paths(drawn, plane, states),
+    }
+}
+
+/// The coordinate the scene asks for; empty if it asks for none.
+fn plotted<'a, I: Iterator<Item = &'a [f64]>>(scene: &Scene, states: impl Fn() -> I) -> Vec<f64> {
+    scene.plot.as_ref().map_or_else(Vec::new, |plot| {
+        let at = 3 * plot.particle + plot.dof;
+        states().map(|x| x[at]).collect()
+    })
+}
+
+/// One polyline for each of these particles.
+fn paths<'a, I: Iterator<Item = &'a [f64]>>(
+    particles: &[usize],
+    plane: [usize; 2],
+    states: impl Fn() -> I,
+) -> Vec<Vec<[f64; 2]>> {
+    let path = |&particle: &usize| {
+        let point = |x: &[f64]| plane.map(|axis| x[3 * particle + axis]);
+        states().map(point).collect()
+    };
+    particles.iter().map(path).collect()
+}
+
+/// Beside motion this much wider, an axis shows nothing.
+const FLAT: f64 = 0.02;
+
+/// The two coordinates that show the motion: `up` vertically where anything happens along it, and
+/// the wider of the other two; without `up`, those two.
+fn plane(scene: &Scene, runs: &[Run]) -> [usize; 2] {
+    let extents = [0, 1, 2].map(|axis| extent(scene, runs, axis));
+    let up = scene.up.index();
+    let [first, second] = match up {
+        0 => [1, 2],
+        1 => [0, 2],
+        _ => [0, 1],
+    };
+    if extents[up] < FLAT * extents[first].min(extents[second]) {
+        [first, second]
+    } else if extents[second] > extents[first] {
+        [second, up]
+    } else {
+        [first, up]
+    }
+}
+
+/// How wide the scene's start and the first completed run are along an axis, m.
+fn extent(scene: &Scene, runs: &[Run], axis: usize) -> f64 {
+    let calm = runs.iter().find_map(|run| match run {
+        Run::Ran(ran) if ran.status == Status::Completed => Some(&ran.trajectory),
+        _ => None,
+    });
+    let start = scene.particles.iter().map(|p| p.position[axis]);
+    let moved = calm.into_iter().flat_map(|run| {
+        (0..run.len()).flat_map(move |k| run.x(k)[axis..].iter().step_by(3).copied())
+    });
+    let (lo, hi) = start
+        .chain(moved)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
+            (lo.min(x), hi.max(x))
+        });
+    hi - lo
+}
+
+/// Free particles, evenly chosen when there are many.
+fn drawn(scene: &Scene) -> Vec<usize> {
+    let free: Vec<usize> = (0..scene.particles.len())
+        .filter(|&i| !scene.particles[i].fixed)
+        .collect();
+    let count = free.len().min(PATHS);
+    (0..count).map(|k| free[k * free.len() / count]).collect()
+}

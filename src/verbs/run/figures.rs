@@ -1,0 +1,325 @@
+//! What runs did: the curve the scene asks for and the energy over time, and the paths of a few
+//! particles. One panel a timestep, so that lines of one colour never mix.
+
+use crate::measure::EnergyClass;
+use crate::report::svg::axis::{Axis, HUGE, Scale, padded, range, tamed};
+use crate::report::svg::canvas::{FAINT, INK, Shape, Stroke, Symbol, WHITE};
+use crate::report::svg::chart::{Chart, Panel};
+use crate::report::svg::key::{Key, Look};
+use crate::report::svg::marks::{Line, Mark};
+use crate::report::svg::palette::{self, look};
+use crate::report::svg::{Figure, NAME, TRUTH_NAME, heading, shortened};
+use crate::report::words;
+use crate::solvers::{Kind, Status};
+use crate::verbs::Report;
+use crate::verbs::run::text::naming;
+use crate::verbs::run::text::several_timesteps;
+use crate::verbs::run::{Curves, Outcome, TruthCurves};
+use std::collections::BTreeSet;
+
+/// More panels than this are not drawn; the table has them all.
+const PANELS: usize = 6;
+/// A linear axis of energies serves until the amplitudes differ by more than this.
+const RATIO: f64 = 50.0;
+
+/// What is drawn of one run.
+type Paths = Vec<Vec<[f64; 2]>>;
+
+/// The runs one panel shows.
+struct Runs<'a> {
+    /// Such as `h = 0.05 s`; empty where the report has one timestep only.
+    title: String,
+    truth: Paths,
+    runs: Vec<(&'a Outcome, Paths)>,
+}
+
+/// The recorded runs by timestep, in the order they first occur. A run at a timestep no
+/// hand-written integrator has joins the first panel. Nothing where no run has anything to draw.
+fn by_timestep(
+    report: &Report,
+    truth: impl Fn(&TruthCurves) -> Paths,
+    paths: impl Fn(&Curves) -> Paths,
+) -> Option<Vec<Runs<'_>>> {
+    let figures = report.figures();
+    let runs = figures.curves.iter();
+    let runs = runs.filter_map(|c| Some((report.outcomes().get(c.outcome)?, paths(c))));
+    let runs: Vec<(&Outcome, Paths)> = runs.collect();
+    let mut drawn = runs.iter().flat_map(|(_, paths)| paths);
+    drawn.find(|path| !path.is_empty())?;
+    let mut timesteps: Vec<f64> = Vec::new();
+    let all_rapier = runs.iter().all(|(o, _)| o.kind == Kind::Rapier);
+    for (outcome, _) in &runs {
+        let counts = all_rapier || outcome.kind != Kind::Rapier;
+        if counts && !timesteps.contains(&outcome.timestep) {
+            timesteps.push(outcome.timestep);
+        }
+    }
+    let titled = several_timesteps(report);
+    let shown = timesteps.iter().take(PANELS).enumerate();
+    let panels = shown.map(|(at, &h)| {
+        let here = |o: &Outcome| o.timestep == h || (at == 0 && !timesteps.contains(&o.timestep));
+        let runs = runs.iter().filter(|(o, _)| here(o)).cloned();
+        let title = titled.then(|| format!("h = {} s", words::short(h)));
+        Runs {
+            title: title.unwrap_or_default(),
+            truth: figures.truth.as_ref().map(&truth).unwrap_or_default(),
+            runs: runs.collect(),
+        }
+    });
+    Some(panels.collect())
+}
+
+impl Runs<'_> {
+    /// The truth's lines, which have no outcome, and every run's in the order they are painted; a run
+    /// that ended early has a cross at its end.
+    fn lines(&self, report: &Report) -> Vec<(Option<&Outcome>, Line)> {
+        let truth = self.truth.iter().cloned();
+        let truth = truth.map(|path| (None, Line::new(path, palette::TRUTH)));
+        let mut runs: Vec<&(&Outcome, Paths)> = self.runs.iter().collect();
+        runs.sort_by_key(|(outcome, _)| layer(report, outcome));
+        let runs = runs.into_iter().flat_map(|(outcome, paths)| {
+            let stroke = stroke(report, outcome);
+            let cross = Symbol::new(Shape::Cross, stroke.colour, stroke.colour);
+            paths.iter().map(move |path| {
+                let mut line = Line::new(path.clone(), stroke);
+                line.wild = is_wild(outcome);
+                line.end = (outcome.status != Status::Completed).then_some(cross);
+                (Some(*outcome), line)
+            })
+        });
+        truth.chain(runs).collect()
+    }
+
+    /// What the values of each run span along one axis.
+    fn spans(&self, axis: usize) -> impl Iterator<Item = (&Outcome, [f64; 2])> {
+        let runs = self.runs.iter();
+        runs.filter_map(move |(outcome, paths)| {
+            let span = range(paths.iter().flatten().map(|p| p[axis]))?;
+            Some((*outcome, span))
+        })
+    }
+
+    /// What the calm runs span along one axis, with what is `fixed`, and a little of the wild runs.
+    fn shown(&self, axis: usize, fixed: Option<[f64; 2]>) -> [f64; 2] {
+        let (wild, calm): (Vec<_>, Vec<_>) = self.spans(axis).partition(|(o, _)| is_wild(o));
+        let calm = range(calm.into_iter().flat_map(|(_, span)| span));
+        let calm = calm.and_then(|calm| range([Some(calm), fixed].into_iter().flatten().flatten()));
+        let wild: Vec<[f64; 2]> = wild.into_iter().map(|(_, span)| span).collect();
+        let shown = [tamed(calm, &wild), fixed];
+        range(shown.into_iter().flatten().flatten()).unwrap_or([0.0, 1.0])
+    }
+}
+
+/// One path of values over time.
+fn over_time(t: &[f64], values: &[f64]) -> Paths {
+    let points = t.iter().zip(values);
+    vec![points.map(|(&t, &value)| [t, value]).collect()]
+}
+
+/// Curves over time, with a label at each line's end.
+fn curves(
+    report: &Report,
+    [title, y_title]: [&str; 2],
+    panels: Vec<Runs>,
+    axis: impl Fn(&Runs) -> Axis,
+) -> Chart {
+    let height = if panels.len() > 1 { 230.0 } else { 340.0 };
+    let panels = panels.iter().map(|panel| {
+        let marks = panel.lines(report).into_iter().map(|(outcome, mut line)| {
+            let text = outcome.map_or(TRUTH_NAME.to_owned(), name);
+            line.label = (!line.points.is_empty()).then(|| Key::new(text, Look::Line(line.stroke)));
+            Mark::Line(line)
+        });
+        let times = range(panel.spans(0).flat_map(|(_, span)| span));
+        let axes = [Axis::linear(times.unwrap_or([0.0, 1.0])), axis(panel)];
+        Panel::new(panel.title.clone(), height, axes, marks.collect())
+    });
+    Chart {
+        title: heading(report, title),
+        titles: ["time (s)", y_title].map(str::to_owned),
+        panels: panels.collect(),
+        ..Chart::default()
+    }
+}
+
+/// The curve the scene asks for, over the range the scene states, else what the calm runs span.
+pub fn plot(report: &Report) -> Option<Chart> {
+    let asked = report.figures().plot.as_ref()?;
+    let truth = |truth: &TruthCurves| over_time(&truth.t, &truth.plot);
+    let panels = by_timestep(report, truth, |run| over_time(&run.t, &run.plot))?;
+    let label = shortened(&words::one_line(&asked.label), 40);
+    let titles = [&format!("{label} over time"), label.as_str()];
+    Some(curves(report, titles, panels, |panel| {
+        let stated = asked.y_range.filter(|[lo, hi]| lo < hi);
+        Axis::linear(stated.unwrap_or_else(|| padded(panel.shown(1, None), 0.05)))
+    }))
+}
+
+/// Energy over time; its truth is the zero line.
+pub fn energy(report: &Report) -> Option<Chart> {
+    let panels = by_timestep(
+        report,
+        |_| Paths::new(),
+        |run| over_time(&run.t, &run.energy),
+    )?;
+    let y_title = match report.header.scene.energy_scale_j {
+        Some(scale) => format!("(B − B(0)) / S,  S = {} J", words::short(scale)),
+        None => "B − B(0)  (J)".into(),
+    };
+    let titles = ["energy balance over time", &y_title];
+    Some(curves(report, titles, panels, energy_axis))
+}
+
+/// Symmetric-logarithmic where a small bounded oscillation shares the panel with a large growth.
+fn energy_axis(panel: &Runs) -> Axis {
+    let size = |[lo, hi]: [f64; 2]| f64::max(-lo, hi);
+    let finished = panel
+        .spans(1)
+        .filter(|(o, _)| o.status == Status::Completed);
+    let largest = finished.map(|(_, span)| size(span)).reduce(f64::max);
+    // Unfinished runs leave through the edge instead of setting it, if there are others.
+    let cap = largest.map_or(f64::MAX, |largest| f64::max(100.0 * largest, 1.0));
+    let spans = panel
+        .spans(1)
+        .map(|(_, span)| span.map(|end| end.clamp(-cap, cap)));
+    let spans: Vec<[f64; 2]> = spans.collect();
+    let sizes: Vec<f64> = spans.iter().copied().map(size).collect();
+    // Zero, where every run starts, is always shown.
+    let ends = spans.into_iter().flatten().chain([0.0]);
+    let [lo, hi] = range(ends).unwrap_or_default();
+    let Some(linear) = linear_part(&sizes) else {
+        return Axis::linear(padded([lo, hi], 0.06));
+    };
+    // Half a decade of room on each side.
+    let beyond = |end: f64| 3.0 * end.abs().clamp(0.2 * linear, HUGE / 3.0);
+    Axis {
+        scale: Scale::SymLog { linear },
+        range: [-beyond(lo), beyond(hi)],
+    }
+}
+
+/// The power of ten below the smallest amplitude worth telling from zero, if the largest dwarfs it.
+fn linear_part(sizes: &[f64]) -> Option<f64> {
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
+    let smallest = if largest > 1.0 {
+        // Something gained more than the scale: a thousandth of it is small, all of it is not.
+        sizes.iter().copied().fold(1.0, f64::min).max(1e-3)
+    } else {
+        let counts = |s: &f64| *s >= 1e-4 * largest;
+        let smallest = sizes.iter().copied().filter(counts).fold(largest, f64::min);
+        smallest.max(1e-3 * largest)
+    };
+    let spans = smallest > 1e-290 && largest > RATIO * smallest;
+    spans.then(|| 10_f64.powi(smallest.log10().floor() as i32))
+}
+
+/// Paths of a few particles, projected on the plane that shows most of them: where they start and end,
+/// and the particles that never move.
+pub fn trajectories(report: &Report) -> Option<Chart> {
+    let panels = by_timestep(report, |truth| truth.paths.clone(), |run| run.paths.clone())?;
+    let figures = report.figures();
+    let height = if panels.len() > 1 { 320.0 } else { 460.0 };
+    let titles = figures
+        .plane
+        .map(|axis| ["x (m)", "y (m)", "z (m)"][axis.min(2)]);
+    let start = Symbol::new(Shape::Disc, WHITE, INK);
+    let end = |colour| Symbol::new(Shape::Disc, colour, WHITE);
+    let still = Symbol::new(Shape::Square, INK, INK);
+    let panel = |panel: &Runs| {
+        let axes = [0, 1].map(|axis| {
+            let fixed = range(figures.fixed.iter().map(|p| p[axis]));
+            Axis::linear(padded(panel.shown(axis, fixed), 0.06))
+        });
+        let lines = panel.lines(report).into_iter().map(|(outcome, mut line)| {
+            let arrived = outcome.map(|_| end(line.stroke.colour));
+            line.end = line.end.or(arrived);
+            Mark::Line(line)
+        });
+        let first = panel.runs.first().into_iter().flat_map(|(_, paths)| paths);
+        let starts = first.filter_map(|path| path.first().copied()).collect();
+        let marks = [(start, starts), (still, figures.fixed.clone())];
+        let marks = marks.map(|(symbol, points)| Mark::Symbols(symbol, points));
+
+        let look = |o: &Outcome| Look::Line(stroke(report, o));
+        let truth = figures.truth.as_ref();
+        let truth = truth.map(|_| Key::new(TRUTH_NAME, Look::Line(palette::TRUTH)));
+        let runs = panel.runs.iter().map(|(o, _)| Key::new(name(o), look(o)));
+        let mut ends = panel.runs.iter().map(|(o, _)| o.status);
+        let early = ends.any(|status| status != Status::Completed);
+        let cross = Symbol::new(Shape::Cross, FAINT, FAINT);
+        let symbols = [
+            (true, "start", start),
+            (true, "end", end(FAINT)),
+            (!figures.fixed.is_empty(), "fixed", still),
+            (early, "ended early", cross),
+        ];
+        let symbols = symbols.into_iter().filter(|(shown, ..)| *shown);
+        let symbols = symbols.map(|(_, text, symbol)| Key::new(text, Look::Symbol(symbol)));
+        let marks = lines.chain(marks).collect();
+        Panel {
+            equal_scales: true,
+            keys: truth.into_iter().chain(runs).chain(symbols).collect(),
+            ..Panel::new(panel.title.clone(), height, axes, marks)
+        }
+    };
+    Some(Chart {
+        title: heading(report, "trajectories"),
+        titles: titles.map(str::to_owned),
+        panels: panels.iter().map(panel).collect(),
+        ..Chart::default()
+    })
+}
+
+/// The engine as labels call it, with the time it got to if it ended early.
+fn name(outcome: &Outcome) -> String {
+    let name = shortened(&words::one_line(&naming::engine(outcome)), NAME);
+    match outcome.stopped_at_s {
+        Some(t) => format!("{name}, to {} s", words::short(t)),
+        None => name,
+    }
+}
+
+/// The look of the outcome's engine.
+fn stroke(report: &Report, outcome: &Outcome) -> Stroke {
+    let alike = report.outcomes().iter().filter(|o| o.kind == outcome.kind);
+    let engines = alike.map(|o| &o.engine);
+    let before: BTreeSet<&String> = engines.take_while(|e| **e != outcome.engine).collect();
+    let own = outcome.engine == report.header.scene.own_integrator;
+    look(outcome.kind, before.len(), own)
+}
+
+/// Runs that may leave the picture: unfinished ones and those that gain energy.
+fn is_wild(outcome: &Outcome) -> bool {
+    let class = outcome.energy.as_ref().and_then(|e| e.class);
+    outcome.status != Status::Completed || class == Some(EnergyClass::Growing)
+}
+
+/// Painted first to last: wild runs below, then the integrators with the scene's own on top, then
+/// rapier's dashes, which let what they cover show through.
+fn layer(report: &Report, outcome: &Outcome) -> u8 {
+    match outcome.kind {
+        Kind::Rapier => 3,
+        _ if is_wild(outcome) => 0,
+        _ if outcome.engine == report.header.scene.own_integrator => 2,
+        _ => 1,
+    }
+}
+
+/// The figures of `run` and `compare`.
+pub static FIGURES: &[Figure<Report>] = &[
+    Figure {
+        file: "plot.svg",
+        description: "the curve the scene asks for",
+        chart: plot,
+    },
+    Figure {
+        file: "energy.svg",
+        description: "energy balance over time",
+        chart: energy,
+    },
+    Figure {
+        file: "trajectories.svg",
+        description: "trajectories",
+        chart: trajectories,
+    },
+];

@@ -1,0 +1,75 @@
+//! Which scheme each trajectory follows.
+
+use super::plan::{Case, Plan};
+use super::ran::Ran;
+use crate::integrators::Settings;
+use crate::measure::identify::{Fault, Identified};
+use crate::measure::identify::{Question, first_fault, identify, moved_anchor};
+use crate::physics::ParticleSystem;
+use crate::solvers::Kind;
+use crate::trajectory::Rows;
+use std::borrow::Cow;
+
+/// Steps replayed of a run: enough to name it, few enough to be quick. A file is replayed whole.
+const TRANSITIONS: usize = 16;
+
+/// The scheme of a run, by some of its steps.
+pub fn of_run(plan: &Plan, case: &Case, run: &Ran) -> Option<Identified> {
+    let question = Question {
+        transitions: Some(TRANSITIONS),
+        hint: expected(plan, case),
+        ..question(plan, run.trajectory.rows())
+    };
+    identify(&question)?.report()
+}
+
+/// What a run should turn out to be.
+fn expected(plan: &Plan, case: &Case) -> Option<(&'static str, u32)> {
+    let joints = case.solver.kind == Kind::Rapier && plan.scene.springs.len() > 1;
+    let rapier = joints.then_some(("linearized_implicit_material", case.solver.substeps));
+    case.solver
+        .as_method()
+        .map(|method| (method.id, 1))
+        .or(rapier)
+}
+
+/// The scheme of rows, by all of their steps, and the first of these that leaves it.
+pub fn of_rows(plan: &Plan, rows: &Rows) -> (Option<Identified>, Option<Fault>) {
+    let rows = &from_the_start(plan, rows);
+    let question = question(plan, rows);
+    // Whatever scheme it is, what is fixed must not move.
+    let moved = moved_anchor(plan.scene, rows);
+    let Some(identity) = identify(&question) else {
+        return (None, moved);
+    };
+    let fault = moved.or_else(|| first_fault(&question, &identity));
+    (identity.report(), fault)
+}
+
+/// With the scene's start in front where rows begin a few steps later: those steps count, too.
+fn from_the_start<'a>(plan: &Plan, rows: &'a Rows) -> Cow<'a, Rows> {
+    let longest = rows.steps.windows(2).map(|pair| pair[1] - pair[0]).max();
+    let first = rows.steps.first().copied().unwrap_or(0);
+    if first == 0 || first > longest.unwrap_or(0) {
+        return Cow::Borrowed(rows);
+    }
+    let start = ParticleSystem::initial_state(plan.scene);
+    let mut rows = rows.clone();
+    rows.steps.insert(0, 0);
+    rows.x.splice(0..0, start.x);
+    if let Some(v) = &mut rows.v {
+        v.splice(0..0, start.v);
+    }
+    Cow::Owned(rows)
+}
+
+fn question<'a>(plan: &'a Plan, rows: &'a Rows) -> Question<'a> {
+    Question {
+        scene: plan.scene,
+        system: &plan.system,
+        rows,
+        settings: Settings::stated(plan.scene.solver.tolerance),
+        transitions: None,
+        hint: None,
+    }
+}

@@ -1,0 +1,58 @@
+//! The order each integrator shows on the scene.
+
+use super::plan::{Orders, Plan};
+use crate::integrators::Method;
+use crate::measure::order::{Study, check};
+use crate::measure::{Check, CheckStatus};
+use crate::physics::System;
+use crate::truth::Truth;
+use rayon::prelude::*;
+
+/// Steps times coordinates of the scene's own run up to which orders are measured unasked: measuring
+/// costs about two such runs.
+const UNASKED: u64 = 500_000;
+/// Of such runs, for one method.
+const RUNS: u64 = 4;
+/// At most so much where the scene's own run is short.
+const LEAST: u64 = 1_000_000;
+
+/// A check for each integrator; one that says why there are none; nothing without a truth.
+pub fn checks(plan: &Plan, truth: &Truth) -> Vec<Check> {
+    let (Some(motion), scene) = (truth.motion(), plan.scene) else {
+        return Vec::new();
+    };
+    let mut methods: Vec<&Method> = Vec::new();
+    for method in plan.cases.iter().filter_map(|case| case.solver.as_method()) {
+        if !methods.iter().any(|known| known.id == method.id) {
+            methods.push(method);
+        }
+    }
+    let steps = scene.steps(scene.solver.timestep);
+    let cost = steps.saturating_mul(plan.system.dim() as u64);
+    if methods.is_empty() || plan.order == Orders::Never {
+        return Vec::new();
+    }
+    if cost > UNASKED && plan.order != Orders::Always {
+        return vec![skipped()];
+    }
+    let until = truth.horizon.min(scene.duration);
+    let budget = RUNS.saturating_mul(cost).max(LEAST);
+    let study = Study::of_scene(scene, &plan.system, motion, until).budget(budget);
+    let measure = |method: &&Method| check(method.id, &study.method(method));
+    methods.par_iter().map(measure).collect()
+}
+
+fn skipped() -> Check {
+    Check {
+        id: "order".to_owned(),
+        subject: "integrators".to_owned(),
+        status: CheckStatus::Skip,
+        measured: None,
+        bound: None,
+        derivation: "slopes of the error over the step".to_owned(),
+        message:
+            "not measured on a run this long, which it would make three times as long: --order \
+                  asks for it"
+                .to_owned(),
+    }
+}

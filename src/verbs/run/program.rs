@@ -1,0 +1,230 @@
+//! Runs other people's programs and makes of their rows what measures read.
+
+use super::plan::{Case, Plan};
+use super::ran::{Ran, Run};
+use crate::physics::{ParticleSystem, Power, State, System};
+use crate::solvers::Status;
+use crate::solvers::external::{Program, Recording, Task};
+use crate::solvers::{Counts, Limits};
+use crate::trajectory::{Precision, RowRecorder, Rows};
+use crate::verbs::clock::WallTime;
+use crate::verbs::host::Host;
+
+/// One case of a program, from its start to what came of it.
+pub fn one(
+    plan: &Plan,
+    case: &Case,
+    program: &dyn Program,
+    limits: &Limits,
+    host: &dyn Host,
+) -> Run {
+    let task = Task {
+        scene: plan.scene,
+        system: &plan.system,
+        timestep: case.label.timestep,
+        steps: case.label.steps,
+    };
+    let answer = program.record(&task);
+    host.progress(case.label.steps);
+    match answer {
+        Ok(recording) => made_of(recording, &task, limits),
+        Err(failure) => Run::Failed(failure.to_string()),
+    }
+}
+
+/// The run behind a recording.
+fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Run {
+    let Recording { mut rows, seconds } = recording;
+    let start = ParticleSystem::initial_state(task.scene);
+    if let Some(wrong) = misfit(&rows, &start, task.timestep) {
+        return Run::Failed(wrong);
+    }
+    let mut remarks: Vec<String> = other_start(&rows, &start).into_iter().collect();
+    complete(&mut rows, &start, task.steps);
+    if rows.v.is_none() {
+        remarks.push(
+            "gives no velocities (vx,vy,vz in text, v in arrays), so neither energy nor momentum is \
+             stated"
+                .to_owned(),
+        );
+    }
+    let replay = Replay {
+        rows: &rows,
+        start: &start,
+        system: task.system,
+    };
+    let mut recorder = RowRecorder::new(&rows, task.steps);
+    let mut end = None;
+    let mut state = start.clone();
+    for k in 0..rows.len() {
+        replay.advance(k, &mut state);
+        let finite = state.is_finite();
+        // An engine's bad position is in its next velocity; rows need not hang together.
+        let lost = || (!finite).then(|| "a position is no longer finite".to_owned());
+        if let Some(reason) = limits.exceeded(&state).or_else(lost) {
+            if finite {
+                recorder.observe_diverged(k, &state);
+            }
+            end = Some((rows.steps[k], reason));
+            break;
+        }
+        recorder.observe(k, &state);
+    }
+    let last = rows.steps.last().copied().unwrap_or(0);
+    let (status, reason, steps) = match end {
+        Some((step, reason)) => (
+            Status::Diverged,
+            Some(format!("by step {step}: {reason}")),
+            step,
+        ),
+        None if last < task.steps => (Status::Failed, Some(early(&rows, task)), last),
+        None => (Status::Completed, None, last),
+    };
+    if status == Status::Completed && seconds.is_some() {
+        remarks.push("the time is of the whole program, taken once".to_owned());
+    }
+    Run::Ran(Box::new(Ran {
+        status,
+        reason,
+        steps,
+        trajectory: recorder.finish(),
+        counts: Counts::default(),
+        wall: seconds.map(|seconds| WallTime {
+            min: seconds,
+            median: seconds,
+            mad: None,
+        }),
+        remarks,
+    }))
+}
+
+/// Why rows are not states of this scene, for a program that did not read them from a file.
+fn misfit(rows: &Rows, start: &State, timestep: f64) -> Option<String> {
+    let numbers = rows.len() * start.x.len();
+    let whole = rows.dim == start.x.len()
+        && rows.x.len() == numbers
+        && rows.v.as_ref().is_none_or(|v| v.len() == numbers);
+    let message = if rows.is_empty() {
+        "it gave no rows"
+    } else if !whole {
+        "its rows are not states of all particles of the scene"
+    } else if rows.timestep != timestep {
+        "its rows are counted in another timestep"
+    } else if rows.steps.windows(2).any(|pair| pair[0] >= pair[1]) {
+        "its rows are not in the order of time"
+    } else {
+        return None;
+    };
+    Some(message.to_owned())
+}
+
+/// Says so where the first row is not how the scene starts, beyond the rounding it is written with.
+fn other_start(rows: &Rows, start: &State) -> Option<String> {
+    if rows.steps.first() != Some(&0) {
+        return Some(format!(
+            "rows begin at t = {:?} s; the scene's own start stands before them",
+            rows.time(0)
+        ));
+    }
+    let first = |given: &[f64], known: &[f64], precision: Precision| {
+        // Twice: the scene's own number is rounded too. NaN is off.
+        let near = |(g, k): (&f64, &f64)| (g - k).abs() <= 2.0 * precision.half_unit(*k);
+        given.iter().zip(known).position(|pair| !near(pair))
+    };
+    let moved = first(rows.x(0), &start.x, rows.precision).map(|at| (at, "position"));
+    let thrown = || first(rows.v(0)?, &start.v, rows.precision_v).map(|at| (at, "velocity"));
+    let (at, what) = moved.or_else(thrown)?;
+    Some(format!(
+        "does not start as the scene does: the {what} of particle {} differs",
+        at / 3
+    ))
+}
+
+/// The scene's start in front where rows begin later, and nothing after the last step.
+fn complete(rows: &mut Rows, start: &State, last: u64) {
+    let kept = rows.steps.partition_point(|step| *step <= last);
+    rows.steps.truncate(kept);
+    rows.x.truncate(kept * rows.dim);
+    if let Some(v) = &mut rows.v {
+        v.truncate(kept * rows.dim);
+    }
+    if rows.steps.first() != Some(&0) {
+        rows.steps.insert(0, 0);
+        rows.x.splice(0..0, start.x.iter().copied());
+        if let Some(v) = &mut rows.v {
+            v.splice(0..0, start.v.iter().copied());
+        }
+    }
+}
+
+/// Where a run ended that ended too early, and where it should have.
+fn early(rows: &Rows, task: &Task) -> String {
+    let last = rows.len().saturating_sub(1);
+    let end = task.steps as f64 * task.timestep;
+    let mut reason = format!(
+        "its rows end at t = {:?} s (step {}): expected them up to t = {end:?} s (step {})",
+        rows.time(last),
+        rows.steps.get(last).copied().unwrap_or(0),
+        task.steps
+    );
+    if rows
+        .steps
+        .get(last)
+        .is_some_and(|step| step + 1 == task.steps)
+    {
+        reason += "; a run takes ceil(duration / timestep) steps and gives its start and each end";
+    }
+    reason
+}
+
+/// Goes through rows as through a run, with the work done on the way.
+struct Replay<'a> {
+    rows: &'a Rows,
+    start: &'a State,
+    system: &'a ParticleSystem,
+}
+
+impl Replay<'_> {
+    /// From the state of the row before `k` (anything for row 0) to that of row `k`. Work is taken
+    /// by the trapezoidal rule from row to row, of second order in their distance; without
+    /// velocities there is none.
+    fn advance(&self, k: usize, state: &mut State) {
+        let known = self.rows.v.is_some() && k > 0;
+        let before = known.then(|| self.power(state));
+        let elapsed = self.rows.time(k) - state.t;
+        state.t = self.rows.time(k);
+        state.x.copy_from_slice(self.rows.x(k));
+        match self.rows.v(k) {
+            Some(v) => state.v.copy_from_slice(v),
+            None => self.differences(k, &mut state.v),
+        }
+        if let Some(before) = before {
+            state.work.advance(before, 0.5 * elapsed);
+            state.work.advance(self.power(state), 0.5 * elapsed);
+        }
+    }
+
+    fn power(&self, state: &State) -> Power {
+        if self.system.kinds().does_work() {
+            let mut forces = vec![0.0; state.x.len()];
+            self.system.forces(state.t, &state.x, &state.v, &mut forces)
+        } else {
+            Power::default()
+        }
+    }
+
+    /// Velocities from positions: the scene's at the start, then central differences of the rows on
+    /// both sides, backwards at the end. Good enough to see a divergence.
+    fn differences(&self, k: usize, v: &mut [f64]) {
+        if k == 0 {
+            v.copy_from_slice(&self.start.v);
+            return;
+        }
+        let (low, high) = (k - 1, (k + 1).min(self.rows.len() - 1));
+        let span = self.rows.time(high) - self.rows.time(low);
+        let ends = self.rows.x(low).iter().zip(self.rows.x(high));
+        for (v, (low, high)) in v.iter_mut().zip(ends) {
+            *v = (high - low) / span;
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! What `run` and `compare` found, as data: one [`Outcome`] an engine and timestep, and the series its figures are drawn from.
+
+use crate::measure::identify::Identified;
+use crate::measure::{Deviation, Energy, Momentum, Spread};
+use crate::solvers::{Kind, Status};
+use crate::verbs::clock::WallTime;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// One engine at one timestep.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Outcome {
+    pub engine: String,
+    pub kind: Kind,
+    /// Seconds between recorded steps of this engine.
+    pub timestep: f64,
+    /// The step the scheme really takes: rapier's dt / iterations, else the timestep.
+    pub substep: f64,
+    pub status: Status,
+    /// Null unless the run ended early.
+    pub stopped_at_s: Option<f64>,
+    /// Why it ended early or is unsupported.
+    pub reason: Option<String>,
+    /// Against the truth; null where there is none.
+    pub position_error_m: Option<Spread>,
+    pub velocity_error_m_s: Option<Spread>,
+    /// Against each reference engine that ran at this timestep.
+    pub deviation_m: BTreeMap<String, Deviation>,
+    /// Null when nothing was recorded (unsupported) or no velocities are known.
+    pub energy: Option<Energy>,
+    pub momentum: Option<Momentum>,
+    pub work: Work,
+    /// Null where there is nothing to replay.
+    pub identified: Option<Identified>,
+    /// Plain sentences for the table's foot.
+    pub remarks: Vec<String>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Work {
+    pub steps: u64,
+    /// Evaluations of all forces; null where the engine does not tell (rapier's joints).
+    pub force_evaluations: Option<u64>,
+    pub linear_solves: Option<u64>,
+    pub wall_s: Option<WallTime>,
+}
+
+/// What the figures are drawn from.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Figures {
+    /// One per outcome that recorded anything, in the outcomes' order.
+    pub curves: Vec<Curves>,
+    /// What really happens, up to the truth's horizon.
+    pub truth: Option<TruthCurves>,
+    /// The curve the scene asks for: its axis label and range.
+    pub plot: Option<PlotAxis>,
+    /// The two coordinates (0, 1, 2) trajectories are projected on: the widest, `up` vertical.
+    pub plane: [usize; 2],
+    /// Fixed particles on that plane, drawn as squares.
+    pub fixed: Vec<[f64; 2]>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct PlotAxis {
+    /// Such as `particle 1, z (m)`.
+    pub label: String,
+    pub y_range: Option<[f64; 2]>,
+}
+
+/// Series over the recorded instants of one outcome; all finite, equally long where not empty.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Curves {
+    /// Index into the report's outcomes.
+    pub outcome: usize,
+    /// Seconds.
+    pub t: Vec<f64>,
+    /// (B - B(0)) / S, or joules where the scene has no scale; empty where no velocities are known.
+    pub energy: Vec<f64>,
+    /// The coordinate `plot` names; empty without one.
+    pub plot: Vec<f64>,
+    /// A few particles' paths projected on `Figures::plane`: one polyline each.
+    pub paths: Vec<Vec<[f64; 2]>>,
+}
+
+/// The truth over some instants; all finite, equally long.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct TruthCurves {
+    /// Seconds.
+    pub t: Vec<f64>,
+    /// As in [`Curves`].
+    pub plot: Vec<f64>,
+    /// As in [`Curves`].
+    pub paths: Vec<Vec<[f64; 2]>>,
+}

@@ -1,0 +1,149 @@
+//! Which scheme a trajectory follows, and where it stops following it, in words.
+
+use super::{listed, words};
+use crate::integrators;
+use crate::measure::identify::{Fault, Identified, Quantity, Undecided};
+use crate::solvers::Kind;
+use crate::verbs::run::Outcome;
+use crate::verbs::{Body, Report};
+
+/// At most so many equivalent schemes are named.
+const NAMED: usize = 6;
+
+/// What replay found of an outcome; None where it found nothing, or only what the row says anyway.
+pub fn sentence(outcome: &Outcome) -> Option<String> {
+    let found = outcome.identified.as_ref()?;
+    let itself = outcome.kind == Kind::Integrator
+        && found.substeps == 1
+        && (found.method == outcome.engine || found.equivalent.contains(&outcome.engine));
+    (!itself).then(|| {
+        let scheme = scheme(found, outcome.timestep);
+        let defect = format!("defect {} of rounding", words::short_sci(found.defect));
+        if found.decisive {
+            return format!("step by step it is {scheme} ({defect}{})", next(found));
+        }
+        if found.undecided == Some(Undecided::NothingFits) {
+            return format!(
+                "no known scheme explains its steps; the nearest is {scheme} ({defect}{})",
+                next(found)
+            );
+        }
+        let why = match found.undecided {
+            Some(Undecided::DataTooCoarse) => {
+                "which at this step and with these digits cannot be told from"
+            }
+            _ => "which here is the same as",
+        };
+        let others = equivalent(found);
+        format!("step by step it is {scheme} ({defect}), {why} {others}")
+    })
+}
+
+/// `implicit_euler at dt/4 = 0.000125 s`.
+fn scheme(found: &Identified, timestep: f64) -> String {
+    let name = words::one_line(&found.method);
+    if found.substeps == 1 {
+        return name;
+    }
+    let n = found.substeps;
+    let step = words::short(timestep / f64::from(n));
+    format!("{name} at h/{n} = {step} s")
+}
+
+fn next(found: &Identified) -> String {
+    match (&found.runner_up, found.runner_up_defect) {
+        (Some(other), Some(defect)) => {
+            format!(
+                "; next {}: {}",
+                words::one_line(other),
+                words::short_sci(defect)
+            )
+        }
+        _ => String::new(),
+    }
+}
+
+fn equivalent(found: &Identified) -> String {
+    let names = found.equivalent.iter().take(NAMED);
+    let mut names: Vec<String> = names.map(|name| words::one_line(name)).collect();
+    let more = found.equivalent.len() - names.len();
+    if more > 0 {
+        names.push(format!("{more} more"));
+    }
+    listed(&names)
+}
+
+/// Where a trajectory leaves its scheme, a line each; empty where it does not.
+pub fn fault(report: &Report) -> Vec<String> {
+    let Body::Compare {
+        fault: Some(fault), ..
+    } = &report.body
+    else {
+        return Vec::new();
+    };
+    let Fault { step, particle, .. } = fault;
+    let (what, unit) = match fault.quantity {
+        Quantity::Position => ("position", "m"),
+        Quantity::Velocity => ("velocity", "m/s"),
+    };
+    vec![
+        format!(
+            "step {step}, from t = {} s: {what} of particle {particle}",
+            words::short(fault.t_s)
+        ),
+        format!("expected {} {unit}", vector(fault.expected.map(Some))),
+        format!("found    {} {unit}", vector(fault.found)),
+        words::one_line(&fault.explanation),
+    ]
+}
+
+/// Enough digits to see a difference of rounding.
+fn vector(value: [Option<f64>; 3]) -> String {
+    let [x, y, z] = value.map(|c| c.map_or_else(|| "?".into(), |c| format!("{c:?}")));
+    format!("({x}, {y}, {z})")
+}
+
+/// The verdict of a comparison in one clause; None in a report without one.
+pub fn verdict(report: &Report) -> Option<String> {
+    let Body::Compare { outcomes, fault } = &report.body else {
+        return None;
+    };
+    let outcome = outcomes.first()?;
+    let name = words::one_line(&outcome.engine);
+    let Some(found) = &outcome.identified else {
+        return Some(format!("{name} holds too few steps to be replayed"));
+    };
+    let scheme = scheme(found, outcome.timestep);
+    let known = integrators::find(&found.method).is_some();
+    Some(match fault {
+        Some(fault) if found.undecided == Some(Undecided::NothingFits) => format!(
+            "{name}, step {}: {}",
+            fault.step,
+            words::one_line(&fault.explanation)
+        ),
+        Some(fault) if !known => {
+            // What remembers a step shows in the second.
+            let from = match fault.step {
+                0 | 1 => String::new(),
+                step => format!(" from step {step} on"),
+            };
+            let says = words::one_line(&fault.explanation);
+            format!("{name} is {scheme}{from}: {says}")
+        }
+        Some(fault) => format!(
+            "{name} is {scheme} but for step {}: {}",
+            fault.step,
+            words::one_line(&fault.explanation)
+        ),
+        None => match found.undecided {
+            None => format!("{name} follows {scheme} throughout"),
+            Some(Undecided::SameMap) => {
+                format!("{name} follows {scheme} throughout, here the same as others")
+            }
+            Some(Undecided::DataTooCoarse) => {
+                format!("{name} does not tell {scheme} from others")
+            }
+            Some(Undecided::NothingFits) => format!("{name} follows no known scheme"),
+        },
+    })
+}

@@ -1,0 +1,99 @@
+//! The two ledgers: where the energy ended up, and which effects ran.
+
+use crate::measure::Energy;
+use crate::report::EffectUse;
+use crate::report::table::{Mark, Table};
+use crate::report::terminal::fit::{clip, pad, width};
+use crate::report::words::escape;
+use crate::report::words::{self, NOTHING};
+use crate::verbs::Report;
+use crate::verbs::run::Outcome;
+use crate::verbs::run::text::naming;
+
+/// Where the energy is at the end, by effect, what left and entered, and the momenta.
+pub fn energies(report: &Report) -> String {
+    let rows: Vec<(&Outcome, &Energy)> = report
+        .outcomes()
+        .iter()
+        .filter_map(|outcome| Some((outcome, outcome.energy.as_ref()?)))
+        .collect();
+    let Some((_, first)) = rows.first() else {
+        return String::new();
+    };
+    let own = &report.header.scene.own_integrator;
+    let mut table = Table::new(&rows);
+    table.engines(|(o, _)| (naming::engine(o), Mark::of(&o.engine, own)));
+    table.markdown("kinetic", |(_, energy)| number(energy.kinetic_final_j));
+    // Effects without potential energy would have columns of zeros.
+    for (id, _) in first
+        .potential_final_j
+        .iter()
+        .filter(|(_, joules)| **joules != 0.0)
+    {
+        table.markdown(&escape(id), |(_, energy)| {
+            number(energy.potential_final_j.get(id).copied())
+        });
+    }
+    table.markdown("dissipated", |(_, energy)| number(energy.dissipated_j));
+    table.markdown("injected", |(_, energy)| number(energy.injected_j));
+    table.markdown("E final - E initial", |(_, energy)| {
+        let change = energy.final_j.zip(energy.initial_j);
+        number(change.map(|(end, start)| end - start))
+    });
+    if report.outcomes().iter().any(|o| o.momentum.is_some()) {
+        table.markdown("momentum off by", |(o, _)| {
+            number(o.momentum.as_ref().and_then(|m| m.linear_error_max))
+        });
+        table.markdown("angular momentum off by", |(o, _)| {
+            number(o.momentum.as_ref().and_then(|m| m.angular_error_max))
+        });
+    }
+    let intro = "Joules at the last recorded instant; momenta in kg m/s and kg m²/s, where the scene \
+                 conserves them.";
+    format!(
+        "## Where the energy is at the end\n\n{intro}\n\n{}",
+        table.in_markdown()
+    )
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or(NOTHING.into(), words::short)
+}
+
+/// The effects that ran: how often, at what cost.
+pub fn effects(effects: &[EffectUse]) -> String {
+    if effects.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(effects);
+    table.markdown("effect", |effect| escape(&effect.id));
+    table.markdown("acts on", |effect| effect.members.to_string());
+    table.markdown("evaluations", |effect| words::count(effect.evaluations));
+    table.markdown("time each", |effect| each(effect).unwrap_or(NOTHING.into()));
+    format!("## Effects that ran\n\n{}", table.in_markdown())
+}
+
+/// The same for the terminal, one line an effect.
+pub fn lines(effects: &[EffectUse]) -> Vec<String> {
+    let ids = effects.iter().map(|effect| words::one_line(&effect.id));
+    let ids: Vec<String> = ids.collect();
+    let longest = ids.iter().map(|id| width(id)).max().unwrap_or(0).min(24);
+    let lines = effects
+        .iter()
+        .zip(ids)
+        .enumerate()
+        .map(|(i, (effect, id))| {
+            let label = if i == 0 { "effects" } else { "" };
+            let id = pad(&clip(&id, longest), longest);
+            let on = format!("on {}", words::count(effect.members as u64));
+            let evaluations = words::count(effect.evaluations);
+            let cost = each(effect).map_or(String::new(), |time| format!(", {time} each"));
+            format!("{label:<7}  {id}  {on:<8}  {evaluations} evaluations{cost}")
+        });
+    lines.collect()
+}
+
+/// The time of one evaluation.
+fn each(effect: &EffectUse) -> Option<String> {
+    effect.wall_ns.map(|ns| words::seconds(ns * 1e-9))
+}

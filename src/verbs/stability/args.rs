@@ -1,0 +1,226 @@
+//! `springcheck stability SCENE`
+
+use crate::scene::{self, Scene, limits};
+use crate::solvers;
+use crate::verbs::Report;
+use crate::verbs::cli::announce;
+use crate::verbs::cli::cache::Cache;
+use crate::verbs::cli::chosen;
+use crate::verbs::cli::host::host;
+use crate::verbs::cli::progress::Progress;
+use crate::verbs::cli::rapier::Custom;
+use crate::verbs::cli::shown::{self, HUMAN, format_ids};
+use crate::verbs::host::Estimate;
+use crate::verbs::run::{Choice, Plan};
+use crate::verbs::stability::StabilityRow;
+use crate::verbs::stability::{MapPlan, Range, StabilityPlan, Vary};
+use anyhow::{Context, bail};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The scene file (YAML).
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+
+    /// Integrators to look at, in this order: ids separated by commas, or `all`.
+    /// Default: all, the scene's own first.
+    #[arg(long, value_name = "A,B|all", value_delimiter = ',')]
+    integrators: Vec<String>,
+
+    /// Reference engines: ids separated by commas, or `none`. Default: rapier.
+    #[arg(long, value_name = "A,B|none", value_delimiter = ',')]
+    engines: Vec<String>,
+
+    /// One more rapier row with these settings, such as `iterations=8,pgs=4`; repeatable.
+    #[arg(long, value_name = "KEY=VALUE,...")]
+    rapier: Vec<Custom>,
+
+    /// The step at which growth is taken, seconds. Default: the scene's.
+    #[arg(long, value_name = "H")]
+    timestep: Option<f64>,
+
+    /// How far the trajectory is followed in search of tighter limits, seconds. Default: the scene's.
+    #[arg(long, value_name = "SECONDS")]
+    duration: Option<f64>,
+
+    /// Draw a map of timestep against this: `springs.stiffness=1e2..1e8`, of one member
+    /// `particles[1].mass=0.01..100`, with `:N` for N values (default 24).
+    #[arg(long, value_name = "KEY=A..B[:N]")]
+    vary: Option<String>,
+
+    /// The map's timesteps, seconds. Default: 24 around the predicted limits, a decade on both sides.
+    #[arg(long, value_name = "A..B[:N]", requires = "vary")]
+    steps: Option<Range>,
+
+    /// Steps times particles that the whole map may take; each cell gets its share. Default: 4e7, or
+    /// 256 steps a cell where that is more.
+    #[arg(long, value_name = "STEPS", requires = "vary", value_parser = count)]
+    budget: Option<u64>,
+
+    /// Draw from where a step does not enlarge the spring's force, at these stiffnesses, N/m. For two
+    /// free particles on one spring.
+    #[arg(long, value_name = "K,...", value_delimiter = ',')]
+    admissible: Vec<f64>,
+
+    /// What goes to stdout.
+    #[arg(long, default_value = HUMAN, value_parser = format_ids())]
+    format: String,
+
+    /// Where reports go [default: reports; with a --format other than human, nowhere].
+    #[arg(long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+/// What shortens this verb.
+const SHORTER: &str = "--integrators A,B, --engines none, --budget, fewer values or steps";
+
+/// A row has no answer.
+const UNANSWERED: u8 = 1;
+
+/// Runs the verb.
+pub fn stability(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
+    let scene = read(args)?;
+    let plan = plan(args, &scene)?;
+    // Before anything runs, so that a budget that cannot be kept leaves no folder behind.
+    let place = shown::place(args.output.as_deref(), &args.format, &args.scene);
+    let estimates = estimates(&plan)?;
+    let expected = announce::expected(&estimates);
+    if !quiet {
+        announce::announce(&estimates, expected, SHORTER);
+    }
+    let progress = Progress::new(plan.steps()?, expected, quiet);
+    let report = plan.execute(&host(&progress, None, &Cache::new()))?;
+    progress.finish();
+    let report = shown::written(report, place.as_ref())?;
+    let next = next(args, &scene, &report);
+    let otherwise = "springcheck stability --help";
+    shown::print_one(&args.format, &report, place.as_ref(), next, otherwise)?;
+    let rows = report.stability().into_iter().flat_map(|s| &s.rows);
+    let unanswered = rows.filter(|row| !answered(row)).count();
+    Ok(ExitCode::from(if unanswered > 0 { UNANSWERED } else { 0 }))
+}
+
+/// A limit, or why this engine has none.
+fn answered(row: &StabilityRow) -> bool {
+    row.limit().is_some() || row.unsupported
+}
+
+fn read(args: &Args) -> anyhow::Result<Scene> {
+    let mut scene = scene::read(&args.scene, crate::verbs::names())?;
+    if let Some(duration) = args.duration {
+        scene.duration = duration;
+    }
+    let own = scene.solver.timestep;
+    scene::check_times(own, scene.duration)
+        .with_context(|| format!("{}: timestep {own}", args.scene.display()))?;
+    Ok(scene)
+}
+
+fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> {
+    chosen::without_timestep(&args.rapier, "searched; leave dt out")?;
+    let mut usual = crate::solvers::methods(&scene.solver.method);
+    usual.extend(solvers::find("rapier"));
+    let map = match &args.vary {
+        None => None,
+        Some(text) => Some(MapPlan {
+            vary: Vary::parse(text, scene).with_context(|| "--vary")?,
+            timesteps: timesteps(args.steps)?,
+            budget: args.budget,
+        }),
+    };
+    for &k in &args.admissible {
+        within(k, limits::STIFFNESS).context("--admissible")?;
+    }
+    let timestep = args.timestep.unwrap_or(scene.solver.timestep);
+    within(timestep, limits::TIMESTEP).context("--timestep")?;
+    let mut solvers = chosen::integrators(&args.integrators, scene, &usual)?;
+    solvers.extend(chosen::engines(&args.engines, &args.rapier, &usual)?);
+    let plan = StabilityPlan {
+        scene,
+        solvers,
+        timestep,
+        map,
+        admissible: args.admissible.clone(),
+    };
+    if plan.solvers.is_empty() {
+        bail!("nothing to look at: no integrators and no engines");
+    }
+    Ok(plan)
+}
+
+fn timesteps(range: Option<Range>) -> anyhow::Result<Option<Range>> {
+    if let Some(range) = range {
+        within(range.low, limits::TIMESTEP).context("--steps")?;
+        within(range.high, limits::TIMESTEP).context("--steps")?;
+    }
+    Ok(range)
+}
+
+fn within(value: f64, quantity: limits::Quantity) -> anyhow::Result<()> {
+    let limits::Quantity { low, high, unit } = quantity;
+    if !(low..=high).contains(&value) {
+        bail!("expected {low:e} to {high:e} ({unit}), found {value}");
+    }
+    Ok(())
+}
+
+/// A whole number, also as `4e7`.
+fn count(text: &str) -> Result<u64, String> {
+    let number = text.parse::<f64>().ok();
+    let whole = number.filter(|n| (1.0..=1e15).contains(n) && n.fract() == 0.0);
+    whole
+        .map(|n| n as u64)
+        .ok_or_else(|| format!("expected a whole number from 1 to 1e15, found `{text}`"))
+}
+
+/// How long each engine will take, from its first few steps of the scene.
+fn estimates(plan: &StabilityPlan) -> anyhow::Result<Vec<Estimate>> {
+    let by_row = plan.steps_by_row();
+    let rows = by_row.len().max(1) as u64;
+    let of_map = plan.steps()?.saturating_sub(by_row.iter().sum()) / rows;
+    let choice = Choice {
+        solvers: plan.solvers.clone(),
+        ..Choice::default_for(plan.scene)
+    };
+    let estimates = Plan::new(plan.scene, &choice).estimate();
+    // Engines that cannot run the scene have no estimate, but keep their place: rows and estimates
+    // are in the same order otherwise.
+    let ids = plan.solvers.iter().map(|solver| solver.id.clone());
+    let by_id: Vec<_> = ids.zip(by_row).collect();
+    let scaled = estimates.into_iter().map(|mut estimate| {
+        let row = by_id.iter().find(|(id, _)| *id == estimate.label.engine);
+        let each = row.map_or(0, |(_, steps)| *steps) + of_map;
+        estimate.seconds *= each as f64 / estimate.label.steps.max(1) as f64;
+        estimate.label.steps = each;
+        estimate
+    });
+    Ok(scaled.collect())
+}
+
+/// A map worth drawing, or after a map a run at a step that is well inside.
+fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
+    let path = shown::quoted(&args.scene)?;
+    if args.vary.is_none() {
+        let stiffest = scene
+            .springs
+            .iter()
+            .fold(0.0, |k: f64, s| k.max(s.stiffness));
+        return Some(if stiffest > 0.0 {
+            let [low, high] = [stiffest / 100.0, stiffest * 100.0].map(shown::rounded);
+            format!("springcheck stability {path} --vary springs.stiffness={low}..{high}")
+        } else {
+            format!("springcheck stability {path} --vary particles.drag=0.01..100")
+        });
+    }
+    let own = report.stability().into_iter().flat_map(|s| &s.rows);
+    let own = own.filter(|row| row.engine == report.header.scene.own_integrator);
+    let limit = own.filter_map(StabilityRow::limit).next()?;
+    let h = if limit > 0.0 && limit.is_finite() {
+        shown::rounded(0.9 * limit).min(scene.duration)
+    } else {
+        scene.solver.timestep
+    };
+    Some(format!("springcheck run {path} --timestep {h}"))
+}

@@ -1,0 +1,148 @@
+//! The sentences of a row: what prediction and measurement say, and why they differ.
+
+use super::Asked;
+use crate::integrators::{Amplification, Stage};
+use crate::measure::stability::{Limit, Measured, Prediction};
+use crate::solvers::Solver;
+use crate::verbs::stability::StabilityRow;
+
+/// Limits are found to this part of themselves.
+const RESOLUTION: f64 = 1e-3;
+
+/// What there is to say of one row.
+pub fn remarks(
+    asked: &Asked,
+    solver: &Solver,
+    row: &StabilityRow,
+    predicted: Option<&Prediction>,
+    measured: &Measured,
+) -> Vec<String> {
+    let mut remarks = Vec::new();
+    match predicted.map(|predicted| (&predicted.limit, &predicted.reason)) {
+        Some((Limit::Unknown(why), _)) => remarks.push(format!("not predicted: {why}")),
+        Some((_, reason)) => remarks.extend(reason.clone()),
+        None => {}
+    }
+    if let Limit::Unknown(why) = &measured.limit {
+        remarks.push(format!("not measured: {why}"));
+    }
+    remarks.extend(measured.reason.clone());
+    remarks.extend(tightest(asked, row));
+    remarks.extend(predicted.and_then(|predicted| {
+        let (from, to) = (&predicted.limit, &measured.limit);
+        let amplification = solver.follows.map(|method| method.amplification);
+        if !asked.linear {
+            difference(from, to)
+        } else if !differ(from, to) {
+            None
+        } else if !measured.linear {
+            Some(turning(amplification))
+        } else if undoes(asked, amplification, to) {
+            Some(BACKWARD.to_owned())
+        } else {
+            Some(FAULT.to_owned())
+        }
+    }));
+    remarks
+}
+
+/// Where along the way the limit is below that of the start.
+fn tightest(asked: &Asked, row: &StabilityRow) -> Option<String> {
+    let tightest = row.tightest.as_ref()?;
+    let method = asked.path.method?;
+    let start = row.predicted_limit_s?;
+    (tightest.limit_s < start * (1.0 - RESOLUTION)).then(|| {
+        format!(
+            "along the trajectory of {} the predicted limit is tightest at t = {:.3e} s: {:.4e} s",
+            method.id, tightest.t_s, tightest.limit_s
+        )
+    })
+}
+
+/// Whether the measured limit, or all of what it lies between, is below the predicted one.
+fn lower(predicted: &Limit, measured: &Limit) -> bool {
+    match (predicted, measured) {
+        (Limit::At(p), Limit::At(m)) => *m < p * (1.0 - RESOLUTION),
+        (Limit::At(p), Limit::Between(_, high)) => high < p,
+        _ => false,
+    }
+}
+
+/// What a state that moves away from where it was linearised does to a limit.
+fn difference(predicted: &Limit, measured: &Limit) -> Option<String> {
+    let text = match (predicted, measured) {
+        _ if lower(predicted, measured) => {
+            "the measured limit is lower: forces are not linear, and the state moves to where they \
+             are stiffer than where they were linearised"
+        }
+        (Limit::At(p), Limit::At(m)) if m > &(p * (1.0 + RESOLUTION)) => {
+            "the measured limit is higher: forces are not linear, and growth ends where they no \
+             longer are what they were at the start"
+        }
+        (Limit::Never, Limit::At(_) | Limit::Between(..) | Limit::Unconditional) => {
+            "predicted to grow at every step, but forces are not linear: growth ends, or is too slow \
+             to show over the steps taken"
+        }
+        (Limit::Unconditional, Limit::At(_) | Limit::Between(..) | Limit::Never) => {
+            "predicted stable at every step: so it is on the forces as they are at the start, but these are \
+             not linear"
+        }
+        (Limit::At(_), Limit::Unconditional) => {
+            "beyond the predicted limit growth ends, since forces are not linear: bounded, but wrong"
+        }
+        (Limit::At(_), Limit::Never) => {
+            "predicted stable where it was linearised, but unstable where the motion leads"
+        }
+        _ => return None,
+    };
+    Some(text.to_owned())
+}
+
+/// By more than the search's own grain on top of what is to be shown.
+fn differ(predicted: &Limit, measured: &Limit) -> bool {
+    match (predicted, measured) {
+        (Limit::At(p), Limit::At(m)) => (m / p - 1.0).abs() > 2.0 * RESOLUTION,
+        (Limit::At(p), Limit::Between(low, high)) => p < low || p > high,
+        (Limit::Unknown(_), _) | (_, Limit::Unknown(_)) => false,
+        (p, m) => p != m,
+    }
+}
+
+/// Where a step is a linear map they must agree.
+const FAULT: &str = "prediction and measurement disagree although a step here is a linear map: one of \
+                     them is wrong";
+
+/// On linear forces, of a method whose step is no linear map.
+fn turning(amplification: Option<Amplification>) -> String {
+    let why = match amplification {
+        Some(Amplification::MaterialImplicit) => {
+            ": it leaves out the stiffness across a spring, and which way that is turns with the \
+             spring. Predicted for small motion about a spring that keeps its direction"
+        }
+        _ => ". Predicted for small motion about the start",
+    };
+    format!("its step is not linear, though every force is{why}")
+}
+
+/// Damping over a backward substep grows by e to this much at the limit: whatever the forward ones
+/// left as rounding is as large as what they started from.
+const DROWNED: f64 = 36.0;
+
+const BACKWARD: &str = "beyond the measured limit its substeps backward in time undo more damping than \
+                        doubles hold: they multiply what rounding left of the forward ones, which \
+                        theory in exact arithmetic does not see";
+
+fn undoes(asked: &Asked, amplification: Option<Amplification>, measured: &Limit) -> bool {
+    let Some(Amplification::Composition(stages, _)) = amplification else {
+        return false;
+    };
+    let backward = stages.iter().map(|stage| match stage {
+        Stage::Kick(part) => -part,
+        Stage::Drift(_) => 0.0,
+    });
+    let most = backward.fold(0.0, f64::max);
+    let (Limit::At(h) | Limit::Between(_, h)) = measured else {
+        return false;
+    };
+    most * h * asked.linearised.damping_max() > DROWNED
+}

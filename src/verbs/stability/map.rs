@@ -1,0 +1,194 @@
+//! Timestep against one quantity of the scene: what becomes of a run in each cell.
+
+use super::rows::{as_keys, predicted, start};
+use super::vary::{COUNT, Range, Vary};
+use crate::measure::stability::Cell;
+use crate::measure::stability::{Linearised, classify};
+use crate::physics::ParticleSystem;
+use crate::scene::{Scene, limits};
+use crate::solvers::{Solver, Tally};
+use crate::verbs::host::Host;
+use crate::verbs::stability::{MapPanel, StabilityMap};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Steps times particles of a whole map, unless the caller says otherwise: some seconds.
+const BUDGET: u64 = 40_000_000;
+/// A cell of fewer steps tells nothing.
+const FEWEST: u64 = 100;
+/// A map of a large scene takes this many where nobody sets a budget.
+const USUAL: u64 = 256;
+/// The steps over which a run is called stable: more are not needed.
+const MOST: u64 = 20_000;
+
+/// What a map is to show.
+#[derive(Debug, Clone)]
+pub struct MapPlan {
+    pub vary: Vary,
+    /// Timesteps, s; None for [`COUNT`] over the predicted limits and a decade on both sides.
+    pub timesteps: Option<Range>,
+    /// Steps times particles of all cells together; None for 4e7, or 256 steps a cell where that is
+    /// more.
+    pub budget: Option<u64>,
+}
+
+/// A budget too small for its map.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "a budget of {budget} leaves each of {cells} cells {steps} steps of {particles} particles, and \
+     fewer than {FEWEST} tell nothing: {needed} would do, or fewer values, steps or engines"
+)]
+pub struct BudgetError {
+    pub budget: u64,
+    pub cells: u64,
+    pub steps: u64,
+    pub particles: u64,
+    pub needed: u64,
+}
+
+/// A map about to be run.
+pub struct Cells<'a> {
+    plan: &'a MapPlan,
+    /// Each value's scene.
+    scenes: Vec<Scene>,
+    count: u64,
+    steps: u64,
+}
+
+impl MapPlan {
+    /// With this many panels.
+    pub fn cells(&self, scene: &Scene, panels: usize) -> Result<Cells<'_>, BudgetError> {
+        let columns = self.timesteps.map_or(COUNT, |range| range.count);
+        let values = &self.vary.values;
+        let count = (panels.max(1) * values.len() * columns) as u64;
+        let particles = scene.particles.len().max(1) as u64;
+        let each = count.saturating_mul(particles).max(1);
+        let steps = match self.budget {
+            Some(budget) if budget / each < FEWEST => {
+                return Err(BudgetError {
+                    budget,
+                    cells: count,
+                    steps: budget / each,
+                    particles,
+                    needed: each.saturating_mul(FEWEST),
+                });
+            }
+            Some(budget) => budget / each,
+            None => (BUDGET / each).max(USUAL),
+        };
+        Ok(Cells {
+            plan: self,
+            scenes: values
+                .iter()
+                .map(|value| self.vary.apply(scene, *value))
+                .collect(),
+            count,
+            steps: steps.min(MOST),
+        })
+    }
+}
+
+impl Cells<'_> {
+    /// Of all cells, at most.
+    pub fn steps(&self) -> u64 {
+        self.count.saturating_mul(self.steps)
+    }
+
+    pub fn run(
+        &self,
+        scene: &Scene,
+        solvers: &[Solver],
+        tally: &Arc<Tally>,
+        host: &dyn Host,
+    ) -> StabilityMap {
+        let linearised: Vec<Linearised> = self.scenes.par_iter().map(linearised).collect();
+        // By solver, then by value.
+        let limits: Vec<Vec<(Option<f64>, bool)>> = solvers
+            .par_iter()
+            .map(|solver| {
+                let limit = |about: &Linearised| {
+                    let prediction = predicted(about, solver, scene.solver.timestep);
+                    prediction.map_or((None, false), |p| as_keys(&p.limit))
+                };
+                linearised.iter().map(limit).collect()
+            })
+            .collect();
+        let range = self.plan.timesteps.unwrap_or_else(|| {
+            let (low, high) = decades(scene, &linearised, &limits);
+            Range {
+                low,
+                high,
+                count: COUNT,
+            }
+        });
+        let timesteps = range.values();
+        let places: Vec<(usize, usize, usize)> = (0..solvers.len())
+            .flat_map(|s| (0..self.scenes.len()).map(move |v| (s, v)))
+            .flat_map(|(s, v)| (0..timesteps.len()).map(move |h| (s, v, h)))
+            .collect();
+        let cells: Vec<Option<Cell>> = places
+            .into_par_iter()
+            .map(|(s, v, h)| {
+                let (solver, scene, h) = (&solvers[s], &self.scenes[v], timesteps[h]);
+                start(solver, scene, h, tally).ok()?;
+                let make = |scene: &Scene, h| start(solver, scene, h, tally);
+                let tick = |steps| host.progress(steps);
+                Some(classify(scene, &make, h, self.steps, &tick))
+            })
+            .collect();
+        let mut rows = cells.chunks(timesteps.len().max(1)).map(<[_]>::to_vec);
+        let engines = solvers
+            .iter()
+            .zip(limits)
+            .map(|(solver, limits)| MapPanel {
+                engine: solver.id.to_string(),
+                cells: rows.by_ref().take(self.scenes.len()).collect(),
+                predicted_limit_s: limits.into_iter().map(|(limit, _)| limit).collect(),
+            })
+            .collect();
+        StabilityMap {
+            vary: self.plan.vary.id(),
+            unit: self.plan.vary.unit().to_owned(),
+            values: self.plan.vary.values.clone(),
+            timesteps_s: timesteps,
+            steps_per_cell: self.steps,
+            engines,
+        }
+    }
+}
+
+fn linearised(scene: &Scene) -> Linearised {
+    let system = ParticleSystem::new(scene);
+    let start = ParticleSystem::initial_state(scene);
+    Linearised::at(&system, start.t, &start.x, &start.v)
+}
+
+/// From a decade below to a decade above the limits most methods have: of each value the median over
+/// the engines that have one. Without any, around 2/ω, and without that around the scene's own step.
+fn decades(
+    scene: &Scene,
+    linearised: &[Linearised],
+    limits: &[Vec<(Option<f64>, bool)>],
+) -> (f64, f64) {
+    let typical = |value: usize| {
+        let of_value = limits.iter().filter_map(|engine| engine.get(value)?.0);
+        let mut found: Vec<f64> = of_value.filter(|h| *h > 0.0).collect();
+        found.sort_by(f64::total_cmp);
+        let median = found.get(found.len() / 2).copied();
+        let frequency = linearised.get(value).and_then(Linearised::omega_max);
+        median.or(frequency.map(|w| 2.0 / w))
+    };
+    let typical: Vec<f64> = (0..linearised.len())
+        .filter_map(typical)
+        .filter(|h| h.is_finite() && *h > 0.0)
+        .collect();
+    let low = typical.iter().copied().reduce(f64::min);
+    let high = typical.iter().copied().reduce(f64::max);
+    let own = scene.solver.timestep;
+    let within = |h: f64| h.clamp(limits::TIMESTEP.low, limits::TIMESTEP.high);
+    let (low, high) = (
+        within(low.unwrap_or(own) / 10.0),
+        within(high.unwrap_or(own) * 10.0),
+    );
+    (low.min(high / 2.0), high)
+}

@@ -1,0 +1,118 @@
+//! The table of limits and a map in characters.
+
+use super::{digits, map_heading, table};
+use crate::measure::stability::Cell;
+use crate::report::terminal::WIDTH;
+use crate::report::terminal::fit::{clip, pad, width, wrap};
+use crate::report::terminal::paint::{Tone, mark};
+use crate::report::words;
+use crate::verbs::Report;
+use crate::verbs::stability::{MapPanel, Stability, StabilityMap};
+
+/// Values a map in characters has room for, one column each and its axis.
+const COLUMNS: usize = 80;
+/// Lines it may take.
+const LINES: usize = 40;
+
+/// What stands below the facts.
+pub fn lines(report: &Report, stability: &Stability) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    lines.extend(table(report, stability).in_terminal(", ", |_| {
+        let mut legend = "▸ own integrator | never, always: no step is stable, every step is | \
+                          ratio: measured over predicted"
+            .to_owned();
+        let mut rows = stability.rows.iter();
+        if rows.any(|row| row.smooth_below_s.is_some()) {
+            legend += " | smooth: decays without changing sign, predicted";
+        }
+        legend
+    }));
+    lines.extend(map(report, stability));
+    lines.extend(admissible(stability));
+    lines
+}
+
+/// The character of a cell and its tone.
+fn cell(cell: Option<Cell>) -> (&'static str, Option<Tone>) {
+    match cell {
+        Some(Cell::Stable) => ("·", Some(Tone::Good)),
+        Some(Cell::Dissipating) => ("-", Some(Tone::Cool)),
+        Some(Cell::Growing) => ("#", Some(Tone::Bad)),
+        Some(Cell::Failed) => ("x", Some(Tone::Warn)),
+        None => (" ", None),
+    }
+}
+
+/// The scene's own integrator's panel, or the first, where it fits.
+fn map(report: &Report, stability: &Stability) -> Vec<String> {
+    let (Some(map), Some(heading)) = (&stability.map, map_heading(stability)) else {
+        return Vec::new();
+    };
+    let own = |panel: &&MapPanel| panel.engine == report.header.scene.own_integrator;
+    let panel = map.engines.iter().find(own).or(map.engines.first());
+    let mut lines = vec![String::new()];
+    let fits = map.values.len() <= COLUMNS && map.timesteps_s.len() <= LINES;
+    let (Some(panel), true) = (panel, fits) else {
+        lines.extend(wrap(&format!("map      {heading}"), WIDTH, "         "));
+        return lines;
+    };
+    let name = words::one_line(&panel.engine);
+    let title = format!("map      {name}, {heading}; the report has every engine's");
+    lines.extend(wrap(&title, WIDTH, "         "));
+    lines.extend(drawn(map, panel));
+    lines
+}
+
+/// One line a timestep, the largest on top, one character a value.
+fn drawn(map: &StabilityMap, panel: &MapPanel) -> Vec<String> {
+    let mut lines = Vec::new();
+    let labelled = |at: usize| at == 0 || at + 1 == map.timesteps_s.len();
+    for (at, h) in map.timesteps_s.iter().enumerate().rev() {
+        let label = if labelled(at) {
+            format!("h = {} s", digits(*h))
+        } else {
+            String::new()
+        };
+        let cells = panel.cells.iter().map(|column| {
+            let (text, tone) = cell(column.get(at).copied().flatten());
+            tone.map_or_else(|| text.to_owned(), |tone| mark(tone, text))
+        });
+        lines.push(format!("{label:>16} {}", cells.collect::<String>()));
+    }
+    let ends = [map.values.first(), map.values.last()]
+        .map(|v| v.map_or(String::new(), |v| words::short(*v)));
+    let vary = clip(&words::one_line(&map.vary), 40);
+    let axis = format!("{vary} {} to {} {}", ends[0], ends[1], map.unit);
+    lines.push(clip(&format!("{:>16} {axis}", ""), WIDTH));
+    lines.push(mark(
+        Tone::Dim,
+        &format!("{:>16} · stable  - dissipating  # growing  x failed", ""),
+    ));
+    lines
+}
+
+fn admissible(stability: &Stability) -> Vec<String> {
+    let Some(admissible) = &stability.admissible else {
+        return Vec::new();
+    };
+    let mut lines = vec![String::new()];
+    let heading = format!(
+        "where one step at h = {} s from rest does not enlarge the spring's force, of all places:",
+        words::short(admissible.timestep_s)
+    );
+    lines.extend(wrap(&heading, WIDTH, "  "));
+    let names: Vec<String> = admissible
+        .panels
+        .iter()
+        .map(|panel| format!("K = {} N/m", words::short(panel.stiffness_n_m)))
+        .collect();
+    let longest = names.iter().map(|name| width(name)).max().unwrap_or(0);
+    for (name, panel) in names.iter().zip(&admissible.panels) {
+        lines.push(format!(
+            "  {}  {:>5.1} %",
+            pad(name, longest),
+            100.0 * panel.share
+        ));
+    }
+    lines
+}
