@@ -70,9 +70,10 @@ impl Wrong {
         }
     }
 
-    pub fn at(self, file: &str, place: Place) -> ReadError {
+    /// The file is named by whoever knows its name.
+    pub fn at(self, place: Place) -> ReadError {
         ReadError {
-            file: file.to_owned(),
+            file: String::new(),
             place,
             message: self.message,
             help: self.help,

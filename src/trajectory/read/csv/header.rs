@@ -69,7 +69,7 @@ impl Columns {
     /// Whether these columns say all that this scene needs.
     fn check(&self, expected: &Expected) -> Result<(), Wrong> {
         if self.x.len() == 1 {
-            if self.id.is_some() || expected.free_axis().is_none() {
+            if self.id.is_some() || expected.free_axis.is_none() {
                 let message = "`x` alone is for a scene with one free particle that moves on one \
                                axis, without `id`";
                 return Err(Wrong::new(message, EXAMPLE));
