@@ -2,8 +2,8 @@
 
 use crate::measure::{Check, CheckStatus, Energy, EnergyClass};
 use crate::report::TruthFacts;
-use crate::solvers::Status;
 use crate::truth::TruthKind;
+use serde::Serialize;
 
 /// What stands where there is nothing to say.
 pub const NOTHING: &str = "-";
@@ -108,31 +108,36 @@ pub fn plural(value: usize, noun: &str) -> String {
     format!("{} {noun}{ending}", count(value as u64))
 }
 
-/// The class as the JSON spells it.
-pub fn class(class: EnergyClass) -> &'static str {
-    match class {
-        EnergyClass::Bounded => "bounded",
-        EnergyClass::Drifting => "drifting",
-        EnergyClass::Dissipating => "dissipating",
-        EnergyClass::Growing => "growing",
+/// A class, status or kind as the JSON spells it.
+pub fn id(value: impl Serialize) -> String {
+    let value = serde_json::to_value(value).unwrap_or_default();
+    value.as_str().unwrap_or_default().to_owned()
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub fn listed(texts: &[String]) -> String {
+    match texts {
+        [] => String::new(),
+        [only] => only.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 
-/// The status as the JSON spells it.
-pub fn status(status: Status) -> &'static str {
-    match status {
-        Status::Completed => "completed",
-        Status::Diverged => "diverged",
-        Status::Failed => "failed",
-        Status::Unsupported => "unsupported",
+/// Equal things once, in the order they first come, each with all that belong to it.
+pub fn grouped<M, T: PartialEq>(pairs: impl Iterator<Item = (M, T)>) -> Vec<(T, Vec<M>)> {
+    let mut groups: Vec<(T, Vec<M>)> = Vec::new();
+    for (member, of) in pairs {
+        match groups.iter_mut().find(|(known, _)| *known == of) {
+            Some((_, members)) => members.push(member),
+            None => groups.push((of, vec![member])),
+        }
     }
+    groups
 }
 
-/// The largest relative energy error, signed by the way the energy goes; empty without one.
-pub fn energy_error(energy: &Energy) -> String {
-    let Some(error) = energy.relative_error_max else {
-        return String::new();
-    };
+/// The largest relative energy error, signed by the way the energy goes.
+pub fn energy_error(energy: &Energy) -> Option<String> {
+    let error = energy.relative_error_max?;
     let rises = energy.drift_per_s.is_some_and(|d| d > 0.0);
     let sign = match energy.class {
         _ if error == 0.0 => "",
@@ -143,7 +148,7 @@ pub fn energy_error(energy: &Energy) -> String {
         Some(EnergyClass::Bounded) => "±",
         None => "",
     };
-    format!("{sign}{}", sci(error))
+    Some(format!("{sign}{}", sci(error)))
 }
 
 /// An error against the truth; `floor` below ten times the truth's own bar.

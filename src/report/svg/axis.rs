@@ -122,6 +122,11 @@ pub fn range(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
     })
 }
 
+/// What points span along x (0) or y (1).
+pub fn span(points: &[[f64; 2]], axis: usize) -> Option<[f64; 2]> {
+    range(points.iter().map(|point| point[axis]))
+}
+
 /// Room on both sides, as a part of the range.
 pub fn padded([lo, hi]: [f64; 2], part: f64) -> [f64; 2] {
     let room = part * (hi / 2.0 - lo / 2.0) * 2.0;

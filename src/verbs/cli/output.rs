@@ -1,6 +1,5 @@
 //! Where reports go, and how they get there whole.
 
-use crate::report;
 use crate::report::json::Tool;
 use crate::verbs::Report;
 use crate::verbs::{formats, series};
@@ -46,7 +45,7 @@ impl Place {
 
     /// The file to open first.
     pub fn report(&self, report: &Report) -> PathBuf {
-        self.folder.join(format!("{}.md", formats::stem(report)))
+        self.folder.join(format!("{}.md", report.stem()))
     }
 
     /// Makes the folder where it is not there.
@@ -58,7 +57,7 @@ impl Place {
     /// Writes the report in every file format, its figures, and what these are drawn from. `tool` made it.
     pub fn write(&self, tool: &Tool, report: &Report) -> anyhow::Result<()> {
         let reports = std::slice::from_ref(report);
-        let stem = formats::stem(report);
+        let stem = report.stem();
         if let Some(bytes) = series::pack(reports) {
             self.put(&format!("{stem}.{}", series::EXTENSION), &bytes)?;
         }
@@ -67,7 +66,7 @@ impl Place {
             let text = (format.render)(tool, reports);
             self.put(&name, text.as_bytes())?;
         }
-        for (name, svg) in report::svg::figures(report) {
+        for (name, svg) in report.svg() {
             self.put(name, svg.as_bytes())?;
         }
         Ok(())

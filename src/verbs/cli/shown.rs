@@ -58,7 +58,7 @@ pub fn print_one(
 
 /// The table and its verdict, then the report's path if there is one.
 pub fn table(report: &Report, place: Option<&Place>) -> String {
-    let table = report::terminal::render(report);
+    let table = report::terminal::render(report.view());
     let written = place.map_or_else(String::new, |place| {
         let file = place.report(report).display().to_string();
         format!("report: {}\n", file.replace(char::is_control, "?"))

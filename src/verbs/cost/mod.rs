@@ -18,12 +18,13 @@ mod sampler;
 mod settings;
 mod sweep;
 mod text;
-mod view;
 
 pub use args::{Args, cost};
+pub(super) use figures::FIGURES;
 pub use result::{
     Cost, CostCurve, CostLine, CostPanel, CostPanels, CostPoint, CostRank, CostReached, CostTarget,
 };
+pub(super) use text::{page, view};
 
 use crate::integrators;
 use crate::measure;

@@ -21,12 +21,13 @@ mod result;
 mod step_limit;
 mod text;
 pub mod truths;
-mod view;
 
 pub use args::{Args, run};
 pub use expect::names;
+pub(super) use figures::FIGURES;
 pub use plan::{Case, Choice, Expectations, Orders, Plan};
 pub use result::{Curves, Figures, Outcome, PlotAxis, TruthCurves, Work};
+pub(super) use text::{page, view};
 
 use crate::measure;
 use crate::measure::Check;

@@ -4,8 +4,8 @@ use crate::report::json;
 use crate::report::json::Tool;
 use crate::verbs::cli::output::Place;
 use crate::verbs::cli::shown::{self, HUMAN, format_ids};
+use crate::verbs::series;
 use crate::verbs::{Beside, Body, Report};
-use crate::verbs::{formats, series};
 use anyhow::{Context, bail};
 use std::fs::File;
 use std::io::{ErrorKind, Read, Write};
@@ -99,7 +99,7 @@ fn places(args: &Args, reports: &[Report]) -> anyhow::Result<Vec<Option<Place>>>
         let place = Place::new(output, about.unwrap_or(&report.header.scene.file).as_ref());
         let taken = |(other, at): (&Report, &Option<Place>)| {
             let same = at.as_ref().is_some_and(|at| at.folder() == place.folder());
-            same && formats::stem(other) == formats::stem(report)
+            same && other.stem() == report.stem()
         };
         if reports.iter().zip(&places).any(taken) {
             bail!(

@@ -11,10 +11,11 @@ mod result;
 mod rows;
 mod text;
 mod vary;
-mod view;
 
 pub use admissible::NotAdmissible;
+pub(super) use figures::FIGURES;
 pub use map::{BudgetError, MapPlan};
+pub(super) use text::{page, view};
 pub use vary::{COUNT, Range, RangeError, Vary, VaryError};
 
 pub use args::{Args, stability};

@@ -2,8 +2,7 @@
 //! and who does not reach it.
 
 use super::{evaluations, metres, price, ratio, setting};
-use crate::report::notes::{grouped, listed};
-use crate::report::words;
+use crate::report::words::{self, grouped, listed};
 use crate::verbs::cost::{Cost, CostRank, CostReached, CostTarget};
 
 /// `1e-6 m`.

@@ -1,9 +1,7 @@
 //! The answers, the table of engines, and the diagram in characters.
 
 use super::{answer, brief, evaluations, scatter, table, tried};
-use crate::report::terminal::WIDTH;
-use crate::report::terminal::fit::wrap;
-use crate::report::terminal::paint::{Tone, mark};
+use crate::report::terminal::{Tone, WIDTH, mark, wrap};
 use crate::report::words::{self, NOTHING};
 use crate::verbs::Report;
 use crate::verbs::cost::{Cost, CostCurve, CostRank, CostTarget};

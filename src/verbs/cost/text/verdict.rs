@@ -1,9 +1,8 @@
 //! The sentence that says what to use.
 
 use super::{answer, metres, ratio};
-use crate::report::notes::listed;
 use crate::report::verdict::Clause;
-use crate::report::words;
+use crate::report::words::{self, listed};
 use crate::verbs::Report;
 use crate::verbs::cost::{Cost, CostReached, CostTarget};
 

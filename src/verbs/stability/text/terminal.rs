@@ -2,9 +2,7 @@
 
 use super::{digits, map_heading, table};
 use crate::measure::stability::Cell;
-use crate::report::terminal::WIDTH;
-use crate::report::terminal::fit::{clip, pad, width, wrap};
-use crate::report::terminal::paint::{Tone, mark};
+use crate::report::terminal::{Tone, WIDTH, clip, mark, pad, width, wrap};
 use crate::report::words;
 use crate::verbs::Report;
 use crate::verbs::stability::{MapPanel, Stability, StabilityMap};

@@ -1,9 +1,8 @@
 //! The sentence that says the most important thing about limits.
 
 use super::limit;
-use crate::report::notes::listed;
 use crate::report::verdict::Clause;
-use crate::report::words;
+use crate::report::words::{self, listed};
 use crate::verbs::Report;
 use crate::verbs::stability::{Stability, StabilityRow};
 
