@@ -10,7 +10,7 @@ pub mod terminal;
 pub mod verdict;
 pub mod words;
 
-pub use header::{EffectUse, Header, SceneFacts, TruthFacts};
+pub use header::{EffectUse, Header, OWN, SceneFacts, TruthFacts, UNRANKED};
 
 use verdict::Clause;
 

@@ -2,6 +2,7 @@
 //! leaves the least telling columns out where the width does not hold them; the first, the engine's
 //! name, is cut last.
 
+use super::OWN;
 use super::terminal::{Tone, WIDTH, clip, mark, width, wrap};
 use super::words::{NOTHING, escape, one_line};
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, TableStyle};
@@ -11,27 +12,6 @@ const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().f
 const GAP: usize = 2;
 /// An engine's name is not cut below this while another column can go.
 const NAME: usize = 28;
-
-/// What sets an engine apart from the others of its table.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
-    Plain,
-    /// The integrator the scene names.
-    Own,
-    /// Explained, not ranked.
-    Unranked,
-}
-
-impl Mark {
-    /// Of an engine that is ranked.
-    pub fn of(engine: &str, own: &str) -> Self {
-        if engine == own {
-            Self::Own
-        } else {
-            Self::Plain
-        }
-    }
-}
 
 /// One line a row, and columns over them.
 pub struct Table<'a, R> {
@@ -56,19 +36,15 @@ impl<'a, R> Table<'a, R> {
         Self { rows, columns }
     }
 
-    /// The column of names.
-    pub fn engines(&mut self, name: impl Fn(&R) -> (String, Mark)) {
+    /// The column of names, each with its mark: [`OWN`], [`UNRANKED`](super::UNRANKED) or a space.
+    pub fn engines(&mut self, name: impl Fn(&R) -> (String, char)) {
         self.left("  engine", "", |row| {
             let (name, mark) = name(row);
-            let name = one_line(&name);
-            match mark {
-                Mark::Plain => (format!("  {name}"), None),
-                Mark::Own => (format!("▸ {name}"), Some(Tone::Strong)),
-                Mark::Unranked => (format!("† {name}"), None),
-            }
+            let tone = (mark == OWN).then_some(Tone::Strong);
+            (format!("{mark} {}", one_line(&name)), tone)
         });
         self.markdown("engine", |row| match name(row) {
-            (name, Mark::Own) => format!("**{}**", escape(&name)),
+            (name, OWN) => format!("**{}**", escape(&name)),
             (name, _) => escape(&name),
         });
     }

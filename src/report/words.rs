@@ -103,9 +103,9 @@ pub fn count(value: u64) -> String {
 }
 
 /// `1 spring`, `3 springs`.
-pub fn plural(value: usize, noun: &str) -> String {
+pub fn plural(value: u64, noun: &str) -> String {
     let ending = if value == 1 { "" } else { "s" };
-    format!("{} {noun}{ending}", count(value as u64))
+    format!("{} {noun}{ending}", count(value))
 }
 
 /// A class, status or kind as the JSON spells it.

@@ -98,17 +98,14 @@ impl Axis {
         let first = linear.log10().round() as i32;
         let [lo, hi] = self.range.map(|end| self.forward(end));
         let every = ((hi - lo) / wanted.max(1) as f64).ceil().max(1.0) as usize;
-        let mut ticks = vec![(0.0, "0".to_string())];
         // The first as far from zero as from the second.
-        for exponent in (first + every as i32 - 1..=300).step_by(every) {
-            let value = 10_f64.powi(exponent);
-            for (sign, value) in [("", value), ("−", -value)] {
-                if self.range[0] <= value && value <= self.range[1] {
-                    ticks.push((value, format!("{sign}{}", power_of_ten(exponent))));
-                }
-            }
-        }
-        ticks
+        let exponents = (first + every as i32 - 1..=300).step_by(every);
+        let both = exponents.flat_map(|exponent| {
+            let (value, label) = (10_f64.powi(exponent), power_of_ten(exponent));
+            [(value, label.clone()), (-value, format!("−{label}"))]
+        });
+        let inside = both.filter(|(value, _)| (self.range[0]..=self.range[1]).contains(value));
+        [(0.0, "0".to_string())].into_iter().chain(inside).collect()
     }
 }
 

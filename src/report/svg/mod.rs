@@ -13,8 +13,8 @@ pub use chart::{Chart, Panel};
 pub use key::{Key, Look};
 pub use marks::{Line, Mark, cells};
 
-use super::Header;
 use super::words::one_line;
+use super::{Header, OWN};
 
 /// Pixels; what a page of text is wide.
 pub const WIDTH: f64 = 880.0;
@@ -39,12 +39,10 @@ pub fn engine(name: &str) -> String {
 
 /// A panel's title where each engine has one; the scene's own integrator is pointed at.
 pub fn panel_title(header: &Header, name: &str) -> String {
-    let own = if name == header.scene.own_integrator {
-        "▸ "
-    } else {
-        ""
-    };
-    format!("{own}{}", engine(name))
+    match header.mark(name) {
+        OWN => format!("{OWN} {}", engine(name)),
+        _ => engine(name),
+    }
 }
 
 /// One line of so many characters at most.

@@ -46,8 +46,8 @@ fn scene(view: &View) -> Vec<String> {
     let scene = &view.header.scene;
     let facts = format!(
         "  {}, {}, {} s at h = {}, {}",
-        words::plural(scene.particles, "particle"),
-        words::plural(scene.springs, "spring"),
+        words::plural(scene.particles as u64, "particle"),
+        words::plural(scene.springs as u64, "spring"),
         words::short(scene.duration),
         words::timestep(scene.timestep, &view.timesteps),
         clip(&one_line(&scene.own_integrator), 28),

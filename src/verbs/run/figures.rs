@@ -281,7 +281,7 @@ fn stroke(report: &Report, outcome: &Outcome) -> Stroke {
     let alike = report.outcomes().iter().filter(|o| o.kind == outcome.kind);
     let engines = alike.map(|o| &o.engine);
     let before: BTreeSet<&String> = engines.take_while(|e| **e != outcome.engine).collect();
-    let own = outcome.engine == report.header.scene.own_integrator;
+    let own = report.header.is_own(&outcome.engine);
     look(outcome.kind, before.len(), own)
 }
 
@@ -297,7 +297,7 @@ fn layer(report: &Report, outcome: &Outcome) -> u8 {
     match outcome.kind {
         Kind::Rapier => 3,
         _ if is_wild(outcome) => 0,
-        _ if outcome.engine == report.header.scene.own_integrator => 2,
+        _ if report.header.is_own(&outcome.engine) => 2,
         _ => 1,
     }
 }

@@ -60,7 +60,7 @@ pub fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
 
     let mut marks = levels(cost, &targets, axes, diagram);
     // The scene's own last: its line lies over the others.
-    lines.sort_by_key(|line| line.curve.engine == report.header.scene.own_integrator);
+    lines.sort_by_key(|line| report.header.is_own(&line.curve.engine));
     marks.extend(lines.iter().flat_map(|line| line.marks(axes, diagram)));
     let silent = silent.iter().map(|line| engine(&line.curve.engine));
     let silent: Vec<String> = silent.collect();
@@ -70,18 +70,13 @@ pub fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
         true => ["time", "wall time of a run, median (s)"],
         false => ["force evaluations", "force evaluations of a run"],
     };
-    let (title, error) = match diagram.judged {
-        true => (
-            format!("what accuracy costs in {}", paid[0]),
-            "largest error (m)",
-        ),
-        false => (
-            "what energy accuracy costs".into(),
-            "largest |B − B(0)| / S",
-        ),
+    let accuracy = format!("what accuracy costs in {}", paid[0]);
+    let [title, error] = match diagram.judged {
+        true => [&accuracy, "largest error (m)"],
+        false => ["what energy accuracy costs", "largest |B − B(0)| / S"],
     };
     Some(Chart {
-        title: heading(&report.header, &title),
+        title: heading(&report.header, title),
         legend,
         titles: [paid[1], error].map(str::to_owned),
         panels: vec![Panel::new(String::new(), 430.0, axes, marks)],
@@ -208,7 +203,7 @@ fn marked(report: &Report, curves: &[CostCurve]) -> Vec<(Stroke, Shape)> {
     let look = |(at, curve): (usize, &CostCurve)| {
         let before = curves.iter().take(at);
         let place = before.filter(|other| other.kind == curve.kind).count();
-        let own = curve.engine == report.header.scene.own_integrator;
+        let own = report.header.is_own(&curve.engine);
         let mut stroke = look(curve.kind, place, own);
         if curve.kind == Kind::Integrator {
             stroke.dash = "";

@@ -7,10 +7,10 @@ mod settings;
 mod terminal;
 mod verdict;
 
-use crate::report::View;
 use crate::report::markdown::{findings, opening, section};
-use crate::report::table::{Mark, Table};
+use crate::report::table::Table;
 use crate::report::words::{self, NOTHING, escape};
+use crate::report::{UNRANKED, View};
 use crate::solvers::Status;
 use crate::verbs::Report;
 use crate::verbs::cost::{Cost, CostCurve, CostPoint, CostReached};
@@ -67,13 +67,13 @@ pub fn page(report: &Report, cost: &Cost, view: &View) -> String {
 
 /// The table of engines, in the terminal, where it also has the targets, and in Markdown.
 fn table<'a>(report: &Report, cost: &'a Cost) -> Table<'a, CostCurve> {
-    let own = &report.header.scene.own_integrator;
+    let header = &report.header;
     let timed = is_timed(cost);
     let paid = if timed { "time" } else { "evaluations" };
     let mut table = Table::new(&cost.curves);
     table.engines(|curve| {
-        let mark = match Mark::of(&curve.engine, own) {
-            Mark::Plain if !curve.is_ranked() => Mark::Unranked,
+        let mark = match header.mark(&curve.engine) {
+            ' ' if !curve.is_ranked() => UNRANKED,
             mark => mark,
         };
         (curve.engine.clone(), mark)
@@ -123,8 +123,7 @@ fn brief(timestep: f64, tolerance: Option<f64>) -> String {
 }
 
 fn evaluations(count: u64) -> String {
-    let ending = if count == 1 { "" } else { "s" };
-    format!("{} evaluation{ending}", words::count(count))
+    words::plural(count, "evaluation")
 }
 
 /// `0.10 ms (1,000 evaluations)`, or what is known of it.

@@ -149,7 +149,7 @@ pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
 /// Every engine with something to show: the scene's own first, then as listed; integrators have small
 /// letters, references capitals.
 fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
-    let own = |curve: &CostCurve| curve.engine == report.header.scene.own_integrator;
+    let own = |curve: &CostCurve| report.header.is_own(&curve.engine);
     let mut curves: Vec<&CostCurve> = cost.curves.iter().collect();
     curves.sort_by_key(|curve| !own(curve));
     let (mut small, mut capital) = ('a'..='z', 'A'..='Z');

@@ -2,7 +2,7 @@
 
 use super::{answer, metres, ratio, tried};
 use crate::report::markdown::section;
-use crate::report::table::{Mark, Table};
+use crate::report::table::Table;
 use crate::report::words::{self, escape};
 use crate::verbs::Report;
 use crate::verbs::clock::WallTime;
@@ -10,7 +10,7 @@ use crate::verbs::cost::{Cost, CostCurve, CostPoint, CostRank, CostTarget};
 
 /// One target's: the places, then those without one.
 pub fn ranking(report: &Report, target: &CostTarget) -> String {
-    let own = &report.header.scene.own_integrator;
+    let header = &report.header;
     let places = target.ranking.iter().enumerate().map(|(at, rank)| {
         let place = rank.reached.as_ref().map(|_| (at + 1).to_string());
         (place, rank)
@@ -21,7 +21,7 @@ pub fn ranking(report: &Report, target: &CostTarget) -> String {
     let tolerance = |rank: &CostRank| rank.reached.as_ref()?.tolerance;
     let mut table = Table::new(&rows);
     table.markdown("place", |(place, _)| place.clone());
-    table.engines(|(_, rank)| (rank.engine.clone(), Mark::of(&rank.engine, own)));
+    table.engines(|(_, rank)| (rank.engine.clone(), header.mark(&rank.engine)));
     table.markdown("h (s)", |(_, rank)| {
         rank.reached.as_ref().map(|r| words::short(r.timestep))
     });

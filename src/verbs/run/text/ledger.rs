@@ -2,7 +2,7 @@
 
 use crate::measure::Energy;
 use crate::report::EffectUse;
-use crate::report::table::{Mark, Table};
+use crate::report::table::Table;
 use crate::report::terminal::{clip, pad, width};
 use crate::report::words::{self, escape};
 use crate::verbs::Report;
@@ -18,9 +18,9 @@ pub fn energies(report: &Report) -> String {
     let Some((_, first)) = rows.first() else {
         return String::new();
     };
-    let own = &report.header.scene.own_integrator;
+    let header = &report.header;
     let mut table = Table::new(&rows);
-    table.engines(|(o, _)| (super::engine(o), Mark::of(&o.engine, own)));
+    table.engines(|(o, _)| (super::engine(o), header.mark(&o.engine)));
     table.markdown("kinetic", |(_, energy)| number(energy.kinetic_final_j));
     // Effects without potential energy would have columns of zeros.
     for (id, _) in first

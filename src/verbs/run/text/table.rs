@@ -1,7 +1,7 @@
 //! The table of outcomes, in the terminal and in Markdown.
 
 use crate::measure::EnergyClass;
-use crate::report::table::{Mark, Table};
+use crate::report::table::Table;
 use crate::report::terminal::{Tone, clip, pad};
 use crate::report::words::{self, NOTHING, escape};
 use crate::solvers::Status;
@@ -27,8 +27,8 @@ pub fn markdown(report: &Report) -> String {
 fn table(report: &Report, fold: char) -> Table<'_, Outcome> {
     let outcomes = report.outcomes();
     let mut table = Table::new(outcomes);
-    let own = &report.header.scene.own_integrator;
-    table.engines(|o| (engine(o), Mark::of(&o.engine, own)));
+    let header = &report.header;
+    table.engines(|o| (engine(o), header.mark(&o.engine)));
     if several_timesteps(report) {
         table.right("h (s)", "h (s)", 0, |o| words::short(o.timestep));
     }

@@ -4,7 +4,7 @@ mod terminal;
 mod verdict;
 
 use crate::report::markdown::{findings, opening, section};
-use crate::report::table::{Mark, Table};
+use crate::report::table::Table;
 use crate::report::terminal::Tone;
 use crate::report::words::{self, NOTHING, escape, listed, one_line};
 use crate::report::{Note, View};
@@ -89,10 +89,10 @@ fn admissible(stability: &Stability) -> Option<String> {
 /// The table of limits, in the terminal and in Markdown.
 fn table<'a>(report: &Report, stability: &'a Stability) -> Table<'a, StabilityRow> {
     let h = stability.timestep_s;
-    let own = &report.header.scene.own_integrator;
+    let header = &report.header;
     let any = |wanted: fn(&StabilityRow) -> bool| stability.rows.iter().any(wanted);
     let mut table = Table::new(&stability.rows);
-    table.engines(|row| (row.engine.clone(), Mark::of(&row.engine, own)));
+    table.engines(|row| (row.engine.clone(), header.mark(&row.engine)));
     table.right("predicted\nlimit (s)", "predicted limit (s)", 0, |row| {
         limit(row.predicted_limit_s, row.unconditional)
     });
