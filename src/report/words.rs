@@ -161,11 +161,12 @@ pub fn truth_error(error: f64, truth: &TruthFacts) -> String {
 
 /// What the truth of this scene is, in one line.
 pub fn truth(truth: &TruthFacts) -> String {
-    let mut text = match truth.kind {
-        TruthKind::ClosedForm => String::from("closed form"),
-        TruthKind::Converged => String::from("converged reference"),
-        TruthKind::None => String::from("none"),
+    let kind = match truth.kind {
+        TruthKind::ClosedForm => "closed form",
+        TruthKind::Converged => "converged reference",
+        TruthKind::None => "none",
     };
+    let mut text = kind.to_owned();
     if let Some(method) = &truth.method {
         text += &format!(", {method}");
     }
@@ -184,17 +185,12 @@ pub fn truth(truth: &TruthFacts) -> String {
 /// One printable line: control characters and runs of white space become single spaces; invisible
 /// characters that could reorder or restyle the line go.
 pub fn one_line(text: &str) -> String {
-    let spaced: String = text
-        .chars()
-        .filter(|c| !is_invisible(*c))
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
-    spaced.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// Direction overrides, and the variation selectors that `terminal::paint` uses as marks.
-fn is_invisible(c: char) -> bool {
-    matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{e0100}'..='\u{e01ef}')
+    // Direction overrides, and the variation selectors that `terminal::paint` uses as marks.
+    let is_invisible = |c: &char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{e0100}'..='\u{e01ef}');
+    let visible: String = text.chars().filter(|c| !is_invisible(c)).collect();
+    let separates = |c: char| c.is_control() || c.is_whitespace();
+    let words = visible.split(separates).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// The steps outcomes were run at: `0.0005 s`, or `several, the file's 0.0005 s`; `own` is the file's.

@@ -131,16 +131,19 @@ pub fn padded([lo, hi]: [f64; 2], part: f64) -> [f64; 2] {
 }
 
 /// What the calm lines span, and of the wild ones (growing, diverged) as much as does not push the
-/// calm into a corner: each side gives way by at most half the calm span.
-pub fn tamed(calm: Option<[f64; 2]>, wild: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let span = |r: &[f64; 2]| r[1] - r[0];
-    let smallest = wild.iter().min_by(|a, b| span(a).total_cmp(&span(b)));
-    let core = calm.or(smallest.copied())?;
-    let room = span(&core) / 2.0;
-    Some(wild.iter().fold(core, |window, w| {
+/// calm into a corner: each side gives way by at most half the calm span. Each line says whether it is
+/// wild, and its span; where all are, the smallest counts as calm.
+pub fn tamed(spans: impl IntoIterator<Item = (bool, [f64; 2])>) -> Option<[f64; 2]> {
+    let (wild, calm): (Vec<_>, Vec<_>) = spans.into_iter().partition(|(is_wild, _)| *is_wild);
+    let size = |(_, [lo, hi]): &(bool, [f64; 2])| hi - lo;
+    let smallest = wild.iter().min_by(|a, b| size(a).total_cmp(&size(b)));
+    let calm = range(calm.into_iter().flat_map(|(_, span)| span));
+    let core = calm.or(smallest.map(|(_, span)| *span))?;
+    let room = (core[1] - core[0]) / 2.0;
+    Some(wild.iter().fold(core, |[lo, hi], (_, span)| {
         [
-            window[0].min(w[0].max(core[0] - room)),
-            window[1].max(w[1].min(core[1] + room)),
+            lo.min(span[0].max(core[0] - room)),
+            hi.max(span[1].min(core[1] + room)),
         ]
     }))
 }

@@ -99,11 +99,14 @@ impl Runs<'_> {
 
     /// What the calm runs span along one axis, with what is `fixed`, and a little of the wild runs.
     fn shown(&self, axis: usize, fixed: Option<[f64; 2]>) -> [f64; 2] {
-        let (wild, calm): (Vec<_>, Vec<_>) = self.spans(axis).partition(|(o, _)| is_wild(o));
-        let calm = range(calm.into_iter().flat_map(|(_, span)| span));
-        let calm = calm.and_then(|calm| range([Some(calm), fixed].into_iter().flatten().flatten()));
-        let wild: Vec<[f64; 2]> = wild.into_iter().map(|(_, span)| span).collect();
-        let shown = [tamed(calm, &wild), fixed];
+        let spans: Vec<_> = self
+            .spans(axis)
+            .map(|(o, span)| (is_wild(o), span))
+            .collect();
+        // Beside wild runs alone, what is fixed is not the measure of calm.
+        let calm = fixed.filter(|_| spans.iter().any(|(is_wild, _)| !is_wild));
+        let calm = calm.map(|span| (false, span));
+        let shown = [tamed(spans.into_iter().chain(calm)), fixed];
         range(shown.into_iter().flatten().flatten()).unwrap_or([0.0, 1.0])
     }
 }

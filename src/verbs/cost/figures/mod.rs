@@ -5,40 +5,23 @@ mod precision;
 
 use crate::verbs::cost::CostPoint;
 use crate::verbs::formats::Figure;
-use precision::{chart, energy};
 
 /// The figures of `cost`.
 pub const FIGURES: &[Figure] = &[
     (
         "cost_time.svg",
         "work-precision diagram: error over wall time",
-        |report| {
-            chart(
-                report,
-                Diagram {
-                    judged: true,
-                    timed: true,
-                },
-            )
-        },
+        precision::time,
     ),
     (
         "cost_evaluations.svg",
         "work-precision diagram: error over force evaluations",
-        |report| {
-            chart(
-                report,
-                Diagram {
-                    judged: true,
-                    timed: false,
-                },
-            )
-        },
+        precision::evaluations,
     ),
     (
         "cost_energy.svg",
         "work-precision diagram: energy error over cost",
-        energy,
+        precision::energy,
     ),
     (
         "cost_panels.svg",

@@ -43,9 +43,7 @@ pub fn chart(report: &Report) -> Option<Chart> {
         let mut above = Panel::new(title, CURVES, above, curves);
         let mut below = Panel::new(String::new(), DIFFERENCES, below, differences.collect());
         (above.width, below.width, below.joined) = (420.0, 420.0, true);
-        [Some(above), differs.then_some(below)]
-            .into_iter()
-            .flatten()
+        [above].into_iter().chain(differs.then_some(below))
     });
     let mut y_title = shortened(&shown.label, 40);
     if differs {
@@ -82,31 +80,25 @@ fn ranges(shown: &CostPanels) -> [[f64; 2]; 2] {
     let times = curves()
         .chain([&shown.truth])
         .filter_map(|curve| span(curve, 0));
-    let calm = span(&shown.truth, 1).or_else(|| {
-        let done = lines(shown).filter(|line| line.status == Status::Completed);
-        range(done.filter_map(|line| span(&line.curve, 1)).flatten())
-    });
-    let wild: Vec<[f64; 2]> = curves().filter_map(|curve| span(curve, 1)).collect();
-    let shown = tamed(calm, &wild).unwrap_or([0.0, 1.0]);
     let times = range(times.flatten()).unwrap_or([0.0, 1.0]);
+    let truth = span(&shown.truth, 1);
+    let curves = lines(shown).filter_map(|line| {
+        let is_wild = truth.is_some() || line.status != Status::Completed;
+        Some((is_wild, span(&line.curve, 1)?))
+    });
+    let truth = truth.map(|span| (false, span));
+    let shown = tamed(truth.into_iter().chain(curves)).unwrap_or([0.0, 1.0]);
     [times, padded(shown, 0.05)]
 }
 
 /// What the differences of one panel span; those larger than what the curves' axis shows are cut.
 fn difference(panel: &CostPanel, shown: [f64; 2]) -> [f64; 2] {
     let most = shown[1] / 2.0 - shown[0] / 2.0;
-    let spans = panel
-        .lines
-        .iter()
-        .filter_map(|line| Some((line.status, span(&line.difference, 1)?)));
-    let is_calm = |(status, [lo, hi]): &(Status, [f64; 2])| {
-        *status == Status::Completed && -most <= *lo && *hi <= most
-    };
-    let (calm, wild): (Vec<_>, Vec<_>) = spans.partition(is_calm);
-    let calm = range(calm.into_iter().flat_map(|(_, range)| range));
-    let wild = wild
-        .into_iter()
-        .map(|(_, range)| range.map(|end| end.clamp(-most, most)));
-    let [lo, hi] = tamed(calm, &wild.collect::<Vec<_>>()).unwrap_or([0.0, 0.0]);
+    let spans = panel.lines.iter().filter_map(|line| {
+        let [lo, hi] = span(&line.difference, 1)?;
+        let is_calm = line.status == Status::Completed && -most <= lo && hi <= most;
+        Some((!is_calm, [lo, hi].map(|end| end.clamp(-most, most))))
+    });
+    let [lo, hi] = tamed(spans).unwrap_or([0.0, 0.0]);
     padded([lo.min(0.0), hi.max(0.0)], 0.06)
 }

@@ -16,10 +16,21 @@ use crate::verbs::cost::{Cost, CostCurve, CostPoint};
 const SMALLEST: f64 = 1e-250;
 const LARGEST: f64 = 1e250;
 
+/// Error over wall time.
+pub fn time(report: &Report) -> Option<Chart> {
+    let (judged, timed) = (true, true);
+    chart(report, Diagram { judged, timed })
+}
+
+/// Error over force evaluations.
+pub fn evaluations(report: &Report) -> Option<Chart> {
+    let (judged, timed) = (true, false);
+    chart(report, Diagram { judged, timed })
+}
+
 /// Energy error over time, or over evaluations where nothing was timed.
 pub fn energy(report: &Report) -> Option<Chart> {
-    let timed = report.cost().is_some_and(is_timed);
-    let judged = false;
+    let (judged, timed) = (false, is_timed(report.cost()?));
     chart(report, Diagram { judged, timed })
 }
 
@@ -34,7 +45,7 @@ struct Line<'a> {
 }
 
 /// The diagram, where some setting has both an error and a cost.
-pub fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
+fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
     let cost = report.cost()?;
     let looks = marked(report, &cost.curves);
     let lines = cost.curves.iter().zip(looks).map(|(curve, look)| Line {
@@ -133,11 +144,8 @@ impl Line<'_> {
         let slope = self.curve.observed_order;
         let slope = slope.filter(|slope| diagram.judged && slope.abs() < 99.5);
         let slope = slope.map_or(String::new(), |slope| format!(", slope {slope:.2}"));
-        let label = Key::new(
-            engine(&self.curve.engine) + &slope,
-            Look::Marked(stroke, solid),
-        );
-        line.label = Some(label);
+        let name = engine(&self.curve.engine);
+        line.label = Some(Key::new(name + &slope, Look::Marked(stroke, solid)));
 
         let mut marks = vec![Mark::Line(line)];
         for (at, point) in points {
@@ -166,10 +174,10 @@ impl Line<'_> {
 fn levels(cost: &Cost, targets: &[f64], [x, y]: [Axis; 2], diagram: Diagram) -> Vec<Mark> {
     let [[left, right], [bottom, _]] = [x.range, y.range];
     let mut marks = Vec::new();
-    if let Some(floor) = cost
+    let floor = cost
         .floor_m
-        .filter(|floor| diagram.judged && *floor > bottom)
-    {
+        .filter(|floor| diagram.judged && *floor > bottom);
+    if let Some(floor) = floor {
         let below = [[left, bottom], [right, floor]];
         marks.push(Mark::Area(palette::BELOW_FLOOR, vec![below]));
     }

@@ -116,10 +116,10 @@ fn setting(timestep: f64, tolerance: Option<f64>) -> String {
 
 /// The same in few characters, for tables: `0.02`, `tol 1e-8`.
 fn brief(timestep: f64, tolerance: Option<f64>) -> String {
-    tolerance.map_or_else(
-        || words::short(timestep),
-        |tolerance| format!("tol {}", metres(tolerance)),
-    )
+    match tolerance {
+        Some(tolerance) => format!("tol {}", metres(tolerance)),
+        None => words::short(timestep),
+    }
 }
 
 fn evaluations(count: u64) -> String {
@@ -201,31 +201,21 @@ pub fn is_timed(cost: &Cost) -> bool {
 
 /// What holds of the whole answer, line by line: label and text.
 fn facts(report: &Report, cost: &Cost) -> Vec<(&'static str, String)> {
-    let mut facts = vec![("truth", words::truth(&report.header.truth))];
-    if let Some(horizon) = cost.horizon_s {
-        let whole = if horizon < cost.duration_s {
-            format!(
-                "{} of {} s",
-                words::short(horizon),
-                words::short(cost.duration_s)
-            )
-        } else {
-            format!("{} s, the whole run", words::short(cost.duration_s))
+    let errors = cost.horizon_s.map(|horizon| {
+        let all = words::short(cost.duration_s);
+        let until = match horizon < cost.duration_s {
+            true => format!("{} of {all} s", words::short(horizon)),
+            false => format!("{all} s, the whole run"),
         };
-        facts.push((
-            "errors",
-            format!("the largest distance of a particle from the truth up to {whole}"),
-        ));
-    }
-    if let Some(floor) = cost.floor_m {
-        facts.push((
-            "floor",
-            format!(
-                "{} m: errors below ten times the truth's own bar are not told apart",
-                metres(floor)
-            ),
-        ));
-    }
+        format!("the largest distance of a particle from the truth up to {until}")
+    });
+    let floor = cost.floor_m.map(metres);
+    let floor = floor.map(|floor| {
+        format!("{floor} m: errors below ten times the truth's own bar are not told apart")
+    });
+    let mut facts = vec![("truth", words::truth(&report.header.truth))];
+    facts.extend(errors.map(|errors| ("errors", errors)));
+    facts.extend(floor.map(|floor| ("floor", floor)));
     facts
 }
 

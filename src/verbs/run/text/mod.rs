@@ -85,19 +85,16 @@ pub fn page(report: &Report, view: &View) -> String {
 /// The outcome's remarks, led by its reason for ending early where no remark repeats it.
 pub fn sentences(outcome: &Outcome) -> Vec<String> {
     let remarks: Vec<String> = outcome.remarks.iter().map(|r| words::one_line(r)).collect();
-    let mut sentences = Vec::new();
-    if outcome.status != Status::Completed {
-        let reason = outcome.reason.as_deref().map(words::one_line);
-        let repeated = reason
+    let reason = outcome.reason.as_deref().map(words::one_line);
+    let repeats = |remark: &String| {
+        reason
             .as_ref()
-            .is_some_and(|reason| remarks.iter().any(|r| r.contains(reason)));
-        if !repeated {
-            sentences.push(ending(outcome, reason));
-        }
-    }
-    sentences.extend(remarks);
-    sentences.extend(identity::sentence(outcome));
-    sentences
+            .is_some_and(|reason| remark.contains(reason))
+    };
+    let is_said = outcome.status == Status::Completed || remarks.iter().any(repeats);
+    let ending = (!is_said).then(|| ending(outcome, reason));
+    let sentences = ending.into_iter().chain(remarks);
+    sentences.chain(identity::sentence(outcome)).collect()
 }
 
 /// `diverged at 1.23 s: ...`
@@ -120,20 +117,15 @@ pub fn subjects(report: &Report, chosen: &[&Outcome], limit: usize) -> String {
     // "and 1 more" is no shorter than the name.
     let hidden = if hidden == 1 { 0 } else { hidden };
     let named = engines.iter().take(engines.len() - hidden);
-    let mut texts: Vec<String> = named
-        .map(|(engine, timesteps)| {
-            let of_engine = |o: &&Outcome| o.engine == **engine;
-            let all = report.outcomes().iter().filter(of_engine).count();
-            let name = words::one_line(engine);
-            if timesteps.len() >= all {
-                name
-            } else {
-                format!("{name} at h = {}", timesteps.join(", "))
-            }
-        })
-        .collect();
-    if hidden > 0 {
-        texts.push(format!("{hidden} more"));
-    }
-    listed(&texts)
+    let named = named.map(|(engine, timesteps)| {
+        let of_engine = |o: &&Outcome| o.engine == **engine;
+        let all = report.outcomes().iter().filter(of_engine).count();
+        let name = words::one_line(engine);
+        match timesteps.len() < all {
+            true => format!("{name} at h = {}", timesteps.join(", ")),
+            false => name,
+        }
+    });
+    let more = (hidden > 0).then(|| format!("{hidden} more"));
+    listed(&named.chain(more).collect::<Vec<_>>())
 }

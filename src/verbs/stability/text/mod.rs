@@ -189,7 +189,6 @@ fn place(row: &StabilityRow, timestep: f64) -> String {
 
 /// What holds of the whole scene, line by line: label and text.
 fn facts(stability: &Stability) -> Vec<(&'static str, String)> {
-    let mut facts = Vec::new();
     let fastest = match stability.omega_max_rad_s {
         Some(omega) => format!("fastest mode {} rad/s", digits(omega)),
         None if stability.unsure => "fastest mode not known (damping couples too many)".to_owned(),
@@ -203,10 +202,9 @@ fn facts(stability: &Stability) -> Vec<(&'static str, String)> {
             words::short(stability.horizon_s)
         )
     };
-    facts.push(("linear", format!("{fastest}; {forces}")));
-    if !stability.excluded.is_empty() {
-        facts.push(("left out", listed(&stability.excluded)));
-    }
+    let out = (!stability.excluded.is_empty()).then(|| listed(&stability.excluded));
+    let mut facts = vec![("linear", format!("{fastest}; {forces}"))];
+    facts.extend(out.map(|out| ("left out", out)));
     facts
 }
 
