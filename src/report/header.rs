@@ -4,12 +4,29 @@ use crate::measure::Check;
 use crate::truth::TruthKind;
 use serde::{Deserialize, Serialize};
 
+/// Marks the integrator the scene names.
+pub const OWN: char = '▸';
+/// Marks an engine that is explained, not ranked.
+pub const UNRANKED: char = '†';
+
 /// What the reports of all verbs have.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Header {
     pub scene: SceneFacts,
     pub truth: TruthFacts,
     pub checks: Vec<Check>,
+}
+
+impl Header {
+    /// Whether this is the integrator the scene names.
+    pub fn is_own(&self, engine: &str) -> bool {
+        engine == self.scene.own_integrator
+    }
+
+    /// What stands before the name of an engine that is ranked.
+    pub fn mark(&self, engine: &str) -> char {
+        if self.is_own(engine) { OWN } else { ' ' }
+    }
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]

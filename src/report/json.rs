@@ -114,19 +114,12 @@ pub fn read<R: DeserializeOwned>(text: &[u8]) -> Result<(Tool, Vec<R>), ReadErro
 /// No NaN and no infinity in anything the JSON carries. `Debug` reaches every field, also those a
 /// later version adds, and prints such numbers as bare words.
 fn is_finite(report: &impl Debug) -> bool {
-    let numbers = format!("{report:?}");
-    let mut text = String::with_capacity(numbers.len());
-    let (mut quoted, mut escaped) = (false, false);
-    for c in numbers.chars() {
-        match c {
-            _ if escaped => escaped = false,
-            '\\' if quoted => escaped = true,
-            '"' => quoted = !quoted,
-            _ if !quoted => text.push(c),
-            _ => {}
-        }
-    }
-    !text
-        .split(|c: char| !c.is_alphanumeric() && c != '_')
-        .any(|word| word == "NaN" || word == "inf")
+    let text = format!("{report:?}")
+        .replace(r"\\", "")
+        .replace(r#"\""#, "");
+    // Every second part stands between quotation marks.
+    let bare = text.split('"').step_by(2);
+    let separates = |c: char| !c.is_alphanumeric() && c != '_';
+    let mut words = bare.flat_map(|part| part.split(separates));
+    !words.any(|word| word == "NaN" || word == "inf")
 }

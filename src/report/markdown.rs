@@ -1,30 +1,19 @@
 //! The report as GitHub shows it: what the pages of all verbs have.
 
-use super::notes::Note;
 use super::table::Table;
 use super::verdict::verdict;
-use super::{Shown, words};
+use super::words::{self, escape};
+use super::{Note, View};
 use crate::measure::{Check, CheckStatus};
-use words::{NOTHING, escape};
 
-/// One report, with its figures linked as files beside it.
-pub fn render<R: Shown>(report: &R) -> String {
-    report.view().markdown(report)
-}
-
-/// Name, description and verdict.
-pub fn heading<R: Shown>(report: &R) -> String {
-    let scene = &report.header().scene;
+/// How a page begins: name, description, verdict, and the table of what the scene is and `more` of it.
+pub fn opening(view: &View, more: Vec<(&str, String)>) -> String {
+    let scene = &view.header.scene;
     let mut text = format!("# {}\n\n", escape(&scene.name));
     if let Some(description) = &scene.description {
         text += &format!("{}\n\n", escape(description));
     }
-    text + &format!("**Verdict:** {}\n\n", escape(&verdict(report)))
-}
-
-/// The table of what the scene is, and `more` of it.
-pub fn scene<R: Shown>(report: &R, more: Vec<(&str, String)>) -> String {
-    let scene = &report.header().scene;
+    text += &format!("**Verdict:** {}\n\n", escape(&verdict(view)));
     let mut rows = vec![
         ("file", scene.file.clone()),
         ("particles", scene.particles.to_string()),
@@ -35,21 +24,16 @@ pub fn scene<R: Shown>(report: &R, more: Vec<(&str, String)>) -> String {
     let rows = rows
         .iter()
         .map(|(label, text)| format!("| {label} | {} |\n", escape(text)));
-    format!("| scene |  |\n|---|---|\n{}\n", rows.collect::<String>())
+    text + &format!("| scene |  |\n|---|---|\n{}\n", rows.collect::<String>())
 }
 
-pub fn images<R: Shown>(report: &R) -> String {
-    super::svg::wanted(report)
-        .map(|figure| format!("![{}]({})\n\n", figure.description, figure.file))
-        .collect()
-}
-
-pub fn remarks(notes: &[Note]) -> String {
-    let line = |note: &Note| {
-        let [subject, sentence] = [&note.subject, &note.sentence].map(|text| escape(text));
-        format!("- **{subject}**: {sentence}\n")
+/// What is to be said of single engines, and whether the harness proved itself.
+pub fn findings(view: &View) -> String {
+    let line = |Note { subject, sentence }: &Note| {
+        format!("- **{}**: {}\n", escape(subject), escape(sentence))
     };
-    section("Remarks", notes.iter().map(line).collect())
+    let remarks = section("Remarks", view.notes.iter().map(line).collect());
+    remarks + &section("Checks", checks(&view.header.checks))
 }
 
 /// The text below its title; nothing where it is empty.
@@ -60,26 +44,20 @@ pub fn section(title: &str, text: String) -> String {
     format!("## {title}\n\n{text}\n")
 }
 
-pub fn checks(checks: &[Check]) -> String {
+fn checks(checks: &[Check]) -> String {
     if checks.is_empty() {
         return String::new();
     }
-    let number = |n: Option<f64>| n.map_or(NOTHING.into(), words::quantity);
     let mut table = Table::new(checks);
     table.markdown("check", |check| escape(&check.id));
     table.markdown("subject", |check| escape(&check.subject));
-    table.markdown("status", |check| {
-        let status = match check.status {
-            CheckStatus::Pass => "pass",
-            CheckStatus::Fail => "**fail**",
-            CheckStatus::Skip => "skip",
-            CheckStatus::Inconclusive => "inconclusive",
-        };
-        status.into()
+    table.markdown("status", |check| match check.status {
+        CheckStatus::Fail => "**fail**".to_owned(),
+        status => words::id(status),
     });
-    table.markdown("measured", |check| number(check.measured));
-    table.markdown("bound", |check| number(check.bound));
+    table.markdown("measured", |check| check.measured.map(words::quantity));
+    table.markdown("bound", |check| check.bound.map(words::quantity));
     table.markdown("bound from", |check| escape(&check.derivation));
     table.markdown("message", |check| escape(&check.message));
-    format!("## Checks\n\n{}", table.in_markdown())
+    table.in_markdown()
 }

@@ -1,66 +1,50 @@
-//! Tables: each column is declared once, with its headers in the terminal and in Markdown.
+//! Tables: each column is declared once, with its headers in the terminal and in Markdown. The terminal
+//! leaves the least telling columns out where the width does not hold them; the first, the engine's
+//! name, is cut last.
 
-use super::terminal::WIDTH;
-use super::terminal::columns::{Column, fitted, laid_out};
-use super::terminal::fit::wrap;
-use super::terminal::paint::{Tone, mark};
-use super::words;
-use super::words::escape;
-use comfy_table::CellAlignment;
+use super::OWN;
+use super::terminal::{Tone, WIDTH, clip, mark, width, wrap};
+use super::words::{NOTHING, escape, one_line};
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, TableStyle};
 
-/// What sets an engine apart from the others of its table.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
-    Plain,
-    /// The integrator the scene names.
-    Own,
-    /// Explained, not ranked.
-    Unranked,
-}
-
-impl Mark {
-    /// Of an engine that is ranked.
-    pub fn of(engine: &str, own: &str) -> Self {
-        if engine == own {
-            Self::Own
-        } else {
-            Self::Plain
-        }
-    }
-}
+const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─'));
+/// Spaces between columns.
+const GAP: usize = 2;
+/// An engine's name is not cut below this while another column can go.
+const NAME: usize = 28;
 
 /// One line a row, and columns over them.
 pub struct Table<'a, R> {
     rows: &'a [R],
-    /// In the terminal; an empty header keeps the column out of it.
-    terminal: Vec<Column>,
-    /// Header and cells, escaped where they are not numbers; likewise.
-    markdown: Vec<(String, Vec<String>)>,
+    columns: Vec<Column>,
+}
+
+/// One column, built whole.
+struct Column {
+    /// In the terminal, where `\n` folds it, and in Markdown; where it is empty the column is not shown.
+    headers: [String; 2],
+    alignment: CellAlignment,
+    /// Columns with the highest number leave the terminal first; 0 stays.
+    spare: u8,
+    /// Escaped for Markdown where they are not numbers.
+    cells: Vec<(String, Option<Tone>)>,
 }
 
 impl<'a, R> Table<'a, R> {
     pub fn new(rows: &'a [R]) -> Self {
-        Self {
-            rows,
-            terminal: Vec::new(),
-            markdown: Vec::new(),
-        }
+        let columns = Vec::new();
+        Self { rows, columns }
     }
 
-    /// The column of names.
-    pub fn engines(&mut self, name: impl Fn(&R) -> (String, Mark)) {
-        let shown = |row: &R| {
+    /// The column of names, each with its mark: [`OWN`], [`UNRANKED`](super::UNRANKED) or a space.
+    pub fn engines(&mut self, name: impl Fn(&R) -> (String, char)) {
+        self.left("  engine", "", |row| {
             let (name, mark) = name(row);
-            let name = words::one_line(&name);
-            match mark {
-                Mark::Plain => (format!("  {name}"), None),
-                Mark::Own => (format!("▸ {name}"), Some(Tone::Strong)),
-                Mark::Unranked => (format!("† {name}"), None),
-            }
-        };
-        self.left("  engine", "", shown);
+            let tone = (mark == OWN).then_some(Tone::Strong);
+            (format!("{mark} {}", one_line(&name)), tone)
+        });
         self.markdown("engine", |row| match name(row) {
-            (name, Mark::Own) => format!("**{}**", escape(&name)),
+            (name, OWN) => format!("**{}**", escape(&name)),
             (name, _) => escape(&name),
         });
     }
@@ -72,59 +56,50 @@ impl<'a, R> Table<'a, R> {
         markdown: &str,
         cell: impl Fn(&R) -> (String, Option<Tone>),
     ) {
-        let cells: Vec<_> = self.rows.iter().map(cell).collect();
-        self.add(terminal, markdown, CellAlignment::Left, 0, cells);
+        self.add([terminal, markdown], CellAlignment::Left, 0, cell);
     }
 
     /// A column of numbers. The terminal leaves out those with the highest `spare` first, and never one
     /// with 0.
-    pub fn right(
+    pub fn right<C: Into<Option<String>>>(
         &mut self,
         terminal: &str,
         markdown: &str,
         spare: u8,
-        cell: impl Fn(&R) -> String,
+        cell: impl Fn(&R) -> C,
     ) {
-        let cells = self.rows.iter().map(|row| (cell(row), None)).collect();
-        self.add(terminal, markdown, CellAlignment::Right, spare, cells);
+        let cell = |row: &R| (cell(row).into().unwrap_or(NOTHING.into()), None);
+        self.add([terminal, markdown], CellAlignment::Right, spare, cell);
     }
 
     /// The same for the terminal alone, with tones.
     pub fn toned(&mut self, header: &str, spare: u8, cell: impl Fn(&R) -> (String, Option<Tone>)) {
-        let cells = self.rows.iter().map(cell).collect();
-        self.add(header, "", CellAlignment::Right, spare, cells);
+        self.add([header, ""], CellAlignment::Right, spare, cell);
     }
 
     /// A column of Markdown alone.
-    pub fn markdown(&mut self, header: &str, cell: impl Fn(&R) -> String) {
+    pub fn markdown<C: Into<Option<String>>>(&mut self, header: &str, cell: impl Fn(&R) -> C) {
         self.right("", header, 0, cell);
     }
 
     fn add(
         &mut self,
-        terminal: &str,
-        markdown: &str,
+        headers: [&str; 2],
         alignment: CellAlignment,
         spare: u8,
-        cells: Vec<(String, Option<Tone>)>,
+        cell: impl Fn(&R) -> (String, Option<Tone>),
     ) {
-        if !markdown.is_empty() {
-            let texts = cells.iter().map(|(text, _)| text.clone());
-            self.markdown.push((markdown.to_owned(), texts.collect()));
-        }
-        if !terminal.is_empty() {
-            self.terminal.push(Column {
-                header: terminal.to_owned(),
-                alignment,
-                spare,
-                cells,
-            });
-        }
+        self.columns.push(Column {
+            headers: headers.map(str::to_owned),
+            alignment,
+            spare,
+            cells: self.rows.iter().map(cell).collect(),
+        });
     }
 
     /// Whether the terminal has room for all columns.
     pub fn fits(&self) -> bool {
-        fitted(self.told()).1.is_empty()
+        self.fitted().1.is_empty()
     }
 
     /// The lines and their legend, which is told the headers of the columns left out for width and to
@@ -134,7 +109,7 @@ impl<'a, R> Table<'a, R> {
         between: &str,
         legend: impl FnOnce(&[String]) -> String,
     ) -> Vec<String> {
-        let (columns, left_out) = fitted(self.told());
+        let (columns, left_out) = self.fitted();
         let mut legend = legend(&left_out);
         if !left_out.is_empty() {
             legend += &format!(" | left out for width: {}", left_out.join(between));
@@ -145,26 +120,75 @@ impl<'a, R> Table<'a, R> {
         lines
     }
 
-    /// The terminal's columns without those that say nothing.
-    fn told(&self) -> Vec<Column> {
-        let told = self.terminal.iter().filter(|column| !column.is_empty());
-        told.cloned().collect()
+    /// The terminal's columns that say something and fit, and the headers of those that do not fit.
+    fn fitted(&self) -> (Vec<&Column>, Vec<String>) {
+        let mut columns: Vec<&Column> = self.columns.iter().filter(|c| c.is_told()).collect();
+        let mut left_out = Vec::new();
+        while room(&columns) < columns[0].width().min(NAME)
+            && let Some(i) = (1..columns.len()).max_by_key(|&i| columns[i].spare)
+            && columns[i].spare > 0
+        {
+            let [header, _] = &columns.remove(i).headers;
+            left_out.push(header.replace("-\n", "-").replace('\n', " "));
+        }
+        (columns, left_out)
     }
 
     pub fn in_markdown(&self) -> String {
+        let columns = self.columns.iter().filter(|c| !c.headers[1].is_empty());
         let line = |cells: Vec<&str>| format!("| {} |\n", cells.join(" | "));
-        let header = line(
-            self.markdown
-                .iter()
-                .map(|(header, _)| header.as_str())
-                .collect(),
-        );
-        let rule = "---|".repeat(self.markdown.len());
-        let row = |at: usize| {
-            let cells = self.markdown.iter().filter_map(|(_, cells)| cells.get(at));
-            line(cells.map(String::as_str).collect())
-        };
+        let header = line(columns.clone().map(|c| c.headers[1].as_str()).collect());
+        let rule = "---|".repeat(columns.clone().count());
+        let row = |at: usize| line(columns.clone().map(|c| c.cells[at].0.as_str()).collect());
         let rows: String = (0..self.rows.len()).map(row).collect();
-        format!("{header}|{rule}\n{rows}\n")
+        format!("{header}|{rule}\n{rows}")
     }
+}
+
+impl Column {
+    /// Whether the terminal shows it: some cell says something.
+    fn is_told(&self) -> bool {
+        let silent = !self.cells.is_empty() && self.cells.iter().all(|(text, _)| text == NOTHING);
+        !self.headers[0].is_empty() && !silent
+    }
+
+    fn width(&self) -> usize {
+        let cells = self.cells.iter().map(|(text, _)| text.as_str());
+        let texts = cells.chain(self.headers[0].lines());
+        texts.map(width).max().unwrap_or(0)
+    }
+}
+
+/// What the other columns leave to the first.
+fn room(columns: &[&Column]) -> usize {
+    let others: usize = columns[1..].iter().map(|c| c.width() + GAP).sum();
+    WIDTH.saturating_sub(others)
+}
+
+/// The table as lines.
+fn laid_out(columns: &[&Column]) -> Vec<String> {
+    let mut table = comfy_table::Table::new();
+    table.load_style(STYLE);
+    table.set_content_arrangement(ContentArrangement::Disabled);
+    let lines = |column: &Column| column.headers[0].lines().count();
+    let height = columns.iter().map(|c| lines(c)).max().unwrap_or(1);
+    table.set_header(columns.iter().map(|column| {
+        // Headers stand on the rule: shorter ones start lower.
+        let above = "\n".repeat(height - lines(column));
+        Cell::new(above + &column.headers[0]).set_alignment(column.alignment)
+    }));
+    let room = room(columns);
+    for row in 0..columns[0].cells.len() {
+        table.add_row(columns.iter().enumerate().map(|(i, column)| {
+            let (text, tone) = &column.cells[row];
+            let text = clip(text, if i == 0 { room } else { usize::MAX });
+            let text = tone.map_or_else(|| text.clone(), |tone| mark(tone, &text));
+            Cell::new(text).set_alignment(column.alignment)
+        }));
+    }
+    let last = columns.len() - 1;
+    for (i, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((0, if i == last { 0 } else { GAP as u16 }));
+    }
+    table.trim_fmt().lines().map(str::to_string).collect()
 }

@@ -2,8 +2,8 @@
 
 use crate::measure::{Check, CheckStatus, Energy, EnergyClass};
 use crate::report::TruthFacts;
-use crate::solvers::Status;
 use crate::truth::TruthKind;
+use serde::Serialize;
 
 /// What stands where there is nothing to say.
 pub const NOTHING: &str = "-";
@@ -103,36 +103,41 @@ pub fn count(value: u64) -> String {
 }
 
 /// `1 spring`, `3 springs`.
-pub fn plural(value: usize, noun: &str) -> String {
+pub fn plural(value: u64, noun: &str) -> String {
     let ending = if value == 1 { "" } else { "s" };
-    format!("{} {noun}{ending}", count(value as u64))
+    format!("{} {noun}{ending}", count(value))
 }
 
-/// The class as the JSON spells it.
-pub fn class(class: EnergyClass) -> &'static str {
-    match class {
-        EnergyClass::Bounded => "bounded",
-        EnergyClass::Drifting => "drifting",
-        EnergyClass::Dissipating => "dissipating",
-        EnergyClass::Growing => "growing",
+/// A class, status or kind as the JSON spells it.
+pub fn id(value: impl Serialize) -> String {
+    let value = serde_json::to_value(value).unwrap_or_default();
+    value.as_str().unwrap_or_default().to_owned()
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub fn listed(texts: &[String]) -> String {
+    match texts {
+        [] => String::new(),
+        [only] => only.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 
-/// The status as the JSON spells it.
-pub fn status(status: Status) -> &'static str {
-    match status {
-        Status::Completed => "completed",
-        Status::Diverged => "diverged",
-        Status::Failed => "failed",
-        Status::Unsupported => "unsupported",
+/// Equal things once, in the order they first come, each with all that belong to it.
+pub fn grouped<M, T: PartialEq>(pairs: impl Iterator<Item = (M, T)>) -> Vec<(T, Vec<M>)> {
+    let mut groups: Vec<(T, Vec<M>)> = Vec::new();
+    for (member, of) in pairs {
+        match groups.iter_mut().find(|(known, _)| *known == of) {
+            Some((_, members)) => members.push(member),
+            None => groups.push((of, vec![member])),
+        }
     }
+    groups
 }
 
-/// The largest relative energy error, signed by the way the energy goes; empty without one.
-pub fn energy_error(energy: &Energy) -> String {
-    let Some(error) = energy.relative_error_max else {
-        return String::new();
-    };
+/// The largest relative energy error, signed by the way the energy goes.
+pub fn energy_error(energy: &Energy) -> Option<String> {
+    let error = energy.relative_error_max?;
     let rises = energy.drift_per_s.is_some_and(|d| d > 0.0);
     let sign = match energy.class {
         _ if error == 0.0 => "",
@@ -143,7 +148,7 @@ pub fn energy_error(energy: &Energy) -> String {
         Some(EnergyClass::Bounded) => "±",
         None => "",
     };
-    format!("{sign}{}", sci(error))
+    Some(format!("{sign}{}", sci(error)))
 }
 
 /// An error against the truth; `floor` below ten times the truth's own bar.
@@ -156,11 +161,12 @@ pub fn truth_error(error: f64, truth: &TruthFacts) -> String {
 
 /// What the truth of this scene is, in one line.
 pub fn truth(truth: &TruthFacts) -> String {
-    let mut text = match truth.kind {
-        TruthKind::ClosedForm => String::from("closed form"),
-        TruthKind::Converged => String::from("converged reference"),
-        TruthKind::None => String::from("none"),
+    let kind = match truth.kind {
+        TruthKind::ClosedForm => "closed form",
+        TruthKind::Converged => "converged reference",
+        TruthKind::None => "none",
     };
+    let mut text = kind.to_owned();
     if let Some(method) = &truth.method {
         text += &format!(", {method}");
     }
@@ -179,17 +185,12 @@ pub fn truth(truth: &TruthFacts) -> String {
 /// One printable line: control characters and runs of white space become single spaces; invisible
 /// characters that could reorder or restyle the line go.
 pub fn one_line(text: &str) -> String {
-    let spaced: String = text
-        .chars()
-        .filter(|c| !is_invisible(*c))
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
-    spaced.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// Direction overrides, and the variation selectors that `terminal::paint` uses as marks.
-fn is_invisible(c: char) -> bool {
-    matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{e0100}'..='\u{e01ef}')
+    // Direction overrides, and the variation selectors that `terminal::paint` uses as marks.
+    let is_invisible = |c: &char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{e0100}'..='\u{e01ef}');
+    let visible: String = text.chars().filter(|c| !is_invisible(c)).collect();
+    let separates = |c: char| c.is_control() || c.is_whitespace();
+    let words = visible.split(separates).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// The steps outcomes were run at: `0.0005 s`, or `several, the file's 0.0005 s`; `own` is the file's.

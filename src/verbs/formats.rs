@@ -1,8 +1,9 @@
-//! The formats a report is written in: one row each.
+//! How a report is written: the formats, one row each, and the figures.
 
-use super::Report;
+use super::{Body, Report, cost, run, stability};
 use crate::report::json::{self, Tool};
-use crate::report::{Shown, markdown, terminal};
+use crate::report::svg::Chart;
+use crate::report::{View, terminal};
 
 /// One way to write reports down.
 pub struct Format {
@@ -22,7 +23,7 @@ pub const FORMATS: &[Format] = &[
         id: "human",
         extension: "txt",
         file: false,
-        render: |_, reports| joined(reports, terminal::render),
+        render: |_, reports| joined(reports, |report| terminal::render(report.view())),
     },
     Format {
         id: "json",
@@ -34,7 +35,7 @@ pub const FORMATS: &[Format] = &[
         id: "markdown",
         extension: "md",
         file: true,
-        render: |_, reports| joined(reports, markdown::render),
+        render: |_, reports| joined(reports, Report::markdown),
     },
 ];
 
@@ -48,7 +49,60 @@ fn joined(reports: &[Report], render: fn(&Report) -> String) -> String {
     texts.join("\n")
 }
 
-/// What a report's files are called, without the dot and what follows.
-pub fn stem(report: &Report) -> &'static str {
-    report.view().stem()
+/// A picture: its file; what it shows, for those who do not see it; and what there is to draw, None where
+/// the report does not have what it takes.
+pub type Figure = (&'static str, &'static str, fn(&Report) -> Option<Chart>);
+
+impl Report {
+    /// What its files are called, without the dot and what follows: verbs do not write over each
+    /// other's.
+    pub fn stem(&self) -> &'static str {
+        match &self.body {
+            Body::Run { .. } | Body::Compare { .. } => "report",
+            Body::Stability { .. } => "stability",
+            Body::Cost { .. } => "cost",
+        }
+    }
+
+    /// What the verb has to say of it.
+    pub fn view(&self) -> View<'_> {
+        match &self.body {
+            Body::Run { outcomes } | Body::Compare { outcomes, .. } => run::view(self, outcomes),
+            Body::Stability { stability, .. } => stability::view(self, stability),
+            Body::Cost { cost, .. } => cost::view(self, cost),
+        }
+    }
+
+    /// The whole page, with its figures linked as files beside it.
+    pub fn markdown(&self) -> String {
+        let view = self.view();
+        match &self.body {
+            Body::Run { .. } | Body::Compare { .. } => run::page(self, &view),
+            Body::Stability { stability, .. } => stability::page(self, stability, &view),
+            Body::Cost { cost, .. } => cost::page(self, cost, &view),
+        }
+    }
+
+    /// The figures it has data for, in the order they are shown.
+    fn charts(&self) -> impl Iterator<Item = (&'static str, &'static str, Chart)> {
+        let figures: &[Figure] = match &self.body {
+            Body::Run { .. } | Body::Compare { .. } => run::FIGURES,
+            Body::Stability { .. } => stability::FIGURES,
+            Body::Cost { .. } => cost::FIGURES,
+        };
+        let chart = |(file, about, chart): &Figure| Some((*file, *about, chart(self)?));
+        figures.iter().filter_map(chart)
+    }
+
+    /// Those figures as files: name and SVG.
+    pub fn svg(&self) -> Vec<(&'static str, String)> {
+        let drawn = self.charts().map(|(file, _, chart)| (file, chart.draw()));
+        drawn.collect()
+    }
+
+    /// Links to those files, for the page.
+    pub fn images(&self) -> String {
+        let link = |(file, about, _)| format!("![{about}]({file})\n\n");
+        self.charts().map(link).collect()
+    }
 }

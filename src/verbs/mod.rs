@@ -22,7 +22,7 @@ mod tests;
 pub use run::names;
 
 use crate::measure::identify::Fault;
-use crate::report::{Header, Shown, View};
+use crate::report::Header;
 use cost::{Cost, CostPanels};
 use run::{Figures, Outcome};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -163,20 +163,6 @@ impl Report {
         match self.series()? {
             Series::Panels(panels) => Some(panels),
             Series::Curves(_) => None,
-        }
-    }
-}
-
-impl Shown for Report {
-    fn header(&self) -> &Header {
-        &self.header
-    }
-
-    fn view(&self) -> &dyn View<Self> {
-        match &self.body {
-            Body::Run { outcomes } | Body::Compare { outcomes, .. } => outcomes,
-            Body::Stability { stability, .. } => stability,
-            Body::Cost { cost, .. } => cost,
         }
     }
 }

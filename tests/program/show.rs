@@ -3,7 +3,6 @@
 use crate::testkit::program::{altered, files, output, refuse_all, word};
 use crate::testkit::scenes;
 use springcheck::report::json::{self, Tool};
-use springcheck::report::svg;
 use springcheck::truth::Demand;
 use springcheck::verbs::cost::{CostChoice, CostPlan};
 use springcheck::verbs::formats::FORMATS;
@@ -269,5 +268,5 @@ fn reads_back(report: &Report) {
         let [one, other] = [reports, &read].map(|reports| (format.render)(&tool, reports));
         assert!(one == other, "{}: {}", report.header.scene.file, format.id);
     }
-    assert!(svg::figures(report) == svg::figures(&read[0]));
+    assert!(report.svg() == read[0].svg());
 }

@@ -98,17 +98,14 @@ impl Axis {
         let first = linear.log10().round() as i32;
         let [lo, hi] = self.range.map(|end| self.forward(end));
         let every = ((hi - lo) / wanted.max(1) as f64).ceil().max(1.0) as usize;
-        let mut ticks = vec![(0.0, "0".to_string())];
         // The first as far from zero as from the second.
-        for exponent in (first + every as i32 - 1..=300).step_by(every) {
-            let value = 10_f64.powi(exponent);
-            for (sign, value) in [("", value), ("−", -value)] {
-                if self.range[0] <= value && value <= self.range[1] {
-                    ticks.push((value, format!("{sign}{}", power_of_ten(exponent))));
-                }
-            }
-        }
-        ticks
+        let exponents = (first + every as i32 - 1..=300).step_by(every);
+        let both = exponents.flat_map(|exponent| {
+            let (value, label) = (10_f64.powi(exponent), power_of_ten(exponent));
+            [(value, label.clone()), (-value, format!("−{label}"))]
+        });
+        let inside = both.filter(|(value, _)| (self.range[0]..=self.range[1]).contains(value));
+        [(0.0, "0".to_string())].into_iter().chain(inside).collect()
     }
 }
 
@@ -122,6 +119,11 @@ pub fn range(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
     })
 }
 
+/// What points span along x (0) or y (1).
+pub fn span(points: &[[f64; 2]], axis: usize) -> Option<[f64; 2]> {
+    range(points.iter().map(|point| point[axis]))
+}
+
 /// Room on both sides, as a part of the range.
 pub fn padded([lo, hi]: [f64; 2], part: f64) -> [f64; 2] {
     let room = part * (hi / 2.0 - lo / 2.0) * 2.0;
@@ -129,16 +131,19 @@ pub fn padded([lo, hi]: [f64; 2], part: f64) -> [f64; 2] {
 }
 
 /// What the calm lines span, and of the wild ones (growing, diverged) as much as does not push the
-/// calm into a corner: each side gives way by at most half the calm span.
-pub fn tamed(calm: Option<[f64; 2]>, wild: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let span = |r: &[f64; 2]| r[1] - r[0];
-    let smallest = wild.iter().min_by(|a, b| span(a).total_cmp(&span(b)));
-    let core = calm.or(smallest.copied())?;
-    let room = span(&core) / 2.0;
-    Some(wild.iter().fold(core, |window, w| {
+/// calm into a corner: each side gives way by at most half the calm span. Each line says whether it is
+/// wild, and its span; where all are, the smallest counts as calm.
+pub fn tamed(spans: impl IntoIterator<Item = (bool, [f64; 2])>) -> Option<[f64; 2]> {
+    let (wild, calm): (Vec<_>, Vec<_>) = spans.into_iter().partition(|(is_wild, _)| *is_wild);
+    let size = |(_, [lo, hi]): &(bool, [f64; 2])| hi - lo;
+    let smallest = wild.iter().min_by(|a, b| size(a).total_cmp(&size(b)));
+    let calm = range(calm.into_iter().flat_map(|(_, span)| span));
+    let core = calm.or(smallest.map(|(_, span)| *span))?;
+    let room = (core[1] - core[0]) / 2.0;
+    Some(wild.iter().fold(core, |[lo, hi], (_, span)| {
         [
-            window[0].min(w[0].max(core[0] - room)),
-            window[1].max(w[1].min(core[1] + room)),
+            lo.min(span[0].max(core[0] - room)),
+            hi.max(span[1].min(core[1] + room)),
         ]
     }))
 }

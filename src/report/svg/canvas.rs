@@ -57,6 +57,11 @@ impl Symbol {
             outline,
         }
     }
+
+    /// Where something ended early.
+    pub const fn cross(colour: &'static str) -> Symbol {
+        Symbol::new(Shape::Cross, colour, colour)
+    }
 }
 
 pub const WHITE: &str = "#ffffff";

@@ -87,7 +87,13 @@ impl Chart {
             }
             let (mut left, mut end) = (LEFT, top);
             for (column, stack) in in_row.iter().enumerate() {
-                let mut w = Window::at([left, top]);
+                let (right, bottom) = (left, top);
+                let mut w = Window {
+                    left,
+                    top,
+                    right,
+                    bottom,
+                };
                 for (at, panel) in stack.iter().enumerate() {
                     let start = if at == 0 { top } else { w.bottom + 8.0 };
                     (w.right, w.bottom) = (left + panel.width, start + panel.height);

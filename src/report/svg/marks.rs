@@ -88,16 +88,6 @@ pub struct Window {
 }
 
 impl Window {
-    /// Of no size.
-    pub fn at([x, y]: [f64; 2]) -> Window {
-        Window {
-            left: x,
-            top: y,
-            right: x,
-            bottom: y,
-        }
-    }
-
     pub fn holds(&self, point: [f64; 2]) -> bool {
         self.clamped(point) == point
     }

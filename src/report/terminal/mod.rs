@@ -1,37 +1,36 @@
 //! The terminal's report: what ran, what holds of the whole scene, the verb's own part, what is notable
 //! about single engines, and whether the harness proved itself. No line exceeds [`WIDTH`] columns.
 
-pub mod columns;
-pub mod fit;
-pub mod paint;
+mod fit;
+mod paint;
 
-use super::notes::{Note, grouped};
-use super::{Shown, verdict, words};
+pub use fit::{clip, pad, width, wrap};
+pub use paint::{Tone, mark};
+
+use super::words::{self, grouped, one_line};
+use super::{Note, View, verdict};
 use crate::measure::{Check, CheckStatus};
-use fit::{clip, pad, width, wrap};
-use paint::{Tone, mark, paint};
+use paint::paint;
 
 /// Visible columns no line exceeds.
 pub const WIDTH: usize = 100;
 
 /// The report with ANSI colours, which the caller's stream strips where they are not wanted. Ends
 /// with the verdict and a newline.
-pub fn render<R: Shown>(report: &R) -> String {
-    let view = report.view();
-    let mut lines = scene(report);
-    let facts = view.facts(report).into_iter();
-    let facts = facts.map(|(label, text)| (label, words::one_line(&text)));
-    lines.extend(labelled(facts.collect()));
-    lines.extend(view.lines(report));
-    lines.extend(apart(notes(&view.notes(report))));
-    lines.extend(apart(checks(&report.header().checks)));
-    lines.extend(apart(labelled(view.last(report))));
+pub fn render(view: View) -> String {
+    let verdict = wrap(&verdict::within(&view, WIDTH), WIDTH, "");
+    let mut lines = scene(&view);
+    let facts = view.facts.into_iter();
+    lines.extend(labelled(
+        facts.map(|(label, text)| (label, one_line(&text))),
+    ));
+    lines.extend(view.lines);
+    lines.extend(apart(notes(&view.notes)));
+    lines.extend(apart(checks(&view.header.checks)));
+    lines.extend(apart(labelled(view.last.into_iter())));
     lines.push(String::new());
-    let verdict = wrap(&verdict::within(report, WIDTH), WIDTH, "");
     lines.extend(verdict.iter().map(|line| mark(Tone::Strong, line)));
-    let mut text = paint(&lines.join("\n"));
-    text.push('\n');
-    text
+    paint(&(lines.join("\n") + "\n"))
 }
 
 /// The lines below an empty one, if there are any.
@@ -43,29 +42,29 @@ fn apart(mut lines: Vec<String>) -> Vec<String> {
 }
 
 /// Its name and size, and what its file says of it.
-fn scene<R: Shown>(report: &R) -> Vec<String> {
-    let scene = &report.header().scene;
+fn scene(view: &View) -> Vec<String> {
+    let scene = &view.header.scene;
     let facts = format!(
         "  {}, {}, {} s at h = {}, {}",
-        words::plural(scene.particles, "particle"),
-        words::plural(scene.springs, "spring"),
+        words::plural(scene.particles as u64, "particle"),
+        words::plural(scene.springs as u64, "spring"),
         words::short(scene.duration),
-        words::timestep(scene.timestep, &report.view().timesteps()),
-        clip(&words::one_line(&scene.own_integrator), 28),
+        words::timestep(scene.timestep, &view.timesteps),
+        clip(&one_line(&scene.own_integrator), 28),
     );
     let room = WIDTH.saturating_sub(width(&facts)).max(12);
-    let name = clip(&words::one_line(&scene.name), room);
+    let name = clip(&one_line(&scene.name), room);
     let mut lines = wrap(&(mark(Tone::Strong, &name) + &facts), WIDTH, "");
     if let Some(description) = &scene.description {
-        lines.extend(wrap(&words::one_line(description), WIDTH, ""));
+        lines.extend(wrap(&one_line(description), WIDTH, ""));
     }
     lines
 }
 
 /// Texts beside their labels.
-fn labelled(facts: Vec<(&str, String)>) -> Vec<String> {
+fn labelled<'a>(facts: impl Iterator<Item = (&'a str, String)>) -> Vec<String> {
     let line = |(label, text)| wrap(&format!("{label:<9}{text}"), WIDTH, "         ");
-    facts.into_iter().flat_map(line).collect()
+    facts.flat_map(line).collect()
 }
 
 fn notes(notes: &[Note]) -> Vec<String> {
@@ -81,38 +80,49 @@ fn notes(notes: &[Note]) -> Vec<String> {
 }
 
 fn checks(checks: &[Check]) -> Vec<String> {
-    let ids = checks.iter().map(|c| width(&words::one_line(&c.id))).max();
+    let ids = checks.iter().map(|c| width(&one_line(&c.id))).max();
     let ids = ids.unwrap_or(0).min(24);
     let groups = grouped(checks.iter().map(|check| {
         let why = (check.status != CheckStatus::Pass).then(|| reason(check));
         (check, (&check.id, check.status, why))
     }));
-    let lines = groups.iter().flat_map(|((id, _, why), group)| {
-        let head = head(group[0], ids);
-        let mut lines = match group.as_slice() {
+    let mut lines = Vec::new();
+    for ((id, status, why), group) in groups {
+        let texts = match group.as_slice() {
             // An expectation that is met.
-            met if *id == "expect" && why.is_none() => together(&head, counted(met), ids),
-            [check] => alone(&head, check, ids),
-            several => together(&head, several.iter().map(measured), ids),
+            met if id == "expect" && why.is_none() => counted(met),
+            [check] => vec![alone(check, WIDTH - 10 - ids)],
+            several => several.iter().map(|check| measured(check)).collect(),
         };
+        let (tone, word) = match status {
+            CheckStatus::Pass => (Tone::Good, "pass"),
+            CheckStatus::Fail => (Tone::Bad, "FAIL"),
+            CheckStatus::Skip => (Tone::Dim, "skip"),
+            CheckStatus::Inconclusive => (Tone::Warn, "open"),
+        };
+        let id = pad(&clip(&one_line(id), ids), ids);
+        let line = format!("{}  {id}  {}", mark(tone, word), texts.join(", "));
+        lines.extend(wrap(&line, WIDTH, &" ".repeat(8 + ids)));
         let message = match group.as_slice() {
             [check] => why.map(|_| check.message.as_str()),
-            _ => *why,
+            _ => why,
         };
         if let Some(message) = message.filter(|message| !message.is_empty()) {
-            let message = format!("      {}", words::one_line(message));
+            let message = format!("      {}", one_line(message));
             lines.extend(wrap(&message, WIDTH, "      "));
         }
-        lines
-    });
-    lines.collect()
+    }
+    lines
 }
 
 /// How many of each engine's keys are as expected: `symplectic_euler 3`, `explicit_euler 1`.
-fn counted(checks: &[&Check]) -> impl Iterator<Item = String> {
-    let engine = |check: &&Check| check.subject.split(' ').next().map(words::one_line);
+fn counted(checks: &[&Check]) -> Vec<String> {
+    let engine = |check: &&Check| check.subject.split(' ').next().map(one_line);
     let counts = grouped(checks.iter().map(|check| ((), engine(check)))).into_iter();
-    counts.map(|(engine, keys)| format!("{} {}", engine.unwrap_or_default(), keys.len()))
+    let count = |(engine, keys): (Option<String>, Vec<()>)| {
+        format!("{} {}", engine.unwrap_or_default(), keys.len())
+    };
+    counts.map(count).collect()
 }
 
 /// What a check says, without whom it is about.
@@ -122,36 +132,16 @@ fn reason(check: &Check) -> &str {
         .unwrap_or(&check.message)
 }
 
-/// `pass  order`
-fn head(check: &Check, ids: usize) -> String {
-    let (tone, word) = match check.status {
-        CheckStatus::Pass => (Tone::Good, "pass"),
-        CheckStatus::Fail => (Tone::Bad, "FAIL"),
-        CheckStatus::Skip => (Tone::Dim, "skip"),
-        CheckStatus::Inconclusive => (Tone::Warn, "open"),
-    };
-    let id = pad(&clip(&words::one_line(&check.id), ids), ids);
-    format!("{}  {id}", mark(tone, word))
-}
-
-/// What was measured beside its bound.
-fn alone(head: &str, check: &Check, ids: usize) -> Vec<String> {
+/// What was measured beside its bound, in at most `columns` and two spaces.
+fn alone(check: &Check, columns: usize) -> String {
     let measured = words::measured(check);
-    let room = WIDTH - 4 - ids - width(&measured) - 6;
-    let subject = clip(&words::one_line(&check.subject), room);
-    vec![format!("{head}  {subject}  {measured}")]
+    let subject = clip(&one_line(&check.subject), columns - width(&measured));
+    format!("{subject}  {measured}")
 }
 
 /// Of one check among several with the same result: whom it is about and what was measured.
-fn measured(check: &&Check) -> String {
+fn measured(check: &Check) -> String {
     let measured = check.measured.map(words::quantity).unwrap_or_default();
-    let text = format!("{} {measured}", words::one_line(&check.subject));
+    let text = format!("{} {measured}", one_line(&check.subject));
     text.trim_end().to_owned()
-}
-
-/// Several texts after their head.
-fn together(head: &str, texts: impl Iterator<Item = String>, ids: usize) -> Vec<String> {
-    let texts: Vec<String> = texts.collect();
-    let line = format!("{head}  {}", texts.join(", "));
-    wrap(&line, WIDTH, &" ".repeat(8 + ids))
 }

@@ -1,7 +1,6 @@
 //! What verbs print and where they write: `--format` and `--output`, the report's place, the last lines, and how
 //! files get there whole.
 
-use crate::report;
 use crate::report::json::Tool;
 use crate::verbs::{Report, formats, series};
 use anyhow::Context;
@@ -120,7 +119,7 @@ impl Place {
 
     /// The file to open first.
     pub fn report(&self, report: &Report) -> PathBuf {
-        self.folder.join(format!("{}.md", formats::stem(report)))
+        self.folder.join(format!("{}.md", report.stem()))
     }
 
     /// Makes the folder where it is not there.
@@ -132,7 +131,7 @@ impl Place {
     /// Writes the report in every file format, its figures, and what these are drawn from. `tool` made it.
     pub fn write(&self, tool: &Tool, report: &Report) -> anyhow::Result<()> {
         let reports = std::slice::from_ref(report);
-        let stem = formats::stem(report);
+        let stem = report.stem();
         if let Some(bytes) = series::pack(reports) {
             self.put(&format!("{stem}.{}", series::EXTENSION), &bytes)?;
         }
@@ -141,7 +140,7 @@ impl Place {
             let text = (format.render)(tool, reports);
             self.put(&name, text.as_bytes())?;
         }
-        for (name, svg) in report::svg::figures(report) {
+        for (name, svg) in report.svg() {
             self.put(name, svg.as_bytes())?;
         }
         Ok(())
@@ -185,7 +184,7 @@ pub fn written(report: Report, place: Option<&Place>) -> anyhow::Result<Report> 
 
 /// The table and its verdict, then the report's path if there is one.
 pub fn table(report: &Report, place: Option<&Place>) -> String {
-    let table = report::terminal::render(report);
+    let table = crate::report::terminal::render(report.view());
     let written = place.map_or_else(String::new, |place| {
         let file = place.report(report).display().to_string();
         format!("report: {}\n", file.replace(char::is_control, "?"))
@@ -202,7 +201,7 @@ pub fn human(
     otherwise: &str,
 ) -> String {
     let next = next
-        .filter(|next| next.chars().count() + "next: ".len() <= report::terminal::WIDTH)
+        .filter(|next| next.chars().count() + "next: ".len() <= crate::report::terminal::WIDTH)
         .unwrap_or_else(|| otherwise.to_owned());
     format!("{}next: {next}\n", table(report, place))
 }

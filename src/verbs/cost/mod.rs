@@ -14,12 +14,13 @@ mod runs;
 mod samples;
 mod settings;
 mod text;
-mod view;
 
 pub use args::{Args, cost};
+pub(super) use figures::FIGURES;
 pub use result::{
     Cost, CostCurve, CostLine, CostPanel, CostPanels, CostPoint, CostRank, CostReached, CostTarget,
 };
+pub(super) use text::{page, view};
 
 use crate::integrators;
 use crate::physics::ParticleSystem;

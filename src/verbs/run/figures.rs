@@ -2,18 +2,16 @@
 //! particles. One panel a timestep, so that lines of one colour never mix.
 
 use crate::measure::EnergyClass;
-use crate::report::svg::axis::{Axis, HUGE, Scale, padded, range, tamed};
-use crate::report::svg::canvas::{FAINT, INK, Shape, Stroke, Symbol, WHITE};
-use crate::report::svg::chart::{Chart, Panel};
-use crate::report::svg::key::{Key, Look};
-use crate::report::svg::marks::{Line, Mark};
 use crate::report::svg::palette::{self, look};
-use crate::report::svg::{Figure, NAME, TRUTH_NAME, heading, shortened};
-use crate::report::words;
+use crate::report::svg::{
+    Axis, Chart, FAINT, HUGE, INK, Key, Line, Look, Mark, Panel, Scale, Shape, Stroke, Symbol,
+    TRUTH_NAME, WHITE, heading, padded, range, shortened, tamed,
+};
+use crate::report::{svg, words};
 use crate::solvers::{Kind, Status};
 use crate::verbs::Report;
-use crate::verbs::run::text::naming;
-use crate::verbs::run::text::several_timesteps;
+use crate::verbs::formats::Figure;
+use crate::verbs::run::text::{engine, several_timesteps};
 use crate::verbs::run::{Curves, Outcome, TruthCurves};
 use std::collections::BTreeSet;
 
@@ -79,7 +77,7 @@ impl Runs<'_> {
         runs.sort_by_key(|(outcome, _)| layer(report, outcome));
         let runs = runs.into_iter().flat_map(|(outcome, paths)| {
             let stroke = stroke(report, outcome);
-            let cross = Symbol::new(Shape::Cross, stroke.colour, stroke.colour);
+            let cross = Symbol::cross(stroke.colour);
             paths.iter().map(move |path| {
                 let mut line = Line::new(path.clone(), stroke);
                 line.wild = is_wild(outcome);
@@ -101,11 +99,14 @@ impl Runs<'_> {
 
     /// What the calm runs span along one axis, with what is `fixed`, and a little of the wild runs.
     fn shown(&self, axis: usize, fixed: Option<[f64; 2]>) -> [f64; 2] {
-        let (wild, calm): (Vec<_>, Vec<_>) = self.spans(axis).partition(|(o, _)| is_wild(o));
-        let calm = range(calm.into_iter().flat_map(|(_, span)| span));
-        let calm = calm.and_then(|calm| range([Some(calm), fixed].into_iter().flatten().flatten()));
-        let wild: Vec<[f64; 2]> = wild.into_iter().map(|(_, span)| span).collect();
-        let shown = [tamed(calm, &wild), fixed];
+        let spans: Vec<_> = self
+            .spans(axis)
+            .map(|(o, span)| (is_wild(o), span))
+            .collect();
+        // Beside wild runs alone, what is fixed is not the measure of calm.
+        let calm = fixed.filter(|_| spans.iter().any(|(is_wild, _)| !is_wild));
+        let calm = calm.map(|span| (false, span));
+        let shown = [tamed(spans.into_iter().chain(calm)), fixed];
         range(shown.into_iter().flatten().flatten()).unwrap_or([0.0, 1.0])
     }
 }
@@ -135,7 +136,7 @@ fn curves(
         Panel::new(panel.title.clone(), height, axes, marks.collect())
     });
     Chart {
-        title: heading(report, title),
+        title: heading(&report.header, title),
         titles: ["time (s)", y_title].map(str::to_owned),
         panels: panels.collect(),
         ..Chart::default()
@@ -143,11 +144,11 @@ fn curves(
 }
 
 /// The curve the scene asks for, over the range the scene states, else what the calm runs span.
-pub fn plot(report: &Report) -> Option<Chart> {
+fn plot(report: &Report) -> Option<Chart> {
     let asked = report.figures().plot.as_ref()?;
     let truth = |truth: &TruthCurves| over_time(&truth.t, &truth.plot);
     let panels = by_timestep(report, truth, |run| over_time(&run.t, &run.plot))?;
-    let label = shortened(&words::one_line(&asked.label), 40);
+    let label = shortened(&asked.label, 40);
     let titles = [&format!("{label} over time"), label.as_str()];
     Some(curves(report, titles, panels, |panel| {
         let stated = asked.y_range.filter(|[lo, hi]| lo < hi);
@@ -156,7 +157,7 @@ pub fn plot(report: &Report) -> Option<Chart> {
 }
 
 /// Energy over time; its truth is the zero line.
-pub fn energy(report: &Report) -> Option<Chart> {
+fn energy(report: &Report) -> Option<Chart> {
     let panels = by_timestep(
         report,
         |_| Paths::new(),
@@ -215,7 +216,7 @@ fn linear_part(sizes: &[f64]) -> Option<f64> {
 
 /// Paths of a few particles, projected on the plane that shows most of them: where they start and end,
 /// and the particles that never move.
-pub fn trajectories(report: &Report) -> Option<Chart> {
+fn trajectories(report: &Report) -> Option<Chart> {
     let panels = by_timestep(report, |truth| truth.paths.clone(), |run| run.paths.clone())?;
     let figures = report.figures();
     let height = if panels.len() > 1 { 320.0 } else { 460.0 };
@@ -246,12 +247,11 @@ pub fn trajectories(report: &Report) -> Option<Chart> {
         let runs = panel.runs.iter().map(|(o, _)| Key::new(name(o), look(o)));
         let mut ends = panel.runs.iter().map(|(o, _)| o.status);
         let early = ends.any(|status| status != Status::Completed);
-        let cross = Symbol::new(Shape::Cross, FAINT, FAINT);
         let symbols = [
             (true, "start", start),
             (true, "end", end(FAINT)),
             (!figures.fixed.is_empty(), "fixed", still),
-            (early, "ended early", cross),
+            (early, "ended early", Symbol::cross(FAINT)),
         ];
         let symbols = symbols.into_iter().filter(|(shown, ..)| *shown);
         let symbols = symbols.map(|(_, text, symbol)| Key::new(text, Look::Symbol(symbol)));
@@ -263,7 +263,7 @@ pub fn trajectories(report: &Report) -> Option<Chart> {
         }
     };
     Some(Chart {
-        title: heading(report, "trajectories"),
+        title: heading(&report.header, "trajectories"),
         titles: titles.map(str::to_owned),
         panels: panels.iter().map(panel).collect(),
         ..Chart::default()
@@ -272,7 +272,7 @@ pub fn trajectories(report: &Report) -> Option<Chart> {
 
 /// The engine as labels call it, with the time it got to if it ended early.
 fn name(outcome: &Outcome) -> String {
-    let name = shortened(&words::one_line(&naming::engine(outcome)), NAME);
+    let name = svg::engine(&engine(outcome));
     match outcome.stopped_at_s {
         Some(t) => format!("{name}, to {} s", words::short(t)),
         None => name,
@@ -284,7 +284,7 @@ fn stroke(report: &Report, outcome: &Outcome) -> Stroke {
     let alike = report.outcomes().iter().filter(|o| o.kind == outcome.kind);
     let engines = alike.map(|o| &o.engine);
     let before: BTreeSet<&String> = engines.take_while(|e| **e != outcome.engine).collect();
-    let own = outcome.engine == report.header.scene.own_integrator;
+    let own = report.header.is_own(&outcome.engine);
     look(outcome.kind, before.len(), own)
 }
 
@@ -300,26 +300,14 @@ fn layer(report: &Report, outcome: &Outcome) -> u8 {
     match outcome.kind {
         Kind::Rapier => 3,
         _ if is_wild(outcome) => 0,
-        _ if outcome.engine == report.header.scene.own_integrator => 2,
+        _ if report.header.is_own(&outcome.engine) => 2,
         _ => 1,
     }
 }
 
 /// The figures of `run` and `compare`.
-pub static FIGURES: &[Figure<Report>] = &[
-    Figure {
-        file: "plot.svg",
-        description: "the curve the scene asks for",
-        chart: plot,
-    },
-    Figure {
-        file: "energy.svg",
-        description: "energy balance over time",
-        chart: energy,
-    },
-    Figure {
-        file: "trajectories.svg",
-        description: "trajectories",
-        chart: trajectories,
-    },
+pub const FIGURES: &[Figure] = &[
+    ("plot.svg", "the curve the scene asks for", plot),
+    ("energy.svg", "energy balance over time", energy),
+    ("trajectories.svg", "trajectories", trajectories),
 ];

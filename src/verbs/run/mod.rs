@@ -18,12 +18,13 @@ mod remarks;
 mod result;
 mod text;
 mod truths;
-mod view;
 
 pub use args::{Args, run};
 pub use expect::names;
+pub(super) use figures::FIGURES;
 pub use plan::{Choice, Expectations, Orders, Plan};
 pub use result::{Curves, Figures, Outcome, PlotAxis, TruthCurves, Work};
+pub(super) use text::{page, view};
 
 use crate::report::Header;
 use crate::solvers::Kind;

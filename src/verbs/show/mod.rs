@@ -3,6 +3,7 @@
 use crate::report::json::{self, Tool};
 use crate::verbs::cli::output::{self, Output, Place};
 use crate::verbs::{Beside, Body, Report, series};
+
 use anyhow::{Context, bail};
 use std::fs::File;
 use std::io::{ErrorKind, Read, Write};

@@ -187,7 +187,7 @@ fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
         });
     }
     let own = report.stability().into_iter().flat_map(|s| &s.rows);
-    let own = own.filter(|row| row.engine == report.header.scene.own_integrator);
+    let own = own.filter(|row| report.header.is_own(&row.engine));
     let limit = own.filter_map(StabilityRow::limit).next()?;
     let h = if limit > 0.0 && limit.is_finite() {
         output::rounded(0.9 * limit).min(scene.duration)

@@ -2,15 +2,12 @@
 //! enlarge the force of a stiff spring.
 
 use crate::measure::stability::Cell;
-use crate::report::svg::Figure;
-use crate::report::svg::axis::Axis;
-use crate::report::svg::canvas::Stroke;
-use crate::report::svg::chart::{Chart, Panel};
-use crate::report::svg::key::{Key, Look};
-use crate::report::svg::marks::{Mark, cells};
-use crate::report::svg::{heading, palette, panel_title, shortened};
+use crate::report::svg::{
+    Axis, Chart, Key, Look, Mark, Panel, Stroke, cells, heading, palette, panel_title, shortened,
+};
 use crate::report::words;
 use crate::verbs::Report;
+use crate::verbs::formats::Figure;
 use crate::verbs::stability::{MapPanel, StabilityMap};
 
 /// The places where the spring is as long as it wants to be.
@@ -18,7 +15,7 @@ const REST: Stroke = Stroke::new("#d55e00", "5 3", 1.4);
 
 /// The stability map: one panel an engine, timestep against the quantity varied, the predicted limit
 /// over it.
-pub fn map(report: &Report) -> Option<Chart> {
+fn map(report: &Report) -> Option<Chart> {
     let map = report.stability()?.map.as_ref()?;
     if map.engines.is_empty() || map.values.is_empty() || map.timesteps_s.is_empty() {
         return None;
@@ -39,18 +36,18 @@ pub fn map(report: &Report) -> Option<Chart> {
     let height = f64::min(224.0, 524.0 / columns as f64);
     let panels = map.engines.iter().map(|engine| {
         let axes = [&map.values, &map.timesteps_s].map(|middles| Axis::of_cells(middles));
-        let title = panel_title(report, &engine.engine);
+        let title = panel_title(&report.header, &engine.engine);
         Panel {
             width: 320.0,
             ..Panel::new(title, height, axes, map_marks(map, engine, axes))
         }
     });
-    let mut x_title = shortened(&words::one_line(&map.vary), 40);
+    let mut x_title = shortened(&map.vary, 40);
     if !map.unit.is_empty() {
         x_title += &format!(" ({})", map.unit);
     }
     Some(Chart {
-        title: heading(report, "stability map"),
+        title: heading(&report.header, "stability map"),
         legend,
         titles: [x_title, "timestep h (s)".into()],
         panels: panels.collect(),
@@ -82,7 +79,7 @@ fn map_marks(map: &StabilityMap, engine: &MapPanel, axes: [Axis; 2]) -> Vec<Mark
 
 /// The classic picture of a stiff spring: from where a step from rest does not enlarge its force, one
 /// panel a stiffness.
-pub fn admissible(report: &Report) -> Option<Chart> {
+fn admissible(report: &Report) -> Option<Chart> {
     let admissible = report.stability()?.admissible.as_ref()?;
     if admissible.panels.is_empty() {
         return None;
@@ -120,7 +117,7 @@ pub fn admissible(report: &Report) -> Option<Chart> {
         }
     });
     Some(Chart {
-        title: heading(report, "where a step does not enlarge the force"),
+        title: heading(&report.header, "where a step does not enlarge the force"),
         legend: vec![
             Key::new("no larger", Look::Fill(holds)),
             Key::new("larger", Look::Fill(fails)),
@@ -135,7 +132,7 @@ pub fn admissible(report: &Report) -> Option<Chart> {
 }
 
 /// What becomes of a run, from light to dark: told apart in grey and by colour-blind readers alike.
-pub const CELLS: [(Cell, &str, &str); 4] = [
+const CELLS: [(Cell, &str, &str); 4] = [
     (Cell::Stable, "stable", "#e3eef6"),
     (Cell::Dissipating, "dissipating", "#8fbfe0"),
     (Cell::Growing, "growing", "#d55e00"),
@@ -143,15 +140,15 @@ pub const CELLS: [(Cell, &str, &str); 4] = [
 ];
 
 /// The figures of `stability`.
-pub static FIGURES: &[Figure<Report>] = &[
-    Figure {
-        file: "stability_map.svg",
-        description: "what becomes of a run at each timestep, engine by engine",
-        chart: map,
-    },
-    Figure {
-        file: "admissible.svg",
-        description: "from where a step does not enlarge the spring's force",
-        chart: admissible,
-    },
+pub const FIGURES: &[Figure] = &[
+    (
+        "stability_map.svg",
+        "what becomes of a run at each timestep, engine by engine",
+        map,
+    ),
+    (
+        "admissible.svg",
+        "from where a step does not enlarge the spring's force",
+        admissible,
+    ),
 ];

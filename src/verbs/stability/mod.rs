@@ -11,9 +11,10 @@ mod result;
 mod rows;
 mod text;
 mod vary;
-mod view;
 
+pub(super) use figures::FIGURES;
 pub use map::MapPlan;
+pub(super) use text::{page, view};
 pub use vary::{COUNT, Range, Vary, VaryError};
 
 pub use args::{Args, stability};

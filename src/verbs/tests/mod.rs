@@ -7,7 +7,7 @@ mod samples;
 mod stability;
 
 use crate::report::json::Tool;
-use crate::report::{markdown, svg, terminal, verdict::verdict};
+use crate::report::{terminal, verdict::verdict};
 use crate::verbs::formats::{FORMATS, format};
 use crate::verbs::tests::data::*;
 use hostile::{extreme, hostile};
@@ -61,7 +61,7 @@ fn plain(text: &str) -> String {
 #[test]
 fn terminal_lines_fit() {
     for report in all() {
-        for line in plain(&terminal::render(&report)).lines() {
+        for line in plain(&terminal::render(report.view())).lines() {
             assert!(
                 line.width() <= terminal::WIDTH,
                 "{} columns: {line}",
@@ -84,7 +84,7 @@ fn rendering_is_repeatable() {
                 format.id
             );
         }
-        assert_eq!(svg::figures(&reports[0]), svg::figures(&reports[0]));
+        assert_eq!(reports[0].svg(), reports[0].svg());
     }
 }
 
@@ -99,7 +99,7 @@ fn formats_are_found_by_their_id() {
 #[test]
 fn figures_are_well_formed_and_small() {
     for report in all() {
-        for (file, svg) in svg::figures(&report) {
+        for (file, svg) in report.svg() {
             roxmltree::Document::parse(&svg).unwrap_or_else(|e| panic!("{file}: {e}"));
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{file}");
             assert!(svg.len() < 300_000, "{file}: {} bytes", svg.len());
@@ -123,7 +123,7 @@ fn long_series_stay_small_and_keep_their_peak() {
         curves.paths = vec![path; 12];
     }
     report.figures_mut().plot.as_mut().unwrap().y_range = Some([-7.0, 7.0]);
-    for (file, svg) in svg::figures(&report) {
+    for (file, svg) in report.svg() {
         assert!(svg.len() < 300_000, "{file}: {} bytes", svg.len());
         // The panel's upper edge, y = 40, is where 7 lies: the one sample there was not thinned out.
         assert!(
@@ -136,8 +136,8 @@ fn long_series_stay_small_and_keep_their_peak() {
 #[test]
 fn markdown_links_the_figures_and_keeps_its_tables() {
     for report in all() {
-        let text = markdown::render(&report);
-        for (file, _) in svg::figures(&report) {
+        let text = report.markdown();
+        for (file, _) in report.svg() {
             assert!(text.contains(&format!("]({file})")), "{file}");
         }
         let bars = |line: &str| line.replace("\\|", "").matches('|').count();
@@ -158,17 +158,17 @@ fn markdown_links_the_figures_and_keeps_its_tables() {
 #[test]
 fn verdict_names_a_failed_proof_first() {
     let mut report = oscillator(&[0.01], 5.0, 8);
-    insta::assert_snapshot!(verdict(&report), @r"symplectic_euler stays bounded (7.1e-3); growing: explicit_euler; dissipating: implicit_euler; 5 others bounded; twin proof holds (2 of 2).");
+    insta::assert_snapshot!(verdict(&report.view()), @r"symplectic_euler stays bounded (7.1e-3); growing: explicit_euler; dissipating: implicit_euler; 5 others bounded; twin proof holds (2 of 2).");
     report
         .header
         .checks
         .push(twin("twin_forces", CheckStatus::Fail));
-    assert!(verdict(&report).starts_with("THE TWIN PROOF FAILS"));
+    assert!(verdict(&report.view()).starts_with("THE TWIN PROOF FAILS"));
 }
 
 #[test]
 fn terminal_reads_at_a_glance() {
-    let text = plain(&terminal::render(&oscillator(&[0.01], 5.0, 8)));
+    let text = plain(&terminal::render(oscillator(&[0.01], 5.0, 8).view()));
     insta::assert_snapshot!(text, @r"
     circle  2 particles, 1 spring, 5 s at h = 0.01 s, symplectic_euler
     A spring of rest length 0, started sideways: the truth is an ellipse.
@@ -198,17 +198,22 @@ fn terminal_reads_at_a_glance() {
     ");
 }
 
-/// `SPRINGCHECK_PICTURES=dir cargo test -- --ignored pictures`: everything rendered, to look at.
+/// `SPRINGCHECK_PICTURES=dir cargo test pictures`: everything rendered, to look at.
 #[test]
-#[ignore = "writes files"]
 fn pictures() {
-    let directory = std::env::var("SPRINGCHECK_PICTURES").unwrap();
+    let Ok(directory) = std::env::var("SPRINGCHECK_PICTURES") else {
+        return;
+    };
     for (i, report) in all().iter().enumerate() {
-        for (file, svg) in svg::figures(report) {
+        for (file, svg) in report.svg() {
             std::fs::write(format!("{directory}/{i}-{file}"), svg).unwrap();
         }
-        std::fs::write(format!("{directory}/{i}.md"), markdown::render(report)).unwrap();
-        std::fs::write(format!("{directory}/{i}.txt"), terminal::render(report)).unwrap();
+        std::fs::write(format!("{directory}/{i}.md"), report.markdown()).unwrap();
+        std::fs::write(
+            format!("{directory}/{i}.txt"),
+            terminal::render(report.view()),
+        )
+        .unwrap();
     }
 }
 

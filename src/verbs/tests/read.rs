@@ -2,7 +2,7 @@
 
 use super::all;
 use crate::report::json::{self, ReadError, Tool};
-use crate::report::{markdown, svg, terminal, verdict::verdict};
+use crate::report::{terminal, verdict::verdict};
 use crate::verbs::formats::FORMATS;
 use crate::verbs::series;
 use crate::verbs::{Beside, Report};
@@ -32,7 +32,7 @@ fn a_report_that_is_read_back_shows_the_same() {
             let render = |reports| (format.render)(&Tool::this(), reports);
             assert_eq!(render(&read), render(&report), "{}", format.id);
         }
-        assert_eq!(svg::figures(&read[0]), svg::figures(&report[0]));
+        assert_eq!(read[0].svg(), report[0].svg());
         assert_eq!(series::pack(&read), series::pack(&report));
     }
 }
@@ -45,10 +45,10 @@ fn without_its_series_a_report_says_the_same() {
         assert_eq!(written(&read), text);
         let had = matches!(report.beside, Beside::Here(_));
         assert_eq!(matches!(read[0].beside, Beside::Missing), had);
-        let [one, other] = [&read[0], &report].map(terminal::render);
+        let [one, other] = [&read[0], &report].map(|report| terminal::render(report.view()));
         assert_eq!(one, other);
-        let drawn = svg::figures(&read[0]).len();
-        assert!(drawn == svg::figures(&report).len() || had);
+        let drawn = read[0].svg().len();
+        assert!(drawn == report.svg().len() || had);
     }
 }
 
@@ -196,10 +196,10 @@ fn no_report_is_too_odd() {
             if let Ok(Some(series)) = serde_json::from_value(drawn) {
                 read.beside = Beside::Here(series);
             }
-            terminal::render(&read);
-            markdown::render(&read);
-            svg::figures(&read);
-            verdict(&read);
+            terminal::render(read.view());
+            read.markdown();
+            read.svg();
+            verdict(&read.view());
             shown += 1;
         }
     }

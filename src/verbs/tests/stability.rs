@@ -2,8 +2,7 @@
 
 use super::plain;
 use super::samples::{Reach, empty};
-use crate::report::{markdown, svg, terminal, verdict::verdict};
-use crate::verbs::formats::stem;
+use crate::report::{terminal, verdict::verdict};
 use crate::verbs::tests::data::*;
 
 fn row(engine: &str, predicted: Option<f64>, measured: Option<f64>) -> StabilityRow {
@@ -181,7 +180,7 @@ pub fn odd() -> Report {
 
 #[test]
 fn limits_read_at_a_glance() {
-    let text = plain(&terminal::render(&limits()));
+    let text = plain(&terminal::render(limits().view()));
     insta::assert_snapshot!(text, @r"
     circle  2 particles, 1 spring, 5 s at h = 0.01 s, symplectic_euler
     A spring of rest length 0, started sideways: the truth is an ellipse.
@@ -207,18 +206,14 @@ fn limits_read_at_a_glance() {
 
 #[test]
 fn files_of_two_verbs_do_not_meet() {
-    assert_eq!(stem(&limits()), "stability");
-    assert_eq!(stem(&empty("run")), "report");
+    assert_eq!(limits().stem(), "stability");
+    assert_eq!(empty("run").stem(), "report");
 }
 
 #[test]
 fn only_what_was_asked_for_is_drawn() {
-    let drawn = |report: &Report| -> Vec<&str> {
-        svg::figures(report)
-            .into_iter()
-            .map(|(file, _)| file)
-            .collect()
-    };
+    let drawn =
+        |report: &Report| -> Vec<&str> { report.svg().into_iter().map(|(file, _)| file).collect() };
     assert!(drawn(&limits()).is_empty());
     assert_eq!(drawn(&mapped()), ["stability_map.svg"]);
     assert_eq!(drawn(&pair()), ["admissible.svg"]);
@@ -239,7 +234,7 @@ fn the_map_shows_each_cell_in_its_colour() {
             .filter(|cell| **cell == Some(wanted))
             .count() as f64
     };
-    let svg = &svg::figures(&report)[0].1;
+    let svg = &report.svg()[0].1;
     let document = roxmltree::Document::parse(svg).unwrap();
     let areas: Vec<f64> = document
         .descendants()
@@ -277,7 +272,7 @@ fn area(data: &str) -> f64 {
 /// Light to dark by at least a sixth of the scale from one to the next, so that a grey print tells them.
 #[test]
 fn colours_of_cells_differ_in_grey() {
-    let svg = &svg::figures(&mapped())[0].1;
+    let svg = &mapped().svg()[0].1;
     let document = roxmltree::Document::parse(svg).unwrap();
     let fills: Vec<f64> = document
         .descendants()
@@ -299,21 +294,21 @@ fn grey(colour: &str) -> f64 {
 #[test]
 fn the_verdict_puts_the_scenes_own_step_first() {
     let mut report = limits();
-    assert!(verdict(&report).starts_with("symplectic_euler is stable up to h = 0.2827 s"));
+    assert!(verdict(&report.view()).starts_with("symplectic_euler is stable up to h = 0.2827 s"));
     report.stability_mut().timestep_s = 0.3;
-    let text = verdict(&report);
+    let text = verdict(&report.view());
     assert!(
         text.starts_with("symplectic_euler IS UNSTABLE at h = 0.3 s"),
         "{text}"
     );
     // The limit itself, known to a thousandth, is inside.
     report.stability_mut().timestep_s = 0.2828;
-    assert!(verdict(&report).contains("is inside"));
+    assert!(verdict(&report.view()).contains("is inside"));
 }
 
 #[test]
 fn markdown_says_equal_things_once() {
-    let text = markdown::render(&limits());
+    let text = limits().markdown();
     assert_eq!(text.matches("sweeps are not converged").count(), 1);
     assert!(
         text.contains("**linearized_implicit_material and rapier**"),

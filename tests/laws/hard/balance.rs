@@ -32,7 +32,7 @@ fn a_growing_balance_is_not_called_a_gain() {
         remarks.contains("grows, though E itself falls"),
         "{remarks}"
     );
-    let verdict = report::verdict::verdict(&report);
+    let verdict = report::verdict::verdict(&report.view());
     assert!(
         verdict.contains("has a growing energy balance"),
         "{verdict}"
@@ -48,6 +48,6 @@ fn a_gain_is() {
         remarks.contains("energy grows as its law says"),
         "{remarks}"
     );
-    let verdict = report::verdict::verdict(&report);
+    let verdict = report::verdict::verdict(&report.view());
     assert!(verdict.contains("gains energy"), "{verdict}");
 }

@@ -1,12 +1,10 @@
 //! The classic picture: one panel an engine, one line a timestep, the truth in black, and below it the
 //! difference to the truth on an axis of its own.
 
-use crate::report::svg::axis::{Axis, padded, range, tamed};
-use crate::report::svg::canvas::{Shape, Stroke, Symbol};
-use crate::report::svg::chart::{Chart, Panel};
-use crate::report::svg::key::{Key, Look};
-use crate::report::svg::marks::{Line, Mark};
-use crate::report::svg::{TRUTH_NAME, heading, palette, panel_title, shortened};
+use crate::report::svg::{
+    Axis, Chart, Key, Line, Look, Mark, Panel, Stroke, Symbol, TRUTH_NAME, heading, padded,
+    palette, panel_title, range, shortened, span, tamed,
+};
 use crate::report::words;
 use crate::solvers::Status;
 use crate::verbs::Report;
@@ -40,21 +38,19 @@ pub fn chart(report: &Report) -> Option<Chart> {
         let curves = panel.lines.iter().map(|line| draw(line, &line.curve));
         let curves = [truth].into_iter().chain(curves).collect();
         let differences = panel.lines.iter().map(|line| draw(line, &line.difference));
-        let title = panel_title(report, &panel.engine);
+        let title = panel_title(&report.header, &panel.engine);
         let [above, below] = [y, difference(panel, y)].map(|y| [x, y].map(Axis::linear));
         let mut above = Panel::new(title, CURVES, above, curves);
         let mut below = Panel::new(String::new(), DIFFERENCES, below, differences.collect());
         (above.width, below.width, below.joined) = (420.0, 420.0, true);
-        [Some(above), differs.then_some(below)]
-            .into_iter()
-            .flatten()
+        [above].into_iter().chain(differs.then_some(below))
     });
-    let mut y_title = shortened(&words::one_line(&shown.label), 40);
+    let mut y_title = shortened(&shown.label, 40);
     if differs {
         y_title += ", and its difference to the truth";
     }
     Some(Chart {
-        title: heading(report, "each step beside the truth"),
+        title: heading(&report.header, "each step beside the truth"),
         legend: legend.collect(),
         titles: ["time (s)".into(), y_title],
         panels: panels.collect(),
@@ -70,28 +66,28 @@ fn lines(shown: &CostPanels) -> impl Iterator<Item = &CostLine> {
 
 /// One line of a run, with a cross where the run ended early.
 fn draw(line: &CostLine, points: &[[f64; 2]], stroke: Stroke) -> Mark {
-    let cross = Symbol::new(Shape::Cross, stroke.colour, stroke.colour);
+    let early = line.status != Status::Completed;
     Mark::Line(Line {
         wild: true,
-        end: (line.status != Status::Completed).then_some(cross),
+        end: early.then_some(Symbol::cross(stroke.colour)),
         ..Line::new(points.to_vec(), stroke)
     })
 }
 
 /// Time and coordinate all panels share: what the truth spans, and a little of what leaves it.
 fn ranges(shown: &CostPanels) -> [[f64; 2]; 2] {
-    let span = |points: &Vec<[f64; 2]>, axis: usize| range(points.iter().map(|p| p[axis]));
     let curves = || lines(shown).map(|line| &line.curve);
     let times = curves()
         .chain([&shown.truth])
         .filter_map(|curve| span(curve, 0));
-    let calm = span(&shown.truth, 1).or_else(|| {
-        let done = lines(shown).filter(|line| line.status == Status::Completed);
-        range(done.filter_map(|line| span(&line.curve, 1)).flatten())
-    });
-    let wild: Vec<[f64; 2]> = curves().filter_map(|curve| span(curve, 1)).collect();
-    let shown = tamed(calm, &wild).unwrap_or([0.0, 1.0]);
     let times = range(times.flatten()).unwrap_or([0.0, 1.0]);
+    let truth = span(&shown.truth, 1);
+    let curves = lines(shown).filter_map(|line| {
+        let is_wild = truth.is_some() || line.status != Status::Completed;
+        Some((is_wild, span(&line.curve, 1)?))
+    });
+    let truth = truth.map(|span| (false, span));
+    let shown = tamed(truth.into_iter().chain(curves)).unwrap_or([0.0, 1.0]);
     [times, padded(shown, 0.05)]
 }
 
@@ -99,17 +95,10 @@ fn ranges(shown: &CostPanels) -> [[f64; 2]; 2] {
 fn difference(panel: &CostPanel, shown: [f64; 2]) -> [f64; 2] {
     let most = shown[1] / 2.0 - shown[0] / 2.0;
     let spans = panel.lines.iter().filter_map(|line| {
-        let range = range(line.difference.iter().map(|p| p[1]))?;
-        Some((line.status, range))
+        let [lo, hi] = span(&line.difference, 1)?;
+        let is_calm = line.status == Status::Completed && -most <= lo && hi <= most;
+        Some((!is_calm, [lo, hi].map(|end| end.clamp(-most, most))))
     });
-    let is_calm = |(status, [lo, hi]): &(Status, [f64; 2])| {
-        *status == Status::Completed && -most <= *lo && *hi <= most
-    };
-    let (calm, wild): (Vec<_>, Vec<_>) = spans.partition(is_calm);
-    let calm = range(calm.into_iter().flat_map(|(_, range)| range));
-    let wild = wild
-        .into_iter()
-        .map(|(_, range)| range.map(|end| end.clamp(-most, most)));
-    let [lo, hi] = tamed(calm, &wild.collect::<Vec<_>>()).unwrap_or([0.0, 0.0]);
+    let [lo, hi] = tamed(spans).unwrap_or([0.0, 0.0]);
     padded([lo.min(0.0), hi.max(0.0)], 0.06)
 }

@@ -1,18 +1,15 @@
 //! Work-precision diagrams: error over cost, both axes logarithmic, one line an engine with a point a
 //! setting.
 
-use crate::report::svg::axis::{Axis, range};
-use crate::report::svg::canvas::{FAINT, Shape, Stroke, Symbol, WHITE};
-use crate::report::svg::chart::{Chart, Panel};
-use crate::report::svg::key::{Key, Look};
-use crate::report::svg::marks::{self, Mark};
+use super::Diagram;
 use crate::report::svg::palette::{COLOURS, SHAPES, look};
-use crate::report::svg::{NAME, heading, palette, shortened};
-use crate::report::words;
-use crate::solvers::Kind;
-use crate::solvers::Status;
+use crate::report::svg::{
+    self, Axis, Chart, FAINT, Key, Look, Mark, Panel, Shape, Stroke, Symbol, WHITE, engine,
+    heading, palette, range, shortened,
+};
+use crate::solvers::{Kind, Status};
 use crate::verbs::Report;
-use crate::verbs::cost::text::{Diagram, is_timed, metres};
+use crate::verbs::cost::text::{is_timed, metres};
 use crate::verbs::cost::{Cost, CostCurve, CostPoint};
 
 /// What an axis may hold: nothing overflows within.
@@ -20,21 +17,20 @@ const SMALLEST: f64 = 1e-250;
 const LARGEST: f64 = 1e250;
 
 /// Error over wall time.
-pub const TIME: Diagram = Diagram {
-    judged: true,
-    timed: true,
-};
+pub fn time(report: &Report) -> Option<Chart> {
+    let (judged, timed) = (true, true);
+    chart(report, Diagram { judged, timed })
+}
 
 /// Error over force evaluations.
-pub const EVALUATIONS: Diagram = Diagram {
-    judged: true,
-    timed: false,
-};
+pub fn evaluations(report: &Report) -> Option<Chart> {
+    let (judged, timed) = (true, false);
+    chart(report, Diagram { judged, timed })
+}
 
 /// Energy error over time, or over evaluations where nothing was timed.
 pub fn energy(report: &Report) -> Option<Chart> {
-    let timed = report.cost().is_some_and(is_timed);
-    let judged = false;
+    let (judged, timed) = (false, is_timed(report.cost()?));
     chart(report, Diagram { judged, timed })
 }
 
@@ -49,7 +45,7 @@ struct Line<'a> {
 }
 
 /// The diagram, where some setting has both an error and a cost.
-pub fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
+fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
     let cost = report.cost()?;
     let looks = marked(report, &cost.curves);
     let lines = cost.curves.iter().zip(looks).map(|(curve, look)| Line {
@@ -75,27 +71,23 @@ pub fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
 
     let mut marks = levels(cost, &targets, axes, diagram);
     // The scene's own last: its line lies over the others.
-    lines.sort_by_key(|line| line.curve.engine == report.header.scene.own_integrator);
+    lines.sort_by_key(|line| report.header.is_own(&line.curve.engine));
     marks.extend(lines.iter().flat_map(|line| line.marks(axes, diagram)));
-    let silent: Vec<String> = silent.iter().map(Line::name).collect();
+    let silent = silent.iter().map(|line| engine(&line.curve.engine));
+    let silent: Vec<String> = silent.collect();
     let note = format!("without numbers for this: {}", silent.join(", "));
     let note = (!silent.is_empty()).then(|| shortened(&note, 130));
     let paid = match diagram.timed {
         true => ["time", "wall time of a run, median (s)"],
         false => ["force evaluations", "force evaluations of a run"],
     };
-    let (title, error) = match diagram.judged {
-        true => (
-            format!("what accuracy costs in {}", paid[0]),
-            "largest error (m)",
-        ),
-        false => (
-            "what energy accuracy costs".into(),
-            "largest |B − B(0)| / S",
-        ),
+    let accuracy = format!("what accuracy costs in {}", paid[0]);
+    let [title, error] = match diagram.judged {
+        true => [&accuracy, "largest error (m)"],
+        false => ["what energy accuracy costs", "largest |B − B(0)| / S"],
     };
     Some(Chart {
-        title: heading(report, &title),
+        title: heading(&report.header, title),
         legend,
         titles: [paid[1], error].map(str::to_owned),
         panels: vec![Panel::new(String::new(), 430.0, axes, marks)],
@@ -142,22 +134,18 @@ fn axis(values: impl Iterator<Item = f64>) -> Axis {
 }
 
 impl Line<'_> {
-    fn name(&self) -> String {
-        shortened(&words::one_line(&self.curve.engine), NAME)
-    }
-
     fn marks(&self, [x, y]: [Axis; 2], diagram: Diagram) -> Vec<Mark> {
         let (stroke, shape) = self.look;
         let solid = Symbol::new(shape, stroke.colour, stroke.colour);
         // An error of 0 lies on the lower edge.
         let points = self.points.iter();
         let points = points.map(|(at, [cost, error])| (*at, [*cost, error.max(y.range[0])]));
-        let mut line = marks::Line::new(points.clone().map(|(_, point)| point), stroke);
+        let mut line = svg::Line::new(points.clone().map(|(_, point)| point), stroke);
         let slope = self.curve.observed_order;
         let slope = slope.filter(|slope| diagram.judged && slope.abs() < 99.5);
         let slope = slope.map_or(String::new(), |slope| format!(", slope {slope:.2}"));
-        let label = Key::new(self.name() + &slope, Look::Marked(stroke, solid));
-        line.label = Some(label);
+        let name = engine(&self.curve.engine);
+        line.label = Some(Key::new(name + &slope, Look::Marked(stroke, solid)));
 
         let mut marks = vec![Mark::Line(line)];
         for (at, point) in points {
@@ -177,8 +165,7 @@ impl Line<'_> {
             marks.push(Mark::Symbols(symbol, vec![point]));
         }
         let ended = self.ended.iter().map(|cost| [*cost, y.at(0.985)]);
-        let cross = Symbol::new(Shape::Cross, stroke.colour, stroke.colour);
-        marks.push(Mark::Symbols(cross, ended.collect()));
+        marks.push(Mark::Symbols(Symbol::cross(stroke.colour), ended.collect()));
         marks
     }
 }
@@ -187,10 +174,10 @@ impl Line<'_> {
 fn levels(cost: &Cost, targets: &[f64], [x, y]: [Axis; 2], diagram: Diagram) -> Vec<Mark> {
     let [[left, right], [bottom, _]] = [x.range, y.range];
     let mut marks = Vec::new();
-    if let Some(floor) = cost
+    let floor = cost
         .floor_m
-        .filter(|floor| diagram.judged && *floor > bottom)
-    {
+        .filter(|floor| diagram.judged && *floor > bottom);
+    if let Some(floor) = floor {
         let below = [[left, bottom], [right, floor]];
         marks.push(Mark::Area(palette::BELOW_FLOOR, vec![below]));
     }
@@ -204,16 +191,16 @@ fn levels(cost: &Cost, targets: &[f64], [x, y]: [Axis; 2], diagram: Diagram) -> 
 
 /// What the symbols mean.
 fn legend(diagram: Diagram, lines: &[Line]) -> Vec<Key> {
-    let symbol = |shape, fill| Look::Symbol(Symbol::new(shape, fill, FAINT));
+    let disc = |fill| Look::Symbol(Symbol::new(Shape::Disc, fill, FAINT));
     let front = "none of its settings beats it in error and evaluations";
     let early = "diverged or failed, at what all its steps would cost";
     let mut legend = Vec::new();
     if diagram.judged {
-        legend.push(Key::new(front, symbol(Shape::Disc, FAINT)));
-        legend.push(Key::new("beaten", symbol(Shape::Disc, WHITE)));
+        legend.push(Key::new(front, disc(FAINT)));
+        legend.push(Key::new("beaten", disc(WHITE)));
     }
     if lines.iter().any(|line| !line.ended.is_empty()) {
-        legend.push(Key::new(early, symbol(Shape::Cross, FAINT)));
+        legend.push(Key::new(early, Look::Symbol(Symbol::cross(FAINT))));
     }
     legend
 }
@@ -224,7 +211,7 @@ fn marked(report: &Report, curves: &[CostCurve]) -> Vec<(Stroke, Shape)> {
     let look = |(at, curve): (usize, &CostCurve)| {
         let before = curves.iter().take(at);
         let place = before.filter(|other| other.kind == curve.kind).count();
-        let own = curve.engine == report.header.scene.own_integrator;
+        let own = report.header.is_own(&curve.engine);
         let mut stroke = look(curve.kind, place, own);
         if curve.kind == Kind::Integrator {
             stroke.dash = "";

@@ -2,8 +2,7 @@
 //! and who does not reach it.
 
 use super::{evaluations, metres, price, ratio, setting};
-use crate::report::notes::{grouped, listed};
-use crate::report::words;
+use crate::report::words::{self, grouped, listed};
 use crate::verbs::cost::{Cost, CostRank, CostReached, CostTarget};
 
 /// `1e-6 m`.
@@ -49,14 +48,12 @@ fn paragraph(target: &CostTarget) -> String {
         clauses.extend(fewest(target, first));
         clauses.extend(extrapolated(target));
     }
-    let nobody = first.is_none() && target.reason.is_none();
-    clauses.extend(match missing(&target.ranking, true) {
-        Some(_) if nobody => Some(format!(
-            "no integrator reaches it: {}",
-            misses(&target.ranking, true).join(", ")
-        )),
-        None if nobody => Some("no integrator reaches it".to_owned()),
-        missing => missing,
+    let missing = misses(&target.ranking, true);
+    let nobody = "no integrator reaches it";
+    clauses.extend(match (first, &target.reason) {
+        (None, None) if missing.is_empty() => Some(nobody.to_owned()),
+        (None, None) => Some(format!("{nobody}: {missing}")),
+        _ => not_reached(missing),
     });
     let beside = target.reference.iter().filter_map(|rank| {
         let dear = rank.wall_ratio.map(|r| format!(", {}", ratio(r)));
@@ -66,7 +63,7 @@ fn paragraph(target: &CostTarget) -> String {
     if !beside.is_empty() {
         clauses.push(format!("beside them, not ranked: {}", listed(&beside)));
     }
-    clauses.extend(missing(&target.reference, false));
+    clauses.extend(not_reached(misses(&target.reference, false)));
     clauses.join("; ")
 }
 
@@ -77,13 +74,11 @@ fn dearer(rank: &CostRank, first: &CostReached) -> Option<String> {
     if let Some(dear) = rank.wall_ratio {
         return Some(format!("{name} {}", ratio(dear)));
     }
-    Some(match (first.wall_median_s, found.wall_median_s) {
-        (None, None) => match (first.force_evaluations, found.force_evaluations) {
-            (Some(least), Some(count)) if least > 0 => {
-                format!("{name} {}", ratio(count as f64 / least as f64))
-            }
-            _ => format!("{name}, {}", price(found)),
-        },
+    let untimed = first.wall_median_s.or(found.wall_median_s).is_none();
+    Some(match (first.force_evaluations, found.force_evaluations) {
+        (Some(least), Some(count)) if untimed && least > 0 => {
+            format!("{name} {}", ratio(count as f64 / least as f64))
+        }
         _ => format!("{name}, {}", price(found)),
     })
 }
@@ -109,24 +104,17 @@ fn extrapolated(target: &CostTarget) -> Option<String> {
         let dear = ratio(rank.extrapolated_wall_ratio?);
         Some(format!("{} {dear}", words::one_line(&rank.engine)))
     });
-    let would: Vec<String> = would.collect();
-    (!would.is_empty()).then(|| {
-        format!(
-            "not reached, but by their slopes about: {}",
-            would.join(", ")
-        )
-    })
+    let would = would.collect::<Vec<_>>().join(", ");
+    (!would.is_empty()).then(|| format!("not reached, but by their slopes about: {would}"))
 }
 
-/// Who does not reach it.
-fn missing(ranks: &[CostRank], ranked: bool) -> Option<String> {
-    let texts = misses(ranks, ranked);
-    (!texts.is_empty()).then(|| format!("not reached by {}", texts.join(", ")))
+fn not_reached(by: String) -> Option<String> {
+    (!by.is_empty()).then(|| format!("not reached by {by}"))
 }
 
 /// Who does not reach it and why. Equal reasons are said once, and of those that differ in a number
 /// alone only the number, after the first.
-fn misses(ranks: &[CostRank], ranked: bool) -> Vec<String> {
+fn misses(ranks: &[CostRank], ranked: bool) -> String {
     // Of integrators with a price by their slope, that is said instead.
     let priced = |rank: &&CostRank| rank.extrapolated_wall_ratio.is_some() && ranked;
     let missing = ranks.iter().filter(|rank| rank.reached.is_none());
@@ -143,9 +131,8 @@ fn misses(ranks: &[CostRank], ranked: bool) -> Vec<String> {
         }
     };
     let texts = said.iter().enumerate();
-    texts
-        .map(|(at, (reason, names))| format!("{}{}", listed(names), because(at, reason)))
-        .collect()
+    let texts = texts.map(|(at, (reason, names))| listed(names) + &because(at, reason));
+    texts.collect::<Vec<_>>().join(", ")
 }
 
 /// The one number in which `text` differs from `known`; None where they differ otherwise.

@@ -1,32 +1,86 @@
 //! What `cost` found, for people: how settings, prices and ratios are written.
 
-pub mod answer;
-pub mod markdown;
-pub mod notes;
-pub mod scatter;
-pub mod terminal;
-pub mod verdict;
+mod answer;
+mod notes;
+mod scatter;
+mod settings;
+mod terminal;
+mod verdict;
 
-use crate::report::table::{Mark, Table};
-use crate::report::words::{self, NOTHING};
+use crate::report::markdown::{findings, opening, section};
+use crate::report::table::Table;
+use crate::report::words::{self, NOTHING, escape};
+use crate::report::{UNRANKED, View};
 use crate::solvers::Status;
 use crate::verbs::Report;
 use crate::verbs::cost::{Cost, CostCurve, CostPoint, CostReached};
 
+const LEGEND: &str = "\
+## How to read this
+
+- **Error** is the largest distance of any particle from where it truly is, over the horizon; *floor* means that nothing
+  smaller could be told from the truth. **Energy error** is the largest |B - B(0)| / S of the energy balance over the
+  run.
+- **Reached**: the coarsest setting from which on every finer one of that engine has no larger error than the target.
+- **Slope** is that of ln(error) over ln(step), fitted below the coarse steps and above the floor: the order, as found.
+- **Pareto**: no other setting of that engine has both a smaller error and fewer force evaluations.
+- **Time** is the median of repeated runs, which do not share a core with others; it varies from run to run, and with it the order of
+  the rankings. Evaluations do not.
+- rapier is explained and not ranked: its distance from the truth is no error, since it follows equations of its own on
+  purpose.
+";
+
+/// What the terminal and the page say.
+pub fn view<'a>(report: &'a Report, cost: &Cost) -> View<'a> {
+    View {
+        header: &report.header,
+        timesteps: Vec::new(),
+        clauses: verdict::clauses(report, cost),
+        facts: facts(report, cost),
+        lines: terminal::lines(report, cost),
+        notes: notes::notes(cost),
+        last: Vec::new(),
+    }
+}
+
+/// The page.
+pub fn page(report: &Report, cost: &Cost, view: &View) -> String {
+    let mut more = vec![("duration", format!("{} s", words::short(cost.duration_s)))];
+    more.extend(facts(report, cost));
+    let answers = answer::paragraphs(cost).into_iter();
+    let answers =
+        answers.map(|(label, said)| format!("- **{}**: {}\n", escape(&label), escape(&said)));
+    let judged = cost.targets.iter().filter(|target| target.reason.is_none());
+    let rankings = judged.map(|target| settings::ranking(report, target));
+    [
+        opening(view, more),
+        section("Answer", answers.collect()),
+        report.images(),
+        section("Engines", table(report, cost).in_markdown()),
+        rankings.collect(),
+        settings::all(cost),
+        findings(view),
+        LEGEND.to_owned(),
+    ]
+    .concat()
+}
+
 /// The table of engines, in the terminal, where it also has the targets, and in Markdown.
 fn table<'a>(report: &Report, cost: &'a Cost) -> Table<'a, CostCurve> {
-    let own = &report.header.scene.own_integrator;
+    let header = &report.header;
     let timed = is_timed(cost);
     let paid = if timed { "time" } else { "evaluations" };
     let mut table = Table::new(&cost.curves);
     table.engines(|curve| {
-        let mark = match Mark::of(&curve.engine, own) {
-            Mark::Plain if !curve.is_ranked() => Mark::Unranked,
+        let mark = match header.mark(&curve.engine) {
+            ' ' if !curve.is_ranked() => UNRANKED,
             mark => mark,
         };
         (curve.engine.clone(), mark)
     });
-    table.right("order", "order", 4, order);
+    table.right("order", "order", 4, |curve| {
+        curve.order.map(|order| order.to_string())
+    });
     table.right("slope", "slope", 2, slope);
     for target in cost.targets.iter().filter(|target| target.reason.is_none()) {
         let header = format!("{}\nh (s), {paid}", answer::label(target));
@@ -38,13 +92,16 @@ fn table<'a>(report: &Report, cost: &'a Cost) -> Table<'a, CostCurve> {
         3,
         nearest_error,
     );
-    table.right("energy\nerror", "smallest energy error", 5, nearest_energy);
+    table.right("energy\nerror", "smallest energy error", 5, |curve| {
+        let energy = |point: &CostPoint| point.energy_error;
+        energy(smallest(curve, energy)?).map(words::sci)
+    });
     table.right("settings", "settings", 6, tried);
     table
 }
 
 /// A target or a floor, at most two digits: `1e-6`, `2.5e-4`.
-pub(super) fn metres(value: f64) -> String {
+pub fn metres(value: f64) -> String {
     words::sci(value).replacen(".0e", "e", 1)
 }
 
@@ -59,15 +116,14 @@ fn setting(timestep: f64, tolerance: Option<f64>) -> String {
 
 /// The same in few characters, for tables: `0.02`, `tol 1e-8`.
 fn brief(timestep: f64, tolerance: Option<f64>) -> String {
-    tolerance.map_or_else(
-        || words::short(timestep),
-        |tolerance| format!("tol {}", metres(tolerance)),
-    )
+    match tolerance {
+        Some(tolerance) => format!("tol {}", metres(tolerance)),
+        None => words::short(timestep),
+    }
 }
 
 fn evaluations(count: u64) -> String {
-    let ending = if count == 1 { "" } else { "s" };
-    format!("{} evaluation{ending}", words::count(count))
+    words::plural(count, "evaluation")
 }
 
 /// `0.10 ms (1,000 evaluations)`, or what is known of it.
@@ -113,20 +169,10 @@ fn smallest(curve: &CostCurve, value: fn(&CostPoint) -> Option<f64>) -> Option<&
 }
 
 /// The smallest error, `floor` where nothing below it could be told from the truth.
-fn nearest_error(curve: &CostCurve) -> String {
-    let Some(point) = nearest(curve) else {
-        return NOTHING.into();
-    };
-    match point.error_m {
-        Some(_) if point.at_floor => "floor".into(),
-        error => error.map_or(NOTHING.into(), words::sci),
-    }
-}
-
-/// The smallest energy error of all settings.
-fn nearest_energy(curve: &CostCurve) -> String {
-    let error = smallest(curve, |point| point.energy_error).and_then(|point| point.energy_error);
-    error.map_or(NOTHING.into(), words::sci)
+fn nearest_error(curve: &CostCurve) -> Option<String> {
+    let point = nearest(curve)?;
+    let floor = point.at_floor.then(|| "floor".to_owned());
+    floor.or(point.error_m.map(words::sci))
 }
 
 /// How many settings were tried, and how many of them completed where not all did.
@@ -139,47 +185,12 @@ fn tried(curve: &CostCurve) -> String {
     }
 }
 
-/// The stated order.
-fn order(curve: &CostCurve) -> String {
-    curve
-        .order
-        .map_or(NOTHING.into(), |order| order.to_string())
-}
-
 /// The fitted order: two decimals.
-fn slope(curve: &CostCurve) -> String {
-    match curve.observed_order {
-        Some(order) if order.abs() < 99.5 => format!("{order:.2}"),
-        Some(order) => words::sci(order),
-        None => NOTHING.into(),
-    }
-}
-
-/// Which numbers a work-precision diagram shows: an error over a cost.
-#[derive(Clone, Copy)]
-pub struct Diagram {
-    /// Whether the error is the one targets, floor, front and slope are about; else that of the energy.
-    pub judged: bool,
-    /// Whether the cost is a time, which has a spread; else force evaluations.
-    pub timed: bool,
-}
-
-impl Diagram {
-    pub fn cost(self, point: &CostPoint) -> Option<f64> {
-        if self.timed {
-            point.wall_s.as_ref().map(|wall| wall.median)
-        } else {
-            point.force_evaluations.map(|count| count as f64)
-        }
-    }
-
-    pub fn error(self, point: &CostPoint) -> Option<f64> {
-        if self.judged {
-            point.error_m
-        } else {
-            point.energy_error
-        }
-    }
+fn slope(curve: &CostCurve) -> Option<String> {
+    Some(match curve.observed_order? {
+        order if order.abs() < 99.5 => format!("{order:.2}"),
+        order => words::sci(order),
+    })
 }
 
 /// Whether anything was timed.
@@ -189,32 +200,22 @@ pub fn is_timed(cost: &Cost) -> bool {
 }
 
 /// What holds of the whole answer, line by line: label and text.
-pub fn facts(report: &Report, cost: &Cost) -> Vec<(&'static str, String)> {
-    let mut facts = vec![("truth", words::truth(&report.header.truth))];
-    if let Some(horizon) = cost.horizon_s {
-        let whole = if horizon < cost.duration_s {
-            format!(
-                "{} of {} s",
-                words::short(horizon),
-                words::short(cost.duration_s)
-            )
-        } else {
-            format!("{} s, the whole run", words::short(cost.duration_s))
+fn facts(report: &Report, cost: &Cost) -> Vec<(&'static str, String)> {
+    let errors = cost.horizon_s.map(|horizon| {
+        let all = words::short(cost.duration_s);
+        let until = match horizon < cost.duration_s {
+            true => format!("{} of {all} s", words::short(horizon)),
+            false => format!("{all} s, the whole run"),
         };
-        facts.push((
-            "errors",
-            format!("the largest distance of a particle from the truth up to {whole}"),
-        ));
-    }
-    if let Some(floor) = cost.floor_m {
-        facts.push((
-            "floor",
-            format!(
-                "{} m: errors below ten times the truth's own bar are not told apart",
-                metres(floor)
-            ),
-        ));
-    }
+        format!("the largest distance of a particle from the truth up to {until}")
+    });
+    let floor = cost.floor_m.map(metres);
+    let floor = floor.map(|floor| {
+        format!("{floor} m: errors below ten times the truth's own bar are not told apart")
+    });
+    let mut facts = vec![("truth", words::truth(&report.header.truth))];
+    facts.extend(errors.map(|errors| ("errors", errors)));
+    facts.extend(floor.map(|floor| ("floor", floor)));
     facts
 }
 

@@ -1,8 +1,8 @@
 //! What is to be said of single engines: why a reference's line is what it is, and which settings
 //! have no error.
 
-use crate::report::notes::{self, Note, listed};
-use crate::report::words;
+use crate::report::Note;
+use crate::report::words::{self, listed};
 use crate::solvers::Status;
 use crate::verbs::cost::{Cost, CostCurve, CostPoint};
 
@@ -16,7 +16,7 @@ pub fn notes(cost: &Cost) -> Vec<Note> {
         let sentences = sentences(curve).into_iter();
         sentences.map(move |sentence| (name.clone(), sentence))
     });
-    notes::notes(said, listed)
+    Note::of(said, listed)
 }
 
 fn sentences(curve: &CostCurve) -> Vec<String> {
@@ -36,7 +36,7 @@ fn ending(curve: &CostCurve, status: Status) -> Option<String> {
     let ended = curve.points.iter().filter(|point| point.status == status);
     let ended: Vec<&CostPoint> = ended.collect();
     let first = ended.first()?;
-    let mut text = words::status(status).to_owned();
+    let mut text = words::id(status);
     if ended.len() < curve.points.len() {
         text += &format!(" at {}", settings(&ended));
     } else if ended.len() > 1 {

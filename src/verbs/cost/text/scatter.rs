@@ -1,11 +1,11 @@
 //! The work-precision diagram in characters: one letter a setting, both axes logarithmic.
 
-use super::{Diagram, answer, is_timed};
-use crate::report::terminal::WIDTH;
-use crate::report::terminal::fit::{clip, wrap};
-use crate::report::terminal::paint::{Tone, mark};
+use super::{answer, is_timed};
+use crate::report::svg::{Axis, Scale, range};
+use crate::report::terminal::{Tone, WIDTH, clip, mark, wrap};
 use crate::report::words;
 use crate::verbs::Report;
+use crate::verbs::cost::figures::Diagram;
 use crate::verbs::cost::{Cost, CostCurve};
 
 /// Characters of the field.
@@ -24,42 +24,29 @@ struct Engine {
     points: Vec<[f64; 2]>,
 }
 
-/// Decades shown along one axis.
-#[derive(Clone, Copy)]
-struct Decades {
-    first: i32,
-    last: i32,
+/// Whole decades around logarithms; the axis is linear in them.
+fn decades(logarithms: impl Iterator<Item = f64>) -> Option<Axis> {
+    let [lo, hi] = range(logarithms)?;
+    let first = lo.floor();
+    Some(Axis {
+        scale: Scale::Linear,
+        range: [first, hi.ceil().max(first + 1.0)],
+    })
 }
 
-impl Decades {
-    /// Whole ones around the logarithms.
-    fn around(values: impl Iterator<Item = f64>) -> Option<Decades> {
-        let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| {
-            (lo.min(v), hi.max(v))
-        });
-        (lo <= hi).then(|| {
-            let first = lo.floor() as i32;
-            Decades {
-                first,
-                last: (hi.ceil() as i32).max(first + 1),
-            }
-        })
-    }
+/// The place of a logarithm among `count`; None outside.
+fn place(axis: Axis, logarithm: f64, count: usize) -> Option<usize> {
+    let part = axis.place(logarithm);
+    let inside = (0.0..=1.0).contains(&part);
+    inside.then(|| (part * (count - 1) as f64).round() as usize)
+}
 
-    /// The place of a logarithm among `count`; None outside.
-    fn place(self, value: f64, count: usize) -> Option<usize> {
-        let part = (value - f64::from(self.first)) / f64::from(self.last - self.first);
-        (0.0..=1.0)
-            .contains(&part)
-            .then(|| (part * (count - 1) as f64).round() as usize)
-    }
-
-    /// Every n-th, so that they stand at least `apart` of `count` characters from each other.
-    fn labelled(self, count: usize, apart: f64) -> impl Iterator<Item = i32> {
-        let each = (count - 1) as f64 / f64::from(self.last - self.first);
-        let every = (apart / each).ceil().max(1.0) as i32;
-        (self.first..=self.last).filter(move |decade| decade.rem_euclid(every) == 0)
-    }
+/// Every n-th decade, so that they stand at least `apart` of `count` characters from each other.
+fn labelled(axis: Axis, count: usize, apart: f64) -> impl Iterator<Item = i32> {
+    let [first, last] = axis.range.map(|end| end as i32);
+    let each = (count - 1) as f64 / f64::from(last - first);
+    let every = (apart / each).ceil().max(1.0) as i32;
+    (first..=last).filter(move |decade| decade.rem_euclid(every) == 0)
 }
 
 /// The characters of the diagram with their tones, the highest row first.
@@ -67,13 +54,12 @@ struct Field {
     rows: [[(char, Option<Tone>); COLUMNS]; LINES],
     /// What stands beside each row.
     beside: [String; LINES],
-    x: Decades,
-    y: Decades,
+    axes: [Axis; 2],
 }
 
 impl Field {
     fn row(&self, error: f64) -> Option<usize> {
-        Some(LINES - 1 - self.y.place(error, LINES)?)
+        Some(LINES - 1 - place(self.axes[1], error, LINES)?)
     }
 
     /// A line across the field with a label, unless another has one there.
@@ -88,7 +74,9 @@ impl Field {
 
     /// A letter, unless another stands there.
     fn point(&mut self, [cost, error]: [f64; 2], engine: &Engine) {
-        if let (Some(column), Some(row)) = (self.x.place(cost, COLUMNS), self.row(error)) {
+        if let Some(column) = place(self.axes[0], cost, COLUMNS)
+            && let Some(row) = self.row(error)
+        {
             let place = &mut self.rows[row][column];
             if !place.0.is_alphanumeric() {
                 *place = (engine.letter, engine.tone);
@@ -99,7 +87,7 @@ impl Field {
     /// The rows with the axis of errors, equal tones in one mark.
     fn lines(&self) -> impl Iterator<Item = String> {
         let mut labels = [const { String::new() }; LINES];
-        for decade in self.y.labelled(LINES, 2.0) {
+        for decade in labelled(self.axes[1], LINES, 2.0) {
             if let Some(row) = self.row(f64::from(decade)) {
                 labels[row] = clip(&format!("1e{decade}"), LABEL);
             }
@@ -128,17 +116,14 @@ pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
     let all = || engines.iter().flat_map(|engine| &engine.points);
     let targets = || cost.targets.iter().filter(|_| judged);
     let marked = targets().map(|target| target.error_m).filter(|e| *e > 0.0);
-    let (Some(x), Some(y)) = (
-        Decades::around(all().map(|p| p[0])),
-        Decades::around(all().map(|p| p[1]).chain(marked.map(f64::log10))),
-    ) else {
+    let errors = all().map(|p| p[1]).chain(marked.map(f64::log10));
+    let [Some(x), Some(y)] = [decades(all().map(|p| p[0])), decades(errors)] else {
         return Vec::new();
     };
     let mut field = Field {
         rows: [[(' ', None); COLUMNS]; LINES],
         beside: [const { String::new() }; LINES],
-        x,
-        y,
+        axes: [x, y],
     };
     for target in targets() {
         field.level(target.error_m, '┈', answer::label(target));
@@ -152,15 +137,11 @@ pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
             field.point(*point, engine);
         }
     }
-    let error = if judged { "error (m)" } else { "energy error" };
-    let over = if timed {
-        "wall time (median)"
-    } else {
-        "force evaluations"
-    };
+    let error = ["energy error", "error (m)"][usize::from(judged)];
+    let over = ["force evaluations", "wall time (median)"][usize::from(timed)];
     let mut lines = vec![String::new(), format!("{error} over {over}")];
     lines.extend(field.lines());
-    lines.extend(axis(x, timed));
+    lines.extend(rule(x, timed));
     lines.extend(legend(&engines, floor.is_some()));
     lines
 }
@@ -168,7 +149,7 @@ pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
 /// Every engine with something to show: the scene's own first, then as listed; integrators have small
 /// letters, references capitals.
 fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
-    let own = |curve: &CostCurve| curve.engine == report.header.scene.own_integrator;
+    let own = |curve: &CostCurve| report.header.is_own(&curve.engine);
     let mut curves: Vec<&CostCurve> = cost.curves.iter().collect();
     curves.sort_by_key(|curve| !own(curve));
     let (mut small, mut capital) = ('a'..='z', 'A'..='Z');
@@ -196,16 +177,14 @@ fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
 }
 
 /// The rule below the field and its labels.
-fn axis(x: Decades, timed: bool) -> [String; 2] {
+fn rule(x: Axis, timed: bool) -> [String; 2] {
     let mut rule = vec!['─'; COLUMNS];
     let mut labels = String::new();
-    for decade in x.labelled(COLUMNS, APART) {
-        let Some(column) = x.place(f64::from(decade), COLUMNS) else {
+    for decade in labelled(x, COLUMNS, APART) {
+        let Some(column) = place(x, f64::from(decade), COLUMNS) else {
             continue;
         };
-        if let Some(tick) = rule.get_mut(column) {
-            *tick = '┴';
-        }
+        rule[column] = '┴';
         let label = power(decade, timed);
         // Centred on its tick, as far as the one before leaves room.
         let middle = (LABEL + 1 + column).saturating_sub(label.chars().count() / 2);
@@ -241,15 +220,9 @@ fn legend(engines: &[Engine], floor: bool) -> Vec<String> {
         format!("{}{JOINED}{name}", engine.letter)
     };
     let entries: Vec<String> = engines.iter().map(entry).collect();
-    let names = wrap(&entries.join(&format!("{JOINED} ")), WIDTH, "  ");
-    let mut lines: Vec<String> = names
-        .iter()
-        .map(|line| line.replace(JOINED, " ").trim_end().to_owned())
-        .collect();
-    let mut about = "where several meet, the first of them is shown | ┈ target".to_owned();
-    if floor {
-        about += " | ═ floor";
-    }
-    lines.push(mark(Tone::Dim, &about));
-    lines
+    let names = wrap(&entries.join(&format!("{JOINED} ")), WIDTH, "  ").into_iter();
+    let names = names.map(|line| line.replace(JOINED, " ").trim_end().to_owned());
+    let floor = if floor { " | ═ floor" } else { "" };
+    let about = format!("where several meet, the first of them is shown | ┈ target{floor}");
+    names.chain([mark(Tone::Dim, &about)]).collect()
 }

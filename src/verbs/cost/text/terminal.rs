@@ -1,9 +1,7 @@
 //! The answers, the table of engines, and the diagram in characters.
 
 use super::{answer, brief, evaluations, scatter, table, tried};
-use crate::report::terminal::WIDTH;
-use crate::report::terminal::fit::wrap;
-use crate::report::terminal::paint::{Tone, mark};
+use crate::report::terminal::{Tone, WIDTH, mark, wrap};
 use crate::report::words::{self, NOTHING};
 use crate::verbs::Report;
 use crate::verbs::cost::{Cost, CostCurve, CostRank, CostTarget};
@@ -61,13 +59,10 @@ fn legend(cost: &Cost, left_out: &[String]) -> String {
 
 /// Setting and price at which a curve reaches the target; the cheapest in green.
 pub fn cell(target: &CostTarget, curve: &CostCurve, timed: bool) -> (String, Option<Tone>) {
-    let ranks = target.ranking.iter().chain(&target.reference);
+    let mut ranks = target.ranking.iter().chain(&target.reference);
     let of_curve = |rank: &&CostRank| rank.engine == curve.engine;
-    let Some(reached) = ranks
-        .clone()
-        .find(of_curve)
-        .and_then(|r| r.reached.as_ref())
-    else {
+    let reached = ranks.find(of_curve).and_then(|rank| rank.reached.as_ref());
+    let Some(reached) = reached else {
         return (NOTHING.into(), None);
     };
     let paid = match (timed, reached.wall_median_s, reached.force_evaluations) {
@@ -77,9 +72,6 @@ pub fn cell(target: &CostTarget, curve: &CostCurve, timed: bool) -> (String, Opt
         _ => NOTHING.into(),
     };
     let setting = brief(reached.timestep, reached.tolerance);
-    let leads = target
-        .ranking
-        .first()
-        .is_some_and(|rank| rank.engine == curve.engine);
+    let leads = target.ranking.first().as_ref().is_some_and(of_curve);
     (format!("{setting}  {paid:>7}"), leads.then_some(Tone::Good))
 }

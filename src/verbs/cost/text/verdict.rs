@@ -1,9 +1,8 @@
 //! The sentence that says what to use.
 
 use super::{answer, metres, ratio};
-use crate::report::notes::listed;
 use crate::report::verdict::Clause;
-use crate::report::words;
+use crate::report::words::{self, listed};
 use crate::verbs::Report;
 use crate::verbs::cost::{Cost, CostReached, CostTarget};
 
@@ -28,22 +27,22 @@ pub fn clauses(report: &Report, cost: &Cost) -> Vec<Clause> {
         .iter()
         .filter(nobody)
         .partition(|target| target.reason.is_some());
-    clauses.extend(group("no integrator reaches", &unreached));
+    clauses.extend(group("no integrator reaches", &unreached).map(|text| vec![text]));
     if let Some(reason) = open.first().and_then(|target| target.reason.as_ref()) {
         let reason = words::one_line(reason);
-        let named = group("nobody can be said to reach", &open);
-        clauses
-            .extend(named.map(|clause| clause.iter().map(|c| format!("{c}: {reason}")).collect()));
+        let open = group("nobody can be said to reach", &open);
+        clauses.extend(
+            open.map(|text| format!("{text}: {reason}"))
+                .map(|text| vec![text]),
+        );
     }
     if clauses.is_empty() {
-        let known = cost
-            .curves
-            .iter()
-            .filter(|curve| super::nearest(curve).is_some());
-        clauses.push(vec![match known.count() {
-            0 => "no setting gave an error against the truth".to_owned(),
-            _ => "no target was asked about".to_owned(),
-        }]);
+        let mut curves = cost.curves.iter();
+        let text = match curves.any(|curve| super::nearest(curve).is_some()) {
+            false => "no setting gave an error against the truth",
+            true => "no target was asked about",
+        };
+        clauses.push(vec![text.to_owned()]);
     }
     clauses
 }
@@ -75,7 +74,7 @@ fn cheapest(target: &CostTarget, leads: bool) -> Option<Clause> {
 /// `symplectic_euler, the scene's own, takes 6,200x the time`.
 fn own(report: &Report, target: &CostTarget) -> Option<Clause> {
     let mut ranks = target.ranking.iter();
-    let rank = ranks.find(|rank| rank.engine == report.header.scene.own_integrator)?;
+    let rank = ranks.find(|rank| report.header.is_own(&rank.engine))?;
     let name = words::one_line(&rank.engine);
     let [long, short] = match (&rank.reached, rank.wall_ratio) {
         (None, _) => ["does not reach it".to_owned(), "does not".to_owned()],
@@ -92,7 +91,7 @@ fn own(report: &Report, target: &CostTarget) -> Option<Clause> {
     ])
 }
 
-fn group(lead: &str, targets: &[&CostTarget]) -> Option<Clause> {
+fn group(lead: &str, targets: &[&CostTarget]) -> Option<String> {
     let errors: Vec<String> = targets.iter().map(|t| metres(t.error_m)).collect();
-    (!errors.is_empty()).then(|| vec![format!("{lead} {} m", listed(&errors))])
+    (!errors.is_empty()).then(|| format!("{lead} {} m", listed(&errors)))
 }

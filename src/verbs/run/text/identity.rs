@@ -1,8 +1,8 @@
 //! Which scheme a trajectory follows, and where it stops following it, in words.
 
-use super::{listed, words};
 use crate::integrators;
 use crate::measure::identify::{Fault, Identified, Quantity, Undecided};
+use crate::report::words::{self, listed};
 use crate::solvers::Kind;
 use crate::verbs::run::Outcome;
 use crate::verbs::{Body, Report};
@@ -16,30 +16,33 @@ pub fn sentence(outcome: &Outcome) -> Option<String> {
     let itself = outcome.kind == Kind::Integrator
         && found.substeps == 1
         && (found.method == outcome.engine || found.equivalent.contains(&outcome.engine));
-    (!itself).then(|| {
-        let scheme = scheme(found, outcome.timestep);
-        let defect = format!("defect {} of rounding", words::short_sci(found.defect));
-        if found.decisive {
-            return format!("step by step it is {scheme} ({defect}{})", next(found));
+    let scheme = scheme(found, outcome.timestep);
+    let defect = format!("defect {} of rounding", words::short_sci(found.defect));
+    let next = found.runner_up.as_ref().zip(found.runner_up_defect);
+    let next = next.map_or(String::new(), |(other, defect)| {
+        format!(
+            "; next {}: {}",
+            words::one_line(other),
+            words::short_sci(defect)
+        )
+    });
+    let is = format!("step by step it is {scheme} ({defect}");
+    let text = match found.undecided {
+        _ if found.decisive => format!("{is}{next})"),
+        Some(Undecided::NothingFits) => {
+            let nearest = format!("the nearest is {scheme} ({defect}{next})");
+            format!("no known scheme explains its steps; {nearest}")
         }
-        if found.undecided == Some(Undecided::NothingFits) {
-            return format!(
-                "no known scheme explains its steps; the nearest is {scheme} ({defect}{})",
-                next(found)
-            );
+        Some(Undecided::DataTooCoarse) => {
+            let why = "which at this step and with these digits cannot be told from";
+            format!("{is}), {why} {}", equivalent(found))
         }
-        let why = match found.undecided {
-            Some(Undecided::DataTooCoarse) => {
-                "which at this step and with these digits cannot be told from"
-            }
-            _ => "which here is the same as",
-        };
-        let others = equivalent(found);
-        format!("step by step it is {scheme} ({defect}), {why} {others}")
-    })
+        _ => format!("{is}), which here is the same as {}", equivalent(found)),
+    };
+    (!itself).then_some(text)
 }
 
-/// `implicit_euler at dt/4 = 0.000125 s`.
+/// `implicit_euler at h/4 = 0.000125 s`.
 fn scheme(found: &Identified, timestep: f64) -> String {
     let name = words::one_line(&found.method);
     if found.substeps == 1 {
@@ -48,19 +51,6 @@ fn scheme(found: &Identified, timestep: f64) -> String {
     let n = found.substeps;
     let step = words::short(timestep / f64::from(n));
     format!("{name} at h/{n} = {step} s")
-}
-
-fn next(found: &Identified) -> String {
-    match (&found.runner_up, found.runner_up_defect) {
-        (Some(other), Some(defect)) => {
-            format!(
-                "; next {}: {}",
-                words::one_line(other),
-                words::short_sci(defect)
-            )
-        }
-        _ => String::new(),
-    }
 }
 
 fn equivalent(found: &Identified) -> String {
@@ -115,35 +105,22 @@ pub fn verdict(report: &Report) -> Option<String> {
     };
     let scheme = scheme(found, outcome.timestep);
     let known = integrators::find(&found.method).is_some();
-    Some(match fault {
-        Some(fault) if found.undecided == Some(Undecided::NothingFits) => format!(
-            "{name}, step {}: {}",
-            fault.step,
-            words::one_line(&fault.explanation)
-        ),
-        Some(fault) if !known => {
-            // What remembers a step shows in the second.
-            let from = match fault.step {
-                0 | 1 => String::new(),
-                step => format!(" from step {step} on"),
-            };
-            let says = words::one_line(&fault.explanation);
-            format!("{name} is {scheme}{from}: {says}")
-        }
-        Some(fault) => format!(
-            "{name} is {scheme} but for step {}: {}",
-            fault.step,
-            words::one_line(&fault.explanation)
-        ),
-        None => match found.undecided {
+    let Some(fault) = fault else {
+        return Some(match found.undecided {
             None => format!("{name} follows {scheme} throughout"),
             Some(Undecided::SameMap) => {
                 format!("{name} follows {scheme} throughout, here the same as others")
             }
-            Some(Undecided::DataTooCoarse) => {
-                format!("{name} does not tell {scheme} from others")
-            }
+            Some(Undecided::DataTooCoarse) => format!("{name} does not tell {scheme} from others"),
             Some(Undecided::NothingFits) => format!("{name} follows no known scheme"),
-        },
+        });
+    };
+    let (step, says) = (fault.step, words::one_line(&fault.explanation));
+    Some(match found.undecided {
+        Some(Undecided::NothingFits) => format!("{name}, step {step}: {says}"),
+        _ if known => format!("{name} is {scheme} but for step {step}: {says}"),
+        // What remembers a step shows in the second.
+        _ if step < 2 => format!("{name} is {scheme}: {says}"),
+        _ => format!("{name} is {scheme} from step {step} on: {says}"),
     })
 }

@@ -2,13 +2,11 @@
 
 use crate::measure::Energy;
 use crate::report::EffectUse;
-use crate::report::table::{Mark, Table};
-use crate::report::terminal::fit::{clip, pad, width};
-use crate::report::words::escape;
-use crate::report::words::{self, NOTHING};
+use crate::report::table::Table;
+use crate::report::terminal::{clip, pad, width};
+use crate::report::words::{self, escape};
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
-use crate::verbs::run::text::naming;
 
 /// Where the energy is at the end, by effect, what left and entered, and the momenta.
 pub fn energies(report: &Report) -> String {
@@ -20,9 +18,9 @@ pub fn energies(report: &Report) -> String {
     let Some((_, first)) = rows.first() else {
         return String::new();
     };
-    let own = &report.header.scene.own_integrator;
+    let header = &report.header;
     let mut table = Table::new(&rows);
-    table.engines(|(o, _)| (naming::engine(o), Mark::of(&o.engine, own)));
+    table.engines(|(o, _)| (super::engine(o), header.mark(&o.engine)));
     table.markdown("kinetic", |(_, energy)| number(energy.kinetic_final_j));
     // Effects without potential energy would have columns of zeros.
     for (id, _) in first
@@ -50,14 +48,11 @@ pub fn energies(report: &Report) -> String {
     }
     let intro = "Joules at the last recorded instant; momenta in kg m/s and kg m²/s, where the scene \
                  conserves them.";
-    format!(
-        "## Where the energy is at the end\n\n{intro}\n\n{}",
-        table.in_markdown()
-    )
+    format!("{intro}\n\n{}", table.in_markdown())
 }
 
-fn number(value: Option<f64>) -> String {
-    value.map_or(NOTHING.into(), words::short)
+fn number(value: Option<f64>) -> Option<String> {
+    value.map(words::short)
 }
 
 /// The effects that ran: how often, at what cost.
@@ -69,8 +64,8 @@ pub fn effects(effects: &[EffectUse]) -> String {
     table.markdown("effect", |effect| escape(&effect.id));
     table.markdown("acts on", |effect| effect.members.to_string());
     table.markdown("evaluations", |effect| words::count(effect.evaluations));
-    table.markdown("time each", |effect| each(effect).unwrap_or(NOTHING.into()));
-    format!("## Effects that ran\n\n{}", table.in_markdown())
+    table.markdown("time each", each);
+    table.in_markdown()
 }
 
 /// The same for the terminal, one line an effect.

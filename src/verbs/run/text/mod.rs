@@ -1,40 +1,105 @@
 //! What `run` and `compare` found, for people: one row an engine and timestep, and, of a comparison, the
 //! first step that leaves its scheme.
 
-pub mod identity;
-pub mod ledger;
-pub mod markdown;
-pub mod naming;
-pub mod table;
-pub mod verdict;
+mod identity;
+mod ledger;
+mod table;
+mod verdict;
 
-use crate::report::notes::{grouped, listed};
-use crate::report::words;
+pub use table::{engine, several_timesteps};
+
+use crate::report::markdown::{findings, opening, section};
+use crate::report::words::{self, escape, grouped, listed};
+use crate::report::{Note, View};
 use crate::solvers::Status;
-use crate::verbs::Report;
 use crate::verbs::run::Outcome;
+use crate::verbs::{Body, Report};
+
+const LEGEND: &str = "\
+## How to read this
+
+- **Energy** is the balance B = E + dissipated - injected, so that damping and wind do not count as errors. The
+  *energy error* is the largest |B - B(0)| over the run, relative to the scene's energy scale S.
+- **Class** is the fitted trend of B set against its fluctuation: *bounded* (no trend to speak of), *drifting*,
+  *dissipating* or *growing* (the trend outweighs the fluctuation).
+- **Deviation** is the largest distance of any particle from the same particle in the named rapier engine.
+  It is not an error: rapier's spring joint is linearly implicit Euler at h = dt/n, which dissipates by design, so a
+  good integrator departs from it. `rapier-forces` applies the scene's own forces to rapier's bodies and must
+  equal symplectic Euler bit for bit.
+- **Error** is the largest distance from the truth; *floor* means below ten times the truth's own error bar.
+- *Diverged*, *failed* and *unsupported* are results, not fast runs: their time is not shown.
+- Times vary from run to run; everything else is reproducible.
+";
+
+/// What the terminal and the page say.
+pub fn view<'a>(report: &'a Report, outcomes: &[Outcome]) -> View<'a> {
+    let mut lines = Vec::new();
+    // Of a comparison only what judging it evaluated would be counted.
+    if let Body::Run { .. } = report.body {
+        lines.extend(ledger::lines(&report.header.scene.effects));
+    }
+    lines.push(String::new());
+    lines.extend(table::lines(report));
+    let said = outcomes.iter().flat_map(|outcome| {
+        let sentences = sentences(outcome).into_iter();
+        sentences.map(move |sentence| (outcome, sentence))
+    });
+    let labels = ["fault"].into_iter().chain(std::iter::repeat(""));
+    View {
+        header: &report.header,
+        timesteps: outcomes.iter().map(|outcome| outcome.timestep).collect(),
+        clauses: verdict::clauses(report),
+        facts: vec![("truth", words::truth(&report.header.truth))],
+        lines,
+        notes: Note::of(said, |outcomes| subjects(report, outcomes, usize::MAX)),
+        last: labels.zip(identity::fault(report)).collect(),
+    }
+}
+
+/// The page.
+pub fn page(report: &Report, view: &View) -> String {
+    let scene = &report.header.scene;
+    let scale = scene.energy_scale_j;
+    let scale = scale.map_or("none".into(), |s| format!("{} J", words::short(s)));
+    let more = vec![
+        ("timestep", words::timestep(scene.timestep, &view.timesteps)),
+        ("duration", format!("{} s", words::short(scene.duration))),
+        ("energy scale S", scale),
+        ("truth", words::truth(&report.header.truth)),
+    ];
+    let fault = identity::fault(report);
+    let fault = fault.iter().map(|line| format!("- {}\n", escape(line)));
+    [
+        opening(view, more),
+        report.images(),
+        section("Outcomes", table::markdown(report)),
+        findings(view),
+        section("First fault", fault.collect()),
+        section("Where the energy is at the end", ledger::energies(report)),
+        section("Effects that ran", ledger::effects(&scene.effects)),
+        LEGEND.to_owned(),
+    ]
+    .concat()
+}
 
 /// The outcome's remarks, led by its reason for ending early where no remark repeats it.
 pub fn sentences(outcome: &Outcome) -> Vec<String> {
     let remarks: Vec<String> = outcome.remarks.iter().map(|r| words::one_line(r)).collect();
-    let mut sentences = Vec::new();
-    if outcome.status != Status::Completed {
-        let reason = outcome.reason.as_deref().map(words::one_line);
-        let repeated = reason
+    let reason = outcome.reason.as_deref().map(words::one_line);
+    let repeats = |remark: &String| {
+        reason
             .as_ref()
-            .is_some_and(|reason| remarks.iter().any(|r| r.contains(reason)));
-        if !repeated {
-            sentences.push(ending(outcome, reason));
-        }
-    }
-    sentences.extend(remarks);
-    sentences.extend(identity::sentence(outcome));
-    sentences
+            .is_some_and(|reason| remark.contains(reason))
+    };
+    let is_said = outcome.status == Status::Completed || remarks.iter().any(repeats);
+    let ending = (!is_said).then(|| ending(outcome, reason));
+    let sentences = ending.into_iter().chain(remarks);
+    sentences.chain(identity::sentence(outcome)).collect()
 }
 
 /// `diverged at 1.23 s: ...`
 fn ending(outcome: &Outcome, reason: Option<String>) -> String {
-    let mut text = words::status(outcome.status).to_string();
+    let mut text = words::id(outcome.status);
     if let Some(t) = outcome.stopped_at_s {
         text += &format!(" at {} s", words::short(t));
     }
@@ -52,41 +117,15 @@ pub fn subjects(report: &Report, chosen: &[&Outcome], limit: usize) -> String {
     // "and 1 more" is no shorter than the name.
     let hidden = if hidden == 1 { 0 } else { hidden };
     let named = engines.iter().take(engines.len() - hidden);
-    let mut texts: Vec<String> = named
-        .map(|(engine, timesteps)| {
-            let of_engine = |o: &&Outcome| o.engine == **engine;
-            let all = report.outcomes().iter().filter(of_engine).count();
-            let name = words::one_line(engine);
-            if timesteps.len() >= all {
-                name
-            } else {
-                format!("{name} at h = {}", timesteps.join(", "))
-            }
-        })
-        .collect();
-    if hidden > 0 {
-        texts.push(format!("{hidden} more"));
-    }
-    listed(&texts)
-}
-
-/// Whether outcomes differ in their timestep, so that a table has to say it.
-pub fn several_timesteps(report: &Report) -> bool {
-    let mut timesteps = report.outcomes().iter().map(|o| o.timestep);
-    let first = timesteps.next();
-    timesteps.any(|h| Some(h) != first)
-}
-
-/// The engines that deviations are stated against, rapier's own first, at most two.
-pub fn references(report: &Report) -> Vec<&str> {
-    let mut found: Vec<&str> = Vec::new();
-    let named = ["rapier", "rapier-forces"];
-    let keys = || report.outcomes().iter().flat_map(|o| o.deviation_m.keys());
-    for name in named.into_iter().chain(keys().map(String::as_str)) {
-        if keys().any(|key| key == name) && !found.contains(&name) {
-            found.push(name);
+    let named = named.map(|(engine, timesteps)| {
+        let of_engine = |o: &&Outcome| o.engine == **engine;
+        let all = report.outcomes().iter().filter(of_engine).count();
+        let name = words::one_line(engine);
+        match timesteps.len() < all {
+            true => format!("{name} at h = {}", timesteps.join(", ")),
+            false => name,
         }
-    }
-    found.truncate(2);
-    found
+    });
+    let more = (hidden > 0).then(|| format!("{hidden} more"));
+    listed(&named.chain(more).collect::<Vec<_>>())
 }

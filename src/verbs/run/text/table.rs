@@ -1,16 +1,12 @@
 //! The table of outcomes, in the terminal and in Markdown.
 
-use super::{references, several_timesteps};
 use crate::measure::EnergyClass;
-use crate::report::table::{Mark, Table};
-use crate::report::terminal::fit::{clip, pad};
-use crate::report::terminal::paint::Tone;
-use crate::report::words::escape;
-use crate::report::words::{self, NOTHING};
+use crate::report::table::Table;
+use crate::report::terminal::{Tone, clip, pad};
+use crate::report::words::{self, NOTHING, escape};
 use crate::solvers::Status;
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
-use crate::verbs::run::text::naming;
 
 /// The terminal's lines and their legend.
 pub fn lines(report: &Report) -> Vec<String> {
@@ -31,23 +27,16 @@ pub fn markdown(report: &Report) -> String {
 fn table(report: &Report, fold: char) -> Table<'_, Outcome> {
     let outcomes = report.outcomes();
     let mut table = Table::new(outcomes);
-    let own = &report.header.scene.own_integrator;
-    table.engines(|o| (naming::engine(o), Mark::of(&o.engine, own)));
+    let header = &report.header;
+    table.engines(|o| (engine(o), header.mark(&o.engine)));
     if several_timesteps(report) {
         table.right("h (s)", "h (s)", 0, |o| words::short(o.timestep));
     }
     table.left("status", "status", status);
     let classes = class_width(outcomes);
     table.left("energy", "", |o| energy(o, classes));
-    table.markdown("energy", |o| {
-        let class = o.energy.as_ref().and_then(|e| e.class);
-        class.map_or(NOTHING, words::class).into()
-    });
-    table.markdown("energy error", |o| {
-        let error = o.energy.as_ref().map(words::energy_error);
-        let error = error.filter(|text| !text.is_empty());
-        error.unwrap_or(NOTHING.into())
-    });
+    table.markdown("energy", |o| o.energy.as_ref()?.class.map(words::id));
+    table.markdown("energy error", |o| words::energy_error(o.energy.as_ref()?));
     for (rank, reference) in references(report).into_iter().enumerate() {
         let name = clip(&words::one_line(reference), 14);
         let header = match fold {
@@ -62,11 +51,10 @@ fn table(report: &Report, fold: char) -> Table<'_, Outcome> {
     }
     table.markdown("steps", |o| words::count(o.work.steps));
     table.right("force\nevals", "force evaluations", 2, |o| {
-        let evaluations = o.work.force_evaluations;
-        evaluations.map_or(NOTHING.into(), words::count)
+        o.work.force_evaluations.map(words::count)
     });
     // A trajectory from a file has neither.
-    table.right("time", "time", 0, naming::wall_time);
+    table.right("time", "time", 0, wall_time);
     table
 }
 
@@ -76,23 +64,19 @@ fn status(outcome: &Outcome) -> (String, Option<Tone>) {
         Status::Diverged | Status::Failed => Some(Tone::Bad),
         Status::Unsupported => Some(Tone::Dim),
     };
-    (words::status(outcome.status).into(), tone)
+    (words::id(outcome.status), tone)
 }
 
 /// Columns of the longest class word, so that the numbers line up.
 fn class_width(outcomes: &[Outcome]) -> usize {
     let classes = outcomes.iter().filter_map(|o| o.energy.as_ref()?.class);
-    classes.map(|c| words::class(c).len()).max().unwrap_or(0)
+    classes.map(|c| words::id(c).len()).max().unwrap_or(0)
 }
 
 fn energy(outcome: &Outcome, classes: usize) -> (String, Option<Tone>) {
-    let Some(energy) = &outcome.energy else {
-        return (NOTHING.into(), None);
-    };
-    let number = words::energy_error(energy);
-    let Some(class) = energy.class else {
-        let number = if number.is_empty() { NOTHING } else { &number };
-        return (number.into(), None);
+    let number = outcome.energy.as_ref().and_then(words::energy_error);
+    let Some(class) = outcome.energy.as_ref().and_then(|e| e.class) else {
+        return (number.unwrap_or(NOTHING.into()), None);
     };
     let tone = match class {
         EnergyClass::Bounded => Tone::Good,
@@ -100,22 +84,19 @@ fn energy(outcome: &Outcome, classes: usize) -> (String, Option<Tone>) {
         EnergyClass::Growing => Tone::Bad,
         EnergyClass::Dissipating => Tone::Cool,
     };
-    let text = format!("{} {number}", pad(words::class(class), classes));
+    let class = pad(&words::id(class), classes);
+    let text = format!("{class} {}", number.unwrap_or_default());
     (text.trim_end().into(), Some(tone))
 }
 
-fn deviation(outcome: &Outcome, reference: &str) -> String {
-    match outcome.deviation_m.get(reference) {
-        Some(deviation) if outcome.engine != reference => words::sci(deviation.max),
-        _ => NOTHING.into(),
-    }
+fn deviation(outcome: &Outcome, reference: &str) -> Option<String> {
+    let deviation = outcome.deviation_m.get(reference)?;
+    (outcome.engine != reference).then(|| words::sci(deviation.max))
 }
 
-fn error(report: &Report, outcome: &Outcome) -> String {
-    let error = outcome.position_error_m.as_ref();
-    error.map_or(NOTHING.into(), |e| {
-        words::truth_error(e.max, &report.header.truth)
-    })
+fn error(report: &Report, outcome: &Outcome) -> Option<String> {
+    let error = outcome.position_error_m.as_ref()?.max;
+    Some(words::truth_error(error, &report.header.truth))
 }
 
 fn legend(report: &Report) -> String {
@@ -127,9 +108,53 @@ fn legend(report: &Report) -> String {
     if report.outcomes().iter().any(|o| !o.deviation_m.is_empty()) {
         text += " | m from: largest distance of a particle";
     }
-    let at_floor = |o: &Outcome| error(report, o) == "floor";
+    let at_floor = |o: &Outcome| error(report, o).is_some_and(|error| error == "floor");
     if report.outcomes().iter().any(at_floor) {
         text += " | floor: below ten times the truth's own error";
     }
     text
+}
+
+/// Whether outcomes differ in their timestep, so that a table has to say it.
+pub fn several_timesteps(report: &Report) -> bool {
+    let mut timesteps = report.outcomes().iter().map(|o| o.timestep);
+    let first = timesteps.next();
+    timesteps.any(|h| Some(h) != first)
+}
+
+/// The engines that deviations are stated against, rapier's own first, at most two.
+fn references(report: &Report) -> Vec<&str> {
+    let mut found: Vec<&str> = Vec::new();
+    let named = ["rapier", "rapier-forces"];
+    let keys = || report.outcomes().iter().flat_map(|o| o.deviation_m.keys());
+    for name in named.into_iter().chain(keys().map(String::as_str)) {
+        if keys().any(|key| key == name) && !found.contains(&name) {
+            found.push(name);
+        }
+    }
+    found.truncate(2);
+    found
+}
+
+/// Median time, with its spread where that exceeds a tenth: `12.3 ms ±14%`. A run that did not
+/// finish has no speed.
+fn wall_time(outcome: &Outcome) -> Option<String> {
+    let wall = outcome.work.wall_s.as_ref();
+    let wall = wall.filter(|_| outcome.status == Status::Completed)?;
+    let mut text = words::seconds(wall.median);
+    if let Some(mad) = wall.mad
+        && mad > 0.1 * wall.median
+    {
+        text += &format!(" ±{:.0}%", (100.0 * mad / wall.median).min(999.0));
+    }
+    Some(text)
+}
+
+/// The engine, with rapier's substeps where it takes any: `rapier, dt/4`.
+pub fn engine(outcome: &Outcome) -> String {
+    let ratio = outcome.timestep / outcome.substep;
+    if ratio.is_finite() && ratio > 1.5 && ratio < 1e6 {
+        return format!("{}, dt/{ratio:.0}", outcome.engine);
+    }
+    outcome.engine.clone()
 }

@@ -14,9 +14,8 @@ const NAMED: usize = 4;
 /// The comparison, then the scene's own integrator, then who diverged, grew, dissipated, then the proof
 /// that the harness is unbiased.
 pub fn clauses(report: &Report) -> Vec<Clause> {
-    let mut clauses = Vec::new();
-    clauses.extend(identity::verdict(report).map(|text| vec![text]));
-    clauses.extend(own(report).map(|text| vec![text]));
+    let whole = [identity::verdict(report), own(report)];
+    let mut clauses: Vec<Clause> = whole.into_iter().flatten().map(|text| vec![text]).collect();
     clauses.extend(groups(report));
     clauses.extend(twin_proof(&report.header.checks));
     clauses
@@ -24,37 +23,36 @@ pub fn clauses(report: &Report) -> Vec<Clause> {
 
 /// What the scene's own integrator does; at several timesteps the groups say it.
 fn own(report: &Report) -> Option<String> {
+    let header = &report.header;
     let mut own = report
         .outcomes()
         .iter()
-        .filter(|o| o.engine == report.header.scene.own_integrator);
+        .filter(|o| header.is_own(&o.engine));
     let (first, None) = (own.next()?, own.next()) else {
         return None;
     };
-    let name = words::one_line(&first.engine);
     if first.status != Status::Completed {
         return None;
     }
     let energy = first.energy.as_ref()?;
-    let error = energy
-        .relative_error_max
-        .map(|e| format!(" ({})", words::sci(e)))
-        .unwrap_or_default();
     let does = match energy.class? {
-        EnergyClass::Bounded => format!("stays bounded{error}"),
-        EnergyClass::Drifting => format!("drifts in energy{error}"),
-        EnergyClass::Dissipating => format!("dissipates energy{error}"),
-        EnergyClass::Growing if energy.lost() => format!("has a growing energy balance{error}"),
-        EnergyClass::Growing => format!("gains energy{error}"),
+        EnergyClass::Bounded => "stays bounded",
+        EnergyClass::Drifting => "drifts in energy",
+        EnergyClass::Dissipating => "dissipates energy",
+        EnergyClass::Growing if energy.lost() => "has a growing energy balance",
+        EnergyClass::Growing => "gains energy",
     };
-    let error = first.position_error_m.as_ref();
-    let error = error.map(
-        |e| match words::truth_error(e.max, &report.header.truth).as_str() {
-            "floor" => ", on the truth".to_owned(),
-            error => format!(", {error} m from the truth"),
-        },
-    );
-    Some(format!("{name} {does}{}", error.unwrap_or_default()))
+    let error = energy.relative_error_max;
+    let error = error.map_or(String::new(), |e| format!(" ({})", words::sci(e)));
+    let off = first.position_error_m.as_ref();
+    let off = off.map(|e| words::truth_error(e.max, &header.truth));
+    let off = match off.as_deref() {
+        None => String::new(),
+        Some("floor") => ", on the truth".to_owned(),
+        Some(error) => format!(", {error} m from the truth"),
+    };
+    let name = words::one_line(&first.engine);
+    Some(format!("{name} {does}{error}{off}"))
 }
 
 fn groups(report: &Report) -> Vec<Clause> {
@@ -88,28 +86,21 @@ fn group(report: &Report, label: &str, belongs: impl Fn(&Outcome) -> bool) -> Op
 
 /// The quiet ones are counted, not named.
 fn bounded(report: &Report, belongs: impl Fn(&Outcome) -> bool) -> Option<Clause> {
-    let noun = if own(report).is_some() {
-        "other"
-    } else {
-        "run"
+    let noun = match own(report) {
+        Some(_) => "other",
+        None => "run",
     };
-    let text = match unsaid(report, belongs).len() {
-        0 => return None,
-        1 => format!("1 {noun} bounded"),
-        n => format!("{n} {noun}s bounded"),
-    };
-    Some(vec![text, String::new()])
+    let bounded = unsaid(report, belongs).len() as u64;
+    let text = format!("{} bounded", words::plural(bounded, noun));
+    (bounded > 0).then(|| vec![text, String::new()])
 }
 
 /// The outcomes that belong, but for the scene's own integrator where it has its clause.
 fn unsaid(report: &Report, belongs: impl Fn(&Outcome) -> bool) -> Vec<&Outcome> {
     let own_said = own(report).is_some();
-    let is_said = |o: &Outcome| own_said && o.engine == report.header.scene.own_integrator;
-    report
-        .outcomes()
-        .iter()
-        .filter(|o| belongs(o) && !is_said(o))
-        .collect()
+    let is_said = |o: &Outcome| own_said && report.header.is_own(&o.engine);
+    let outcomes = report.outcomes().iter();
+    outcomes.filter(|o| belongs(o) && !is_said(o)).collect()
 }
 
 /// `twin proof holds (2 of 2)`; silent where it failed, for that is said first.
@@ -125,13 +116,9 @@ fn twin_proof(checks: &[Check]) -> Option<Clause> {
         (_, 1.., _) | (0, 0, 0) => None,
         (0, 0, _) => Some(vec!["twin proof not made".into()]),
         _ => {
-            let counted = format!("{holds} ({passed} of {})", passed + open);
-            let short = if open == 0 {
-                holds.into()
-            } else {
-                counted.clone()
-            };
-            Some(vec![counted, short])
+            let mut forms = vec![format!("{holds} ({passed} of {})", passed + open)];
+            forms.extend((open == 0).then(|| holds.into()));
+            Some(forms)
         }
     }
 }

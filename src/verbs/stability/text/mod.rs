@@ -1,23 +1,98 @@
 //! What `stability` found, for people: how limits and growth are written, and who says what.
 
-pub mod markdown;
-pub mod terminal;
-pub mod verdict;
+mod terminal;
+mod verdict;
 
-use crate::report::notes::listed;
-use crate::report::table::{Mark, Table};
-use crate::report::terminal::paint::Tone;
-use crate::report::words::{self, NOTHING};
+use crate::report::markdown::{findings, opening, section};
+use crate::report::table::Table;
+use crate::report::terminal::Tone;
+use crate::report::words::{self, NOTHING, escape, listed, one_line};
+use crate::report::{Note, View};
 use crate::verbs::Report;
 use crate::verbs::stability::{Stability, StabilityRow};
+
+const LEGEND: &str = "\
+## How to read this
+
+- **Predicted limit**: the largest step up to which, at every smaller one too, no mode of the scene linearised about
+  its start grows under the method. *never*: some mode grows at every step; *always*: none does at any.
+- **Measured limit**: the largest step that running the scene finds stable, to a thousandth of itself;
+  *a..b* where the work allowed ended between a step found stable and one found not.
+- **Growth** is that of the amplitude at the step asked about, as a rate: ln(spectral radius) / h.
+- **Smooth below**: where nothing oscillates in truth, the largest step at which every mode decays without changing
+  sign from step to step.
+- Where a step is a linear map, prediction and measurement must agree. Elsewhere the state moves away from where it was
+  linearised, and the remarks say what that does.
+";
+
+const MAP: &str = "\
+Each cell is a run of its own. *Stable*: its energy stays within bounds. *Dissipating*: the method loses energy that
+nothing in the scene takes. *Growing*: it gains without bound. *Failed*: a step could not be taken, or numbers
+left their range. Growth too slow to show over these steps is not seen. The line is the predicted limit; what has none
+is stable everywhere, at no step, or is not predicted.
+";
+
+/// What the terminal and the page say.
+pub fn view<'a>(report: &'a Report, stability: &'a Stability) -> View<'a> {
+    let all = stability.rows.len();
+    let said = stability.rows.iter().flat_map(|row| {
+        let remarks = row.remarks.iter().map(|remark| one_line(remark));
+        remarks.map(|remark| (one_line(&row.engine), remark))
+    });
+    View {
+        header: &report.header,
+        timesteps: Vec::new(),
+        clauses: verdict::clauses(report, stability),
+        facts: facts(stability),
+        lines: terminal::lines(report, stability),
+        notes: Note::of(said, |engines| match engines.len() {
+            several if several == all && all > 2 => "all".to_owned(),
+            _ => listed(engines),
+        }),
+        last: Vec::new(),
+    }
+}
+
+/// The page.
+pub fn page(report: &Report, stability: &Stability, view: &View) -> String {
+    let step = format!("{} s", words::short(stability.timestep_s));
+    let mut more = vec![("timestep asked about", step)];
+    more.extend(facts(stability));
+    let map = map_heading(stability).map(|heading| format!("{}. {MAP}", escape(&heading)));
+    [
+        opening(view, more),
+        section("Limits", table(report, stability).in_markdown()),
+        findings(view),
+        section("Map", map.unwrap_or_default()),
+        report.images(),
+        admissible(stability).unwrap_or_default(),
+        LEGEND.to_owned(),
+    ]
+    .concat()
+}
+
+/// What the picture of admissible places shows, and how much of them there is.
+fn admissible(stability: &Stability) -> Option<String> {
+    let admissible = stability.admissible.as_ref()?;
+    let mut table = Table::new(&admissible.panels);
+    table.markdown("stiffness (N/m)", |panel| words::short(panel.stiffness_n_m));
+    table.markdown("admitted", |panel| format!("{:.1} %", 100.0 * panel.share));
+    Some(format!(
+        "Two particles at rest at x1 and x2: coloured where one step of h = {} s leaves the spring's force no \
+         larger than it was. ({} takes two: its first moves nothing.)\n\n{}\n",
+        words::short(admissible.timestep_s),
+        escape(&admissible.engine),
+        table.in_markdown()
+    ))
+}
 
 /// The table of limits, in the terminal and in Markdown.
 fn table<'a>(report: &Report, stability: &'a Stability) -> Table<'a, StabilityRow> {
     let h = stability.timestep_s;
-    let own = &report.header.scene.own_integrator;
+    let header = &report.header;
     let any = |wanted: fn(&StabilityRow) -> bool| stability.rows.iter().any(wanted);
     let mut table = Table::new(&stability.rows);
-    table.engines(|row| (row.engine.clone(), Mark::of(&row.engine, own)));
+    table.engines(|row| (row.engine.clone(), header.mark(&row.engine)));
     table.right("predicted\nlimit (s)", "predicted limit (s)", 0, |row| {
         limit(row.predicted_limit_s, row.unconditional)
     });
@@ -29,7 +104,7 @@ fn table<'a>(report: &Report, stability: &'a Stability) -> Table<'a, StabilityRo
             limit(tightest(row).map(|tightest| tightest.limit_s), false)
         });
         table.markdown("at t (s)", |row| {
-            tightest(row).map_or(NOTHING.into(), |tightest| words::short(tightest.t_s))
+            tightest(row).map(|tightest| words::short(tightest.t_s))
         });
     }
     // The terminal drops it by itself where nobody has one.
@@ -44,10 +119,10 @@ fn table<'a>(report: &Report, stability: &'a Stability) -> Table<'a, StabilityRo
         });
     }
     table.right("growth/s\npredicted", "growth predicted (1/s)", 1, |row| {
-        growth(row.growth_per_s)
+        row.growth_per_s.map(digits)
     });
     table.right("growth/s\nmeasured", "growth measured (1/s)", 1, |row| {
-        growth(row.measured_growth_per_s)
+        row.measured_growth_per_s.map(digits)
     });
     let step = words::short(h);
     let [terminal, markdown] = [format!("at h =\n{step} s"), format!("h = {step} s")];
@@ -91,20 +166,13 @@ fn digits(value: f64) -> String {
 }
 
 /// Measured over predicted, where both are numbers above 0.
-fn ratio(row: &StabilityRow) -> String {
-    match (row.predicted_limit_s, row.measured_limit_s) {
-        (Some(p), Some(m)) if p > 0.0 && m > 0.0 => match m / p {
-            // As many decimals above 1 as below.
-            ratio if (0.1..10.0).contains(&ratio) => format!("{ratio:.4}"),
-            ratio => digits(ratio),
-        },
-        _ => NOTHING.into(),
-    }
-}
-
-/// Growth of the amplitude, 1/s.
-fn growth(per_s: Option<f64>) -> String {
-    per_s.map_or(NOTHING.into(), digits)
+fn ratio(row: &StabilityRow) -> Option<String> {
+    let [predicted, measured] = [row.predicted_limit_s?, row.measured_limit_s?];
+    (predicted > 0.0 && measured > 0.0).then(|| match measured / predicted {
+        // As many decimals above 1 as below.
+        ratio if (0.1..10.0).contains(&ratio) => format!("{ratio:.4}"),
+        ratio => digits(ratio),
+    })
 }
 
 /// Where the step stands: inside the limit, or how many times beyond.
@@ -120,8 +188,7 @@ fn place(row: &StabilityRow, timestep: f64) -> String {
 }
 
 /// What holds of the whole scene, line by line: label and text.
-pub fn facts(stability: &Stability) -> Vec<(&'static str, String)> {
-    let mut facts = Vec::new();
+fn facts(stability: &Stability) -> Vec<(&'static str, String)> {
     let fastest = match stability.omega_max_rad_s {
         Some(omega) => format!("fastest mode {} rad/s", digits(omega)),
         None if stability.unsure => "fastest mode not known (damping couples too many)".to_owned(),
@@ -135,10 +202,9 @@ pub fn facts(stability: &Stability) -> Vec<(&'static str, String)> {
             words::short(stability.horizon_s)
         )
     };
-    facts.push(("linear", format!("{fastest}; {forces}")));
-    if !stability.excluded.is_empty() {
-        facts.push(("left out", listed(&stability.excluded)));
-    }
+    let out = (!stability.excluded.is_empty()).then(|| listed(&stability.excluded));
+    let mut facts = vec![("linear", format!("{fastest}; {forces}"))];
+    facts.extend(out.map(|out| ("left out", out)));
     facts
 }
 
@@ -149,7 +215,7 @@ fn map_heading(stability: &Stability) -> Option<String> {
         "{} x {} cells of {}, {} steps each at most",
         map.values.len(),
         map.timesteps_s.len(),
-        words::one_line(&map.vary),
+        one_line(&map.vary),
         words::count(map.steps_per_cell)
     ))
 }

@@ -2,9 +2,7 @@
 
 use super::{digits, map_heading, table};
 use crate::measure::stability::Cell;
-use crate::report::terminal::WIDTH;
-use crate::report::terminal::fit::{clip, pad, width, wrap};
-use crate::report::terminal::paint::{Tone, mark};
+use crate::report::terminal::{Tone, WIDTH, clip, mark, pad, width, wrap};
 use crate::report::words;
 use crate::verbs::Report;
 use crate::verbs::stability::{MapPanel, Stability, StabilityMap};
@@ -18,14 +16,15 @@ const LINES: usize = 40;
 pub fn lines(report: &Report, stability: &Stability) -> Vec<String> {
     let mut lines = vec![String::new()];
     lines.extend(table(report, stability).in_terminal(", ", |_| {
-        let mut legend = "▸ own integrator | never, always: no step is stable, every step is | \
-                          ratio: measured over predicted"
-            .to_owned();
         let mut rows = stability.rows.iter();
-        if rows.any(|row| row.smooth_below_s.is_some()) {
-            legend += " | smooth: decays without changing sign, predicted";
-        }
-        legend
+        let smooth = match rows.any(|row| row.smooth_below_s.is_some()) {
+            true => " | smooth: decays without changing sign, predicted",
+            false => "",
+        };
+        format!(
+            "▸ own integrator | never, always: no step is stable, every step is | \
+             ratio: measured over predicted{smooth}"
+        )
     }));
     lines.extend(map(report, stability));
     lines.extend(admissible(stability));
@@ -48,7 +47,7 @@ fn map(report: &Report, stability: &Stability) -> Vec<String> {
     let (Some(map), Some(heading)) = (&stability.map, map_heading(stability)) else {
         return Vec::new();
     };
-    let own = |panel: &&MapPanel| panel.engine == report.header.scene.own_integrator;
+    let own = |panel: &&MapPanel| report.header.is_own(&panel.engine);
     let panel = map.engines.iter().find(own).or(map.engines.first());
     let mut lines = vec![String::new()];
     let fits = map.values.len() <= COLUMNS && map.timesteps_s.len() <= LINES;
@@ -68,11 +67,8 @@ fn drawn(map: &StabilityMap, panel: &MapPanel) -> Vec<String> {
     let mut lines = Vec::new();
     let labelled = |at: usize| at == 0 || at + 1 == map.timesteps_s.len();
     for (at, h) in map.timesteps_s.iter().enumerate().rev() {
-        let label = if labelled(at) {
-            format!("h = {} s", digits(*h))
-        } else {
-            String::new()
-        };
+        let label = labelled(at).then(|| format!("h = {} s", digits(*h)));
+        let label = label.unwrap_or_default();
         let cells = panel.cells.iter().map(|column| {
             let (text, tone) = cell(column.get(at).copied().flatten());
             tone.map_or_else(|| text.to_owned(), |tone| mark(tone, text))
@@ -101,18 +97,15 @@ fn admissible(stability: &Stability) -> Vec<String> {
         words::short(admissible.timestep_s)
     );
     lines.extend(wrap(&heading, WIDTH, "  "));
-    let names: Vec<String> = admissible
-        .panels
-        .iter()
-        .map(|panel| format!("K = {} N/m", words::short(panel.stiffness_n_m)))
+    let stiffnesses = admissible.panels.iter().map(|panel| panel.stiffness_n_m);
+    let names: Vec<String> = stiffnesses
+        .map(|k| format!("K = {} N/m", words::short(k)))
         .collect();
     let longest = names.iter().map(|name| width(name)).max().unwrap_or(0);
-    for (name, panel) in names.iter().zip(&admissible.panels) {
-        lines.push(format!(
-            "  {}  {:>5.1} %",
-            pad(name, longest),
-            100.0 * panel.share
-        ));
-    }
+    let shares = names
+        .iter()
+        .zip(&admissible.panels)
+        .map(|(name, panel)| format!("  {}  {:>5.1} %", pad(name, longest), 100.0 * panel.share));
+    lines.extend(shares);
     lines
 }

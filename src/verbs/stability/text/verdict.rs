@@ -1,9 +1,8 @@
 //! The sentence that says the most important thing about limits.
 
 use super::limit;
-use crate::report::notes::listed;
 use crate::report::verdict::Clause;
-use crate::report::words;
+use crate::report::words::{self, listed};
 use crate::verbs::Report;
 use crate::verbs::stability::{Stability, StabilityRow};
 
@@ -11,37 +10,35 @@ use crate::verbs::stability::{Stability, StabilityRow};
 /// never stable, who always, and who has no answer.
 pub fn clauses(report: &Report, stability: &Stability) -> Vec<Clause> {
     let h = stability.timestep_s;
-    let own = |row: &&StabilityRow| row.engine == report.header.scene.own_integrator;
-    let mut clauses: Vec<Clause> = Vec::new();
-    clauses.extend(
-        stability
-            .rows
-            .iter()
-            .find(own)
-            .and_then(|row| first(row, h)),
-    );
-    let others = || stability.rows.iter().filter(|row| !own(row));
-    let beyond = |row: &&StabilityRow| {
+    let rows = stability.rows.iter();
+    let (own, others): (Vec<_>, Vec<_>) = rows.partition(|row| report.header.is_own(&row.engine));
+    let beyond = |row: &StabilityRow| {
         row.holds(h) == Some(false) && row.limit().is_some_and(|limit| limit > 0.0)
     };
-    clauses.extend(group("beyond their limit", others().filter(beyond)));
-    let never = |row: &&StabilityRow| row.limit() == Some(0.0);
-    clauses.extend(group("never stable", others().filter(never)));
-    let always = |row: &&StabilityRow| row.limit() == Some(f64::INFINITY);
-    clauses.extend(group("always stable", others().filter(always)));
-    let open = |row: &&StabilityRow| row.limit().is_none() && !row.unsupported;
-    clauses.extend(group("without an answer", others().filter(open)));
-    if let (Some(least), false) = (
-        least(others().filter(|row| !beyond(row))),
-        clauses.is_empty(),
-    ) {
-        clauses.push(vec![least, String::new()]);
+    let groups: [(&str, &dyn Fn(&StabilityRow) -> bool); 4] = [
+        ("beyond their limit", &beyond),
+        ("never stable", &|row| row.limit() == Some(0.0)),
+        ("always stable", &|row| row.limit() == Some(f64::INFINITY)),
+        ("without an answer", &|row| {
+            row.limit().is_none() && !row.unsupported
+        }),
+    ];
+    let mut clauses: Vec<Clause> = Vec::new();
+    clauses.extend(own.first().and_then(|row| first(row, h)));
+    for (label, belongs) in groups {
+        let names = others.iter().filter(|row| belongs(row));
+        clauses.extend(group(
+            label,
+            names.map(|row| words::one_line(&row.engine)).collect(),
+        ));
     }
     if clauses.is_empty() {
-        clauses.push(vec![
+        return vec![vec![
             "every step asked about is inside its limit".to_owned(),
-        ]);
+        ]];
     }
+    let inside = others.into_iter().filter(|row| !beyond(row));
+    clauses.extend(least(inside).map(|least| vec![least, String::new()]));
     clauses
 }
 
@@ -65,32 +62,19 @@ fn first(row: &StabilityRow, h: f64) -> Option<Clause> {
 }
 
 /// By name, by number, not at all.
-fn group<'a>(label: &str, rows: impl Iterator<Item = &'a StabilityRow>) -> Option<Clause> {
-    let names: Vec<String> = rows.map(|row| words::one_line(&row.engine)).collect();
-    (!names.is_empty()).then(|| {
-        let counted = format!("{} {label}", names.len());
-        if names.len() > 4 {
-            vec![counted, String::new()]
-        } else {
-            vec![
-                format!("{label}: {}", listed(&names)),
-                counted,
-                String::new(),
-            ]
-        }
-    })
+fn group(label: &str, names: Vec<String>) -> Option<Clause> {
+    let mut forms = vec![format!("{} {label}", names.len()), String::new()];
+    if names.len() <= 4 {
+        forms.insert(0, format!("{label}: {}", listed(&names)));
+    }
+    (!names.is_empty()).then_some(forms)
 }
 
 /// The smallest limit of those that are inside.
 fn least<'a>(rows: impl Iterator<Item = &'a StabilityRow>) -> Option<String> {
-    let finite = |row: &'a StabilityRow| Some((row, row.limit()?));
-    let rows = rows
-        .filter_map(finite)
-        .filter(|(_, h)| *h > 0.0 && h.is_finite());
-    let (row, h) = rows.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let name = words::one_line(&row.engine);
-    Some(format!(
-        "next to give way: {name} at {} s",
-        limit(Some(h), false)
-    ))
+    let limits = rows.filter_map(|row| Some((row, row.limit()?)));
+    let finite = limits.filter(|(_, h)| *h > 0.0 && h.is_finite());
+    let (row, h) = finite.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (name, limit) = (words::one_line(&row.engine), limit(Some(h), false));
+    Some(format!("next to give way: {name} at {limit} s"))
 }

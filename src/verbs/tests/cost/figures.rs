@@ -2,11 +2,10 @@
 
 use super::super::samples::Reach;
 use super::samples::*;
-use crate::report::svg;
 use crate::verbs::tests::data::*;
 
 fn figure(report: &Report, wanted: &str) -> String {
-    let mut figures = svg::figures(report).into_iter();
+    let mut figures = report.svg().into_iter();
     figures.find(|(file, _)| *file == wanted).unwrap().1
 }
 

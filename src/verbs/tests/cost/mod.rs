@@ -6,14 +6,13 @@ pub mod samples;
 use super::plain;
 use super::samples::Reach;
 use crate::report::json::{self, Tool};
-use crate::report::{markdown, svg, terminal, verdict::verdict};
-use crate::verbs::formats::stem;
+use crate::report::{terminal, verdict::verdict};
 use crate::verbs::tests::data::*;
 use samples::*;
 
 #[test]
 fn costs_read_at_a_glance() {
-    let text = plain(&terminal::render(&priced()));
+    let text = plain(&terminal::render(priced().view()));
     insta::assert_snapshot!(text, @r"
     circle  2 particles, 1 spring, 5 s at h = 0.01 s, symplectic_euler
     A spring of rest length 0, started sideways: the truth is an ellipse.
@@ -90,21 +89,21 @@ fn costs_read_at_a_glance() {
 
 #[test]
 fn verdict_leads_with_the_hardest_target_somebody_reaches() {
-    insta::assert_snapshot!(verdict(&priced()), @r"cheapest to 1e-6 m: pefrl at h = 0.0126 s, 95.5 µs; symplectic_euler, the scene's own, does not reach it; to 1e-2 m: pefrl at h = 0.172 s, 6.96 µs; no integrator reaches 1e-15 m.");
-    insta::assert_snapshot!(verdict(&untrue()), @r"nobody can be said to reach 1e-3 and 1e-6 m: there is no truth: it is chaotic from the start.");
+    insta::assert_snapshot!(verdict(&priced().view()), @r"cheapest to 1e-6 m: pefrl at h = 0.0126 s, 95.5 µs; symplectic_euler, the scene's own, does not reach it; to 1e-2 m: pefrl at h = 0.172 s, 6.96 µs; no integrator reaches 1e-15 m.");
+    insta::assert_snapshot!(verdict(&untrue().view()), @r"nobody can be said to reach 1e-3 and 1e-6 m: there is no truth: it is chaotic from the start.");
     let mut report = priced();
     report.cost_mut().targets.remove(2);
     report.header.scene.own_integrator = "velocity_verlet".into();
-    insta::assert_snapshot!(verdict(&report), @r"cheapest to 1e-6 m: pefrl at h = 0.0126 s, 95.5 µs; velocity_verlet, the scene's own, takes 15x the time; to 1e-2 m: pefrl at h = 0.172 s, 6.96 µs.");
+    insta::assert_snapshot!(verdict(&report.view()), @r"cheapest to 1e-6 m: pefrl at h = 0.0126 s, 95.5 µs; velocity_verlet, the scene's own, takes 15x the time; to 1e-2 m: pefrl at h = 0.172 s, 6.96 µs.");
     report.cost_mut().targets.clear();
-    assert_eq!(verdict(&report), "no target was asked about.");
+    assert_eq!(verdict(&report.view()), "no target was asked about.");
 }
 
 #[test]
 fn files_and_figures_are_those_of_costs() {
-    assert_eq!(stem(&priced()), "cost");
+    assert_eq!(priced().stem(), "cost");
     let drawn = |report: &Report| -> Vec<&str> {
-        let figures = svg::figures(report).into_iter();
+        let figures = report.svg().into_iter();
         figures.map(|(file, _)| file).collect()
     };
     let [time, evaluations, energy] = ["cost_time.svg", "cost_evaluations.svg", "cost_energy.svg"];
@@ -119,7 +118,7 @@ fn files_and_figures_are_those_of_costs() {
 
 /// The text after the label of a target's paragraph, its lines joined.
 fn paragraph(report: &Report, label: &str) -> String {
-    let text = plain(&terminal::render(report));
+    let text = plain(&terminal::render(report.view()));
     let lines = text
         .lines()
         .skip_while(|line| !line.starts_with(&format!("{label}: ")));
@@ -145,7 +144,7 @@ fn rankings_keep_the_order_of_the_data() {
         for (name, clause) in names.iter().zip(&clauses) {
             assert!(clause.starts_with(&format!("{name} ")), "{name}: {clause}");
         }
-        let text = markdown::render(&report);
+        let text = report.markdown();
         let table = text.split("## To 1e-2 m").nth(1).unwrap();
         let rows = table.lines().filter(|line| line.starts_with("| ")).skip(1);
         for (name, row) in names.iter().zip(rows) {
@@ -188,7 +187,7 @@ fn unjudged_targets_are_one_paragraph() {
         text,
         "1e-3 and 1e-6 m: there is no truth: it is chaotic from the start"
     );
-    assert!(!markdown::render(&untrue()).contains("## To "));
+    assert!(!untrue().markdown().contains("## To "));
 }
 
 #[test]
@@ -235,7 +234,7 @@ fn letters_stand_where_the_axes_say() {
         decades("rk4", &[(1e-6, 1.0), (1e-3, 1e-4), (1.0, 1e-11)]),
         decades("symplectic_euler", &[(1e-3, 1e-4)]),
     ];
-    let text = plain(&terminal::render(&report));
+    let text = plain(&terminal::render(report.view()));
     let lines: Vec<Vec<char>> = text.lines().map(|line| line.chars().collect()).collect();
     let axis = lines.iter().position(|line| line.contains(&'└')).unwrap();
     let tick = |label: &str| {
@@ -287,15 +286,15 @@ fn a_failed_check_comes_first() {
     let mut report = priced();
     let check = super::samples::twin("twin_forces", CheckStatus::Fail);
     report.header.checks.push(check);
-    assert!(verdict(&report).starts_with("THE TWIN PROOF FAILS"));
-    assert!(plain(&terminal::render(&report)).contains("FAIL"));
-    assert!(markdown::render(&report).contains("**fail**"));
+    assert!(verdict(&report.view()).starts_with("THE TWIN PROOF FAILS"));
+    assert!(plain(&terminal::render(report.view())).contains("FAIL"));
+    assert!(report.markdown().contains("**fail**"));
 }
 
 /// The largest number rounds to one there is none of: 1.80e308.
 #[test]
 fn the_largest_number_stays_a_number() {
-    let text = plain(&terminal::render(&odd()));
+    let text = plain(&terminal::render(odd().view()));
     assert!(text.contains("of 1.80e308 s"), "{text}");
     assert!(!text.contains("inf") && !text.contains("NaN"));
 }
