@@ -1,8 +1,7 @@
 //! `springcheck list integrators|effects|engines|mistakes`
 
-use crate::integrators;
 use crate::integrators::adaptive::Estimate;
-use crate::integrators::{EnergyLaw, Method, PerStep, Stable};
+use crate::integrators::{self, EnergyLaw, Method, PerStep, Stable};
 use crate::measure::identify::{MISTAKES, Mistake, Wrong};
 use crate::physics::effects;
 use crate::solvers::Kind;
