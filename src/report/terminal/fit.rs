@@ -1,5 +1,7 @@
 //! Text cut, padded and wrapped to a number of terminal columns.
 
+use std::borrow::Cow;
+use textwrap::{Options, WordSeparator, WordSplitter};
 use unicode_width::UnicodeWidthStr;
 
 /// Columns the text takes.
@@ -15,9 +17,15 @@ pub fn clip(text: &str, columns: usize) -> String {
     if columns == 0 {
         return String::new();
     }
-    let mut kept = head(text, columns - 1).trim_end().to_string();
-    kept.push('…');
-    kept
+    // The longest beginning that leaves room for the ellipsis, at least one character.
+    let ends = text.char_indices().map(|(at, c)| at + c.len_utf8());
+    let fits = |(i, end): &(usize, usize)| *i == 0 || width(&text[..*end]) < columns;
+    let end = ends
+        .enumerate()
+        .take_while(fits)
+        .last()
+        .map_or(0, |(_, end)| end);
+    text[..end].trim_end().to_owned() + "…"
 }
 
 /// Filled with spaces on the right.
@@ -28,40 +36,10 @@ pub fn pad(text: &str, columns: usize) -> String {
 /// Broken between words, within one only where it is longer than a line. Lines but the first start
 /// with `indent`. White space at the very start is kept.
 pub fn wrap(text: &str, columns: usize, indent: &str) -> Vec<String> {
-    let room = columns.saturating_sub(width(indent)).max(8);
-    let mut lines = Vec::new();
-    let words_at = text.len() - text.trim_start().len();
-    let mut line = text[..words_at].to_string();
-    let mut empty = true;
-    for mut word in text[words_at..].split(' ') {
-        if !empty && width(&line) + 1 + width(word) > columns {
-            lines.push(std::mem::replace(&mut line, indent.to_string()));
-            empty = true;
-        }
-        while width(word) > room {
-            let part = head(word, room - usize::from(!empty));
-            word = &word[part.len()..];
-            lines.push(std::mem::replace(&mut line, indent.to_string()) + part);
-        }
-        if !empty {
-            line.push(' ');
-        }
-        line += word;
-        empty = false;
-    }
-    lines.push(line);
-    lines
-}
-
-/// The longest beginning that fits, at least one character.
-fn head(text: &str, columns: usize) -> &str {
-    let mut end = 0;
-    for (at, c) in text.char_indices() {
-        let next = at + c.len_utf8();
-        if end > 0 && width(&text[..next]) > columns {
-            break;
-        }
-        end = next;
-    }
-    &text[..end]
+    let options = Options::new(columns)
+        .subsequent_indent(indent)
+        .word_separator(WordSeparator::AsciiSpace)
+        .word_splitter(WordSplitter::NoHyphenation);
+    let lines = textwrap::wrap(text, options).into_iter();
+    lines.map(Cow::into_owned).collect()
 }

@@ -88,21 +88,23 @@ fn checks(checks: &[Check]) -> Vec<String> {
     }));
     let mut lines = Vec::new();
     for ((id, status, why), group) in groups {
-        let texts = match group.as_slice() {
-            // An expectation that is met.
-            met if id == "expect" && why.is_none() => counted(met),
-            [check] => vec![alone(check, WIDTH - 10 - ids)],
-            several => several.iter().map(|check| measured(check)).collect(),
-        };
         let (tone, word) = match status {
             CheckStatus::Pass => (Tone::Good, "pass"),
             CheckStatus::Fail => (Tone::Bad, "FAIL"),
             CheckStatus::Skip => (Tone::Dim, "skip"),
             CheckStatus::Inconclusive => (Tone::Warn, "open"),
         };
-        let id = pad(&clip(&one_line(id), ids), ids);
-        let line = format!("{}  {id}  {}", mark(tone, word), texts.join(", "));
-        lines.extend(wrap(&line, WIDTH, &" ".repeat(8 + ids)));
+        let head = mark(tone, word) + "  " + &pad(&clip(&one_line(id), ids), ids);
+        let wrapped = |texts: Vec<String>| {
+            let line = format!("{head}  {}", texts.join(", "));
+            wrap(&line, WIDTH, &" ".repeat(8 + ids))
+        };
+        lines.extend(match group.as_slice() {
+            // An expectation that is met.
+            met if id == "expect" && why.is_none() => wrapped(counted(met)),
+            [check] => vec![format!("{head}  {}", alone(check, WIDTH - 10 - ids))],
+            several => wrapped(several.iter().map(|check| measured(check)).collect()),
+        });
         let message = match group.as_slice() {
             [check] => why.map(|_| check.message.as_str()),
             _ => why,
@@ -125,7 +127,7 @@ fn counted(checks: &[&Check]) -> Vec<String> {
     counts.map(count).collect()
 }
 
-/// What a check says, without whom it is about.
+/// What a check says, without its subject.
 fn reason(check: &Check) -> &str {
     let said = check.message.strip_prefix(check.subject.as_str());
     said.and_then(|said| said.strip_prefix(": "))
@@ -139,7 +141,7 @@ fn alone(check: &Check, columns: usize) -> String {
     format!("{subject}  {measured}")
 }
 
-/// Of one check among several with the same result: whom it is about and what was measured.
+/// Of one check among several with the same result: its subject and what was measured.
 fn measured(check: &Check) -> String {
     let measured = check.measured.map(words::quantity).unwrap_or_default();
     let text = format!("{} {measured}", one_line(&check.subject));
