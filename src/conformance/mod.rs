@@ -43,7 +43,7 @@ pub use finding::Finding;
 pub use stability::measured_limit;
 pub use subject::{Broken, Build};
 
-use crate::integrators::{Integrator, Method, Oscillator, PerStep, is_exact};
+use crate::integrators::{Integrator, Method, OscillatorFacts, PerStep, is_exact};
 use subject::Subject;
 
 /// Relative residual to which the kit expects an implicit step to be solved, and so the size of what
@@ -66,7 +66,7 @@ pub struct Claims {
     /// Force evaluations a step costs on an undamped system, once running.
     pub evaluations: Option<PerStep>,
     /// On x'' = -w² x, with z = h w: how far it is stable, and what becomes of the energy.
-    pub oscillator: Option<Oscillator>,
+    pub oscillator: Option<OscillatorFacts>,
     /// Follows free fall without any error but rounding.
     pub exact: bool,
 }

@@ -2,7 +2,7 @@
 //! and small networks without symmetries that could hide an error, as scenes built in code.
 
 use crate::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, System};
-use crate::scene::{DampingModel, Particle, Scene, Solver, Spring};
+use crate::scene::{DampingModel, Particle, Scene, SolverSpec, Spring};
 
 /// x'' = -w² x - 2 ζ w x', one coordinate, mass 1.
 #[derive(Debug, Clone, Copy)]
@@ -198,10 +198,10 @@ pub fn swinging_triangle(damping: f64, model: DampingModel) -> Scene {
     };
     Scene {
         name: "swinging triangle".into(),
-        solver: Solver {
+        solver: SolverSpec {
             method: "rk4".into(),
             timestep: 0.01,
-            ..Solver::default()
+            ..SolverSpec::default()
         },
         duration: 1.0,
         damping_model: model,

@@ -3,8 +3,8 @@
 use super::adaptive::Pair;
 use super::amplification::{Rational, band, oscillator_limit};
 use super::{
-    Amplification, Coefficients, DampingTreatment, EnergyLaw, Method, Oscillator, PerStep, Scheme,
-    Stable, Stage, Tableau,
+    Amplification, Coefficients, DampingTreatment, EnergyLaw, ImplicitScheme, Method,
+    OscillatorFacts, PerStep, Stable, Stage, Tableau,
 };
 use crate::physics::Linearization;
 use nalgebra::Complex;
@@ -13,10 +13,10 @@ use nalgebra::Complex;
 ///
 /// ```
 /// use springcheck::conformance::{Claims, check};
-/// use springcheck::integrators::{Coefficients, Method, Row, Settings, Stable, Tableau};
+/// use springcheck::integrators::{Coefficients, Method, MethodRow, Settings, Stable, Tableau};
 /// use springcheck::measure::CheckStatus;
 ///
-/// let kutta3 = Method::new(Row {
+/// let kutta3 = Method::new(MethodRow {
 ///     id: "kutta3",
 ///     name: "Kutta's third-order method",
 ///     coefficients: Coefficients::Tableau(Tableau {
@@ -40,7 +40,7 @@ use nalgebra::Complex;
 /// assert!(findings.iter().all(|finding| finding.status != CheckStatus::Fail));
 /// ```
 #[derive(Debug, Clone, Copy)]
-pub struct Row {
+pub struct MethodRow {
     /// The id scenes, reports and the command line use.
     pub id: &'static str,
     pub name: &'static str,
@@ -57,7 +57,7 @@ pub struct Row {
 
 impl Method {
     /// Works all facts out. To be done once for a method: they live as long as the program.
-    pub fn new(row: Row) -> Self {
+    pub fn new(row: MethodRow) -> Self {
         match row.coefficients {
             Coefficients::Tableau(tableau) | Coefficients::Pair(Pair { tableau, .. }) => {
                 let evaluations = PerStep::Exactly(tableau.b.len() as u32);
@@ -83,7 +83,7 @@ pub(crate) const fn is_exact(order: u32) -> bool {
     order > 1
 }
 
-fn of_tableau(row: Row, tableau: &Tableau, evaluations: PerStep) -> Method {
+fn of_tableau(row: MethodRow, tableau: &Tableau, evaluations: PerStep) -> Method {
     let order = tableau.order(tableau.b);
     let rational = Rational::of(tableau, order);
     let undamped = Complex::new(0.0, 1.0);
@@ -95,7 +95,7 @@ fn of_tableau(row: Row, tableau: &Tableau, evaluations: PerStep) -> Method {
         symplectic: tableau.is_symplectic(),
         reversible: tableau.is_symmetric(),
         evaluations,
-        oscillator: Oscillator {
+        oscillator: OscillatorFacts {
             stable: rational.reach(undamped),
             energy: EnergyLaw::Factor {
                 factor: Box::leak(Box::new(move |z| 1.0 + rational.gain(undamped, z))),
@@ -110,14 +110,14 @@ fn of_tableau(row: Row, tableau: &Tableau, evaluations: PerStep) -> Method {
     }
 }
 
-fn of_scheme(row: Row, scheme: Scheme) -> Method {
+fn of_scheme(row: MethodRow, scheme: ImplicitScheme) -> Method {
     let tableau = scheme.tableau();
     // What does not iterate: each stage once, to see that it has converged or because it is explicit.
     let iterated = PerStep::PerIteration {
         plus: tableau.b.len() as u32,
     };
     let mut method = of_tableau(row, &tableau, iterated);
-    if let Scheme::LinearizedEuler(linearization) = scheme {
+    if let ImplicitScheme::LinearizedEuler(linearization) = scheme {
         method.evaluations = PerStep::Exactly(1);
         if linearization == Linearization::Material {
             method.amplification = Amplification::MaterialImplicit;
@@ -130,7 +130,7 @@ fn of_scheme(row: Row, scheme: Scheme) -> Method {
     method
 }
 
-fn of_composition(row: Row, stages: &'static [Stage], damping: DampingTreatment) -> Method {
+fn of_composition(row: MethodRow, stages: &'static [Stage], damping: DampingTreatment) -> Method {
     let order = order_of_kicks(stages);
     Method {
         id: row.id,
@@ -144,7 +144,7 @@ fn of_composition(row: Row, stages: &'static [Stage], damping: DampingTreatment)
         symplectic: true,
         reversible: stages.iter().eq(stages.iter().rev()),
         evaluations: PerStep::Exactly(evaluations(stages, damping)),
-        oscillator: Oscillator {
+        oscillator: OscillatorFacts {
             stable: oscillator_limit(stages),
             energy: row
                 .energy

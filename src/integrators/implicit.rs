@@ -2,13 +2,13 @@
 //! iteration. The methods differ in b, y, γ and in what they make of the stage velocity u.
 
 use super::newton::Newton;
-use super::{Coefficients, Integrator, Row, Settings, StepError, Tableau, axpy, fit, refuse};
+use super::{Coefficients, Integrator, MethodRow, Settings, StepError, Tableau, axpy, fit, refuse};
 use crate::physics::{ForceKinds, Linearization, Power, State, System};
 use std::f64::consts::SQRT_2;
 
 /// Which member of the family a stepper is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scheme {
+pub enum ImplicitScheme {
     /// Backward Euler, solved to the end.
     Euler,
     /// One Newton step of backward Euler from (x, v), with that much of the Jacobian.
@@ -21,7 +21,7 @@ pub enum Scheme {
     TrBdf2,
 }
 
-impl Scheme {
+impl ImplicitScheme {
     /// One Newton step is of first order whatever the force. The line search of Newton's iteration takes
     /// D to be symmetric.
     pub(super) const fn takes(self) -> ForceKinds {
@@ -68,56 +68,56 @@ const IMPLICIT: f64 = 0.5 * STAGE;
 const BEYOND: f64 = 0.5 * (1.0 + SQRT_2);
 /// What start and stage weigh in the step as a whole: √2/4.
 const WEIGHT: f64 = 0.25 * SQRT_2;
-pub(super) const IMPLICIT_EULER: Row = Row {
+pub(super) const IMPLICIT_EULER: MethodRow = MethodRow {
     id: "implicit_euler",
     name: "implicit Euler",
-    coefficients: Coefficients::Implicit(Scheme::Euler),
+    coefficients: Coefficients::Implicit(ImplicitScheme::Euler),
     energy: Some("1/(1 + z²)"),
     source: "Hairer, Wanner, Solving ODEs II, IV.3",
     not: "linearized_implicit, which stops after one Newton step",
 };
 
-pub(super) const LINEARIZED_IMPLICIT: Row = Row {
+pub(super) const LINEARIZED_IMPLICIT: MethodRow = MethodRow {
     id: "linearized_implicit",
     name: "linearly implicit Euler",
-    coefficients: Coefficients::Implicit(Scheme::LinearizedEuler(Linearization::Exact)),
+    coefficients: Coefficients::Implicit(ImplicitScheme::LinearizedEuler(Linearization::Exact)),
     energy: Some("1/(1 + z²)"),
     source: "Baraff & Witkin 1998, Large Steps in Cloth Simulation, with the exact Jacobian",
     not: "implicit_euler: non-linear forces are met only to first order",
 };
 
-pub(super) const LINEARIZED_IMPLICIT_MATERIAL: Row = Row {
+pub(super) const LINEARIZED_IMPLICIT_MATERIAL: MethodRow = MethodRow {
     id: "linearized_implicit_material",
     name: "linearly implicit Euler, K = k n nᵀ",
-    coefficients: Coefficients::Implicit(Scheme::LinearizedEuler(Linearization::Material)),
+    coefficients: Coefficients::Implicit(ImplicitScheme::LinearizedEuler(Linearization::Material)),
     energy: Some("1/(1 + z²)"),
     source: "Baraff & Witkin 1998 with K = k n nᵀ; what rapier's spring joint converges to",
     not: "linearized_implicit: the stiffness of a spring's turning is left out, so transverse \
           motion is only as stable as symplectic Euler's",
 };
 
-pub(super) const IMPLICIT_MIDPOINT: Row = Row {
+pub(super) const IMPLICIT_MIDPOINT: MethodRow = MethodRow {
     id: "implicit_midpoint",
     name: "implicit midpoint",
-    coefficients: Coefficients::Implicit(Scheme::Midpoint),
+    coefficients: Coefficients::Implicit(ImplicitScheme::Midpoint),
     energy: Some("1"),
     source: "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1 (Gauss, s = 1)",
     not: "midpoint, its explicit namesake, or trapezoidal, its conjugate",
 };
 
-pub(super) const TRAPEZOIDAL: Row = Row {
+pub(super) const TRAPEZOIDAL: MethodRow = MethodRow {
     id: "trapezoidal",
     name: "trapezoidal rule",
-    coefficients: Coefficients::Implicit(Scheme::Trapezoidal),
+    coefficients: Coefficients::Implicit(ImplicitScheme::Trapezoidal),
     energy: Some("1"),
     source: "Crank & Nicolson 1947; Newmark 1959 with β = 1/4, γ = 1/2",
     not: "heun, its explicit namesake; conjugate to a symplectic method, not one itself",
 };
 
-pub(super) const TR_BDF2: Row = Row {
+pub(super) const TR_BDF2: MethodRow = MethodRow {
     id: "tr_bdf2",
     name: "TR-BDF2",
-    coefficients: Coefficients::Implicit(Scheme::TrBdf2),
+    coefficients: Coefficients::Implicit(ImplicitScheme::TrBdf2),
     energy: Some("1 - (z²/(z² + (2 + √2)²))²"),
     source: "Bank et al. 1985, IEEE Trans. CAD 4; Hosea & Shampine 1996, Appl. Numer. Math. 20",
     not: "trapezoidal, which lets stiff modes ring; BDF2, which needs two steps of the past",
@@ -125,7 +125,7 @@ pub(super) const TR_BDF2: Row = Row {
 
 /// The stepper all implicit methods share.
 pub struct Implicit {
-    scheme: Scheme,
+    scheme: ImplicitScheme,
     newton: Newton,
     /// The unknown: a velocity.
     u: Vec<f64>,
@@ -137,7 +137,7 @@ pub struct Implicit {
 }
 
 impl Implicit {
-    pub fn new(scheme: Scheme, settings: &Settings) -> Self {
+    pub fn new(scheme: ImplicitScheme, settings: &Settings) -> Self {
         Self {
             scheme,
             newton: Newton::new(settings.tolerance),
@@ -185,15 +185,15 @@ impl Integrator for Implicit {
         let (t, end) = (state.t, state.t + h);
         let mut work = state.work;
         match self.scheme {
-            Scheme::Euler => work.advance(self.solve(system, end, h)?, h),
-            Scheme::LinearizedEuler(linearization) => {
+            ImplicitScheme::Euler => work.advance(self.solve(system, end, h)?, h),
+            ImplicitScheme::LinearizedEuler(linearization) => {
                 let power = self
                     .newton
                     .single(system, t, h, linearization, state, &mut self.u)?;
                 axpy(&mut self.y, h, &self.u);
                 work.advance(power, h);
             }
-            Scheme::Midpoint => {
+            ImplicitScheme::Midpoint => {
                 let power = self.solve(system, t + 0.5 * h, 0.5 * h)?;
                 work.advance(power, h);
                 self.y.copy_from_slice(&state.x);
@@ -203,12 +203,12 @@ impl Integrator for Implicit {
                     *u = v + 2.0 * (*u - v);
                 }
             }
-            Scheme::Trapezoidal => {
+            ImplicitScheme::Trapezoidal => {
                 for power in self.trapezoid(system, 0.5 * h, end, state)? {
                     work.advance(power, 0.5 * h);
                 }
             }
-            Scheme::TrBdf2 => {
+            ImplicitScheme::TrBdf2 => {
                 let gamma = IMPLICIT * h;
                 for power in self.trapezoid(system, gamma, t + STAGE * h, state)? {
                     work.advance(power, WEIGHT * h);

@@ -12,9 +12,9 @@ mod velocity_flow;
 
 pub use amplification::{Amplification, Rational};
 pub(crate) use amplification::{bisect, map, phi1};
-pub use facts::Row;
+pub use facts::MethodRow;
 pub(crate) use facts::is_exact;
-pub use implicit::{Implicit, Scheme};
+pub use implicit::{Implicit, ImplicitScheme};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
 
@@ -121,7 +121,7 @@ pub struct Method {
     pub reversible: bool,
     pub evaluations: PerStep,
     /// On x'' = -w² x, with z = h w.
-    pub oscillator: Oscillator,
+    pub oscillator: OscillatorFacts,
     /// What it computes with.
     pub coefficients: Coefficients,
     /// On any linear system; `oscillator` is its summary.
@@ -142,7 +142,7 @@ pub enum Coefficients {
     /// A product of kicks and drifts, the first one first.
     Composition(&'static [Stage], DampingTreatment),
     /// A scheme of implicit stage equations.
-    Implicit(Scheme),
+    Implicit(ImplicitScheme),
     /// An explicit Runge-Kutta method with an estimate of its error.
     Pair(Pair),
 }
@@ -196,7 +196,7 @@ pub enum PerStep {
 
 /// What a method does to the undamped linear oscillator.
 #[derive(Debug, Clone, Copy)]
-pub struct Oscillator {
+pub struct OscillatorFacts {
     pub stable: Stable,
     pub energy: EnergyLaw,
 }

@@ -10,7 +10,7 @@ use super::Tableau;
 pub(crate) const LANES: usize = 8;
 
 /// Where forces are evaluated.
-pub(crate) struct Stage {
+pub(crate) struct NystromStage {
     /// c.
     pub node: f64,
     /// Of the stages before it.
@@ -25,9 +25,9 @@ pub(crate) struct Weight {
 }
 
 /// All stages of a tableau.
-pub(crate) fn stages(tableau: &Tableau) -> Vec<Stage> {
+pub(crate) fn stages(tableau: &Tableau) -> Vec<NystromStage> {
     let rows = tableau.a.iter().zip(tableau.c);
-    rows.map(|(row, &node)| Stage {
+    rows.map(|(row, &node)| NystromStage {
         node,
         row: weights(tableau, row),
     })

@@ -1,6 +1,6 @@
 //! Explicit Runge-Kutta methods: one stepper, a tableau a method.
 
-use super::{Coefficients, Integrator, Row, StepError, axpy, fit};
+use super::{Coefficients, Integrator, MethodRow, StepError, axpy, fit};
 use crate::physics::{Power, State, System};
 use crate::vector;
 
@@ -15,7 +15,7 @@ pub struct Tableau {
     pub c: &'static [f64],
 }
 
-pub(super) const EXPLICIT_EULER: Row = Row {
+pub(super) const EXPLICIT_EULER: MethodRow = MethodRow {
     id: "explicit_euler",
     name: "explicit Euler",
     coefficients: Coefficients::Tableau(Tableau {
@@ -28,7 +28,7 @@ pub(super) const EXPLICIT_EULER: Row = Row {
     not: "symplectic_euler, which drifts with the new velocity",
 };
 
-pub(super) const MIDPOINT: Row = Row {
+pub(super) const MIDPOINT: MethodRow = MethodRow {
     id: "midpoint",
     name: "explicit midpoint",
     coefficients: Coefficients::Tableau(Tableau {
@@ -41,7 +41,7 @@ pub(super) const MIDPOINT: Row = Row {
     not: "implicit_midpoint; nor the common mistake that drifts with the end velocity",
 };
 
-pub(super) const HEUN: Row = Row {
+pub(super) const HEUN: MethodRow = MethodRow {
     id: "heun",
     name: "Heun (explicit trapezoid)",
     coefficients: Coefficients::Tableau(Tableau {
@@ -54,7 +54,7 @@ pub(super) const HEUN: Row = Row {
     not: "trapezoidal, its implicit namesake",
 };
 
-pub(super) const RALSTON: Row = Row {
+pub(super) const RALSTON: MethodRow = MethodRow {
     id: "ralston",
     name: "Ralston",
     coefficients: Coefficients::Tableau(Tableau {
@@ -67,7 +67,7 @@ pub(super) const RALSTON: Row = Row {
     not: "Ralston's third-order method",
 };
 
-pub(super) const RK4: Row = Row {
+pub(super) const RK4: MethodRow = MethodRow {
     id: "rk4",
     name: "classical Runge-Kutta",
     coefficients: Coefficients::Tableau(Tableau {

@@ -1,7 +1,7 @@
 //! Splitting methods: one stepper, a list of kicks and drifts a method.
 
 use super::velocity_flow::{HALVINGS, VelocityFlow};
-use super::{Coefficients, Integrator, Row, StepError, axpy, fit, refuse};
+use super::{Coefficients, Integrator, MethodRow, StepError, axpy, fit, refuse};
 use crate::physics::{ForceKinds, State, System};
 use crate::vector;
 
@@ -83,7 +83,7 @@ impl DampingTreatment {
     }
 }
 
-pub(super) const SYMPLECTIC_EULER: Row = Row {
+pub(super) const SYMPLECTIC_EULER: MethodRow = MethodRow {
     id: "symplectic_euler",
     name: "symplectic Euler (kick, drift)",
     coefficients: Coefficients::Composition(Stage::SYMPLECTIC_EULER, DampingTreatment::Explicit),
@@ -93,7 +93,7 @@ pub(super) const SYMPLECTIC_EULER: Row = Row {
           is this method",
 };
 
-pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Row = Row {
+pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: MethodRow = MethodRow {
     id: "symplectic_euler_drift_first",
     name: "symplectic Euler (drift, kick)",
     coefficients: Coefficients::Composition(
@@ -105,7 +105,7 @@ pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: Row = Row {
     not: "explicit_euler, for which it is often taken: it kicks at the position already moved",
 };
 
-pub(super) const VELOCITY_VERLET: Row = Row {
+pub(super) const VELOCITY_VERLET: MethodRow = MethodRow {
     id: "velocity_verlet",
     name: "velocity Verlet",
     coefficients: Coefficients::Composition(Stage::VERLET, DampingTreatment::ExactFlow),
@@ -114,7 +114,7 @@ pub(super) const VELOCITY_VERLET: Row = Row {
     not: "position_verlet (drift, kick, drift), or Verlet with a predicted velocity in the damper",
 };
 
-pub(super) const POSITION_VERLET: Row = Row {
+pub(super) const POSITION_VERLET: MethodRow = MethodRow {
     id: "position_verlet",
     name: "position Verlet",
     coefficients: Coefficients::Composition(Stage::POSITION_VERLET, DampingTreatment::ExactFlow),
@@ -123,7 +123,7 @@ pub(super) const POSITION_VERLET: Row = Row {
     not: "velocity_verlet, which kicks first and last",
 };
 
-pub(super) const YOSHIDA4: Row = Row {
+pub(super) const YOSHIDA4: MethodRow = MethodRow {
     id: "yoshida4",
     name: "Yoshida / Forest-Ruth",
     coefficients: Coefficients::Composition(Stage::YOSHIDA4, DampingTreatment::ExactFlow),
@@ -132,7 +132,7 @@ pub(super) const YOSHIDA4: Row = Row {
     not: "Yoshida's sixth- and eighth-order methods",
 };
 
-pub(super) const PEFRL: Row = Row {
+pub(super) const PEFRL: MethodRow = MethodRow {
     id: "pefrl",
     name: "PEFRL",
     coefficients: Coefficients::Composition(Stage::PEFRL, DampingTreatment::ExactFlow),

@@ -10,7 +10,7 @@ mod start;
 use crate::measure::{Check, CheckStatus};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::solvers::rapier::Settings;
+use crate::solvers::rapier::RapierSettings;
 use crate::solvers::{Solver, Unsupported, find};
 use lockstep::{Path, distance};
 use start::{condition, disturbed, set_in_motion};
@@ -187,8 +187,9 @@ impl Pair {
     }
 
     fn joints(&self, claim: &Claim) -> Result<Check, Unsupported> {
-        let mut settings = Settings::CONVERGED;
-        let run = |settings: &Settings| self.theirs(Some(Solver::rapier(*settings)), JOINT_STEPS);
+        let mut settings = RapierSettings::CONVERGED;
+        let run =
+            |settings: &RapierSettings| self.theirs(Some(Solver::rapier(*settings)), JOINT_STEPS);
         let mut coarse = run(&settings)?;
         let (path, bound, derivation) = self.reference(claim.method, settings.iterations);
         let joints = self.ours.springs.len() as u64 * u64::from(JOINT_STEPS * settings.iterations);
@@ -221,7 +222,7 @@ impl Pair {
     }
 
     fn fall(&self, claim: &Claim) -> Result<Check, Unsupported> {
-        let settings = Settings::DEFAULT;
+        let settings = RapierSettings::DEFAULT;
         let theirs = self.theirs(Some(Solver::rapier(settings)), JOINT_STEPS)?;
         let (path, bound, derivation) = self.reference(claim.method, settings.iterations);
         Ok(claim.judge(&path, &theirs, bound, derivation))

@@ -31,7 +31,7 @@ pub(crate) struct PairBlock {
 
 /// By what the force was differentiated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Slope {
+pub enum Derivative {
     Position = 0,
     Velocity = 1,
 }
@@ -70,19 +70,19 @@ impl Jacobian {
         }
     }
 
-    pub(crate) fn triplets(&self, by: Slope) -> &Triplets {
+    pub(crate) fn triplets(&self, by: Derivative) -> &Triplets {
         match by {
-            Slope::Position => &self.position,
-            Slope::Velocity => &self.velocity,
+            Derivative::Position => &self.position,
+            Derivative::Velocity => &self.velocity,
         }
     }
 
-    pub(crate) fn pairs(&self, by: Slope) -> &[PairBlock] {
+    pub(crate) fn pairs(&self, by: Derivative) -> &[PairBlock] {
         self.pairs.as_ref().map_or(&[], |pairs| &pairs[by as usize])
     }
 
     /// out += factor * ∂f w, over all coordinates, fixed ones included.
-    pub(crate) fn add_product(&self, by: Slope, factor: f64, w: &[f64], out: &mut [f64]) {
+    pub(crate) fn add_product(&self, by: Derivative, factor: f64, w: &[f64], out: &mut [f64]) {
         for &(row, column, value) in self.triplets(by) {
             out[row] += factor * value * w[column];
         }
@@ -92,7 +92,7 @@ impl Jacobian {
     }
 
     /// out += factor * |∂f| |w|, entry by entry: how far relative changes of w may reach.
-    pub(crate) fn add_magnitudes(&self, by: Slope, factor: f64, w: &[f64], out: &mut [f64]) {
+    pub(crate) fn add_magnitudes(&self, by: Derivative, factor: f64, w: &[f64], out: &mut [f64]) {
         for &(row, column, value) in self.triplets(by) {
             out[row] += factor * (value * w[column]).abs();
         }
@@ -109,15 +109,15 @@ impl Jacobian {
 
     /// Adds the block of an interaction that depends on the difference of two particles only:
     /// ∂f_i/∂(x_j - x_i), or ∂f_i/∂(v_j - v_i), with f_j = -f_i.
-    pub fn add_pair(&mut self, by: Slope, ends: [usize; 2], block: Matrix3<f64>) {
+    pub fn add_pair(&mut self, by: Derivative, ends: [usize; 2], block: Matrix3<f64>) {
         let ends = ends.map(|end| end as u32);
         let pair = PairBlock { ends, block };
         if let Some(pairs) = &mut self.pairs {
             return pairs[by as usize].push(pair);
         }
         let out = match by {
-            Slope::Position => &mut self.position,
-            Slope::Velocity => &mut self.velocity,
+            Derivative::Position => &mut self.position,
+            Derivative::Velocity => &mut self.velocity,
         };
         pair.for_each(|row, column, value| out.push((row, column, value)));
     }

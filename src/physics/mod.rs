@@ -11,7 +11,7 @@ mod state;
 
 pub use counting::{Counting, Evaluations};
 pub(crate) use jacobian::PairBlock;
-pub use jacobian::{Jacobian, Linearization, Slope, Triplets};
+pub use jacobian::{Derivative, Jacobian, Linearization, Triplets};
 pub use kinds::{ForceKinds, Refused};
 pub use particles::{Effects, ParticleSystem};
 pub use state::{Power, State, Work};

@@ -17,12 +17,12 @@ pub struct Names {
     /// Ids of reference engines, which `expect` may be about.
     pub engines: Vec<&'static str>,
     /// What `expect` may say of them.
-    pub keys: Vec<Key>,
+    pub keys: Vec<OutcomeKey>,
 }
 
 /// A key of an outcome that a scene may expect something of.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Key {
+pub struct OutcomeKey {
     /// Dotted, as `energy.class`.
     pub path: String,
     pub kind: KeyKind,

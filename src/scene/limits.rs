@@ -34,7 +34,7 @@ pub const ATTRACTION_DISTANCE: f64 = 1e-12;
 
 /// What a number stands for, and the values it may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Quantity {
+pub struct Bounds {
     /// The smallest value.
     pub low: f64,
     /// The largest value.
@@ -43,7 +43,7 @@ pub struct Quantity {
     pub unit: &'static str,
 }
 
-impl Quantity {
+impl Bounds {
     pub(super) const fn signed(high: f64, unit: &'static str) -> Self {
         Self::from(-high, high, unit)
     }
@@ -59,7 +59,7 @@ impl Quantity {
     /// The number, if it is finite and within the bounds.
     pub(super) fn judge(self, number: Number) -> Result<f64, Refusal> {
         let x = number.value();
-        let Quantity { low, high, unit } = self;
+        let Bounds { low, high, unit } = self;
         if (low..=high).contains(&x) {
             return Ok(x);
         }
@@ -79,15 +79,15 @@ impl Quantity {
 }
 
 /// A coordinate of a position, and of `plot.y_range`.
-pub const POSITION: Quantity = Quantity::signed(1e12, "m");
+pub const POSITION: Bounds = Bounds::signed(1e12, "m");
 /// A spring's stiffness.
-pub const STIFFNESS: Quantity = Quantity::not_negative(1e18, "N/m");
+pub const STIFFNESS: Bounds = Bounds::not_negative(1e18, "N/m");
 /// The timestep.
-pub const TIMESTEP: Quantity = Quantity::from(1e-30, 1e12, "s");
+pub const TIMESTEP: Bounds = Bounds::from(1e-30, 1e12, "s");
 /// The simulated time.
-pub const DURATION: Quantity = Quantity::from(1e-30, 1e12, "s");
+pub const DURATION: Bounds = Bounds::from(1e-30, 1e12, "s");
 /// What a number is expected to stay below or above.
-pub const BOUND: Quantity = Quantity::signed(f64::MAX, "in the key's unit");
+pub const BOUND: Bounds = Bounds::signed(f64::MAX, "in the key's unit");
 
 /// Whether a scene may be called so.
 pub(super) fn name(name: &str, _: &Names) -> Result<(), Refusal> {

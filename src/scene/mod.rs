@@ -22,9 +22,9 @@ pub(crate) mod words;
 
 pub use complete::check_times;
 pub use error::{Refusal, SceneError};
-pub use expectation::{Expectation, Key, KeyKind, Names, Scope, Wanted};
+pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Wanted};
 pub use model::{
-    Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, Solver, Spring, Wind, steps,
+    Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, SolverSpec, Spring, Wind, steps,
 };
 pub use table::Value;
 

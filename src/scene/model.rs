@@ -12,7 +12,7 @@
 
 use super::error::Refusal;
 use super::expectation::{Expectation, Names, Scope};
-use super::limits::{self, Quantity};
+use super::limits::{self, Bounds};
 use super::table::{Field, Value, declare, members, words};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
@@ -51,7 +51,7 @@ pub struct Row {
     pub key: &'static str,
     /// What it is, for its reader.
     pub summary: &'static str,
-    pub kind: Kind,
+    pub kind: ValueKind,
     pub absent: Absent,
     /// Its name among the flat arrays; several rows may share one. None of what has no say in the
     /// motion, and so does not count in the truth's key either.
@@ -84,10 +84,10 @@ impl Row {
 
 /// What stands under a key.
 #[derive(Debug)]
-pub enum Kind {
-    Number(Quantity),
+pub enum ValueKind {
+    Number(Bounds),
     /// A list of so many numbers.
-    Numbers(usize, Quantity),
+    Numbers(usize, Bounds),
     /// A particle.
     Id,
     /// A list of two particles.
@@ -128,52 +128,52 @@ declare! {
     ]
 
     /// One line; the file's stem if absent, `scene` if that has none.
-    name: String = "scene".into(), "name" => Kind::Text(limits::name), Usual, None;
+    name: String = "scene".into(), "name" => ValueKind::Text(limits::name), Usual, None;
     /// Any text.
     description: Option<String> = None,
-        "description" => Kind::Text(limits::description), Usual, None;
+        "description" => ValueKind::Text(limits::description), Usual, None;
     /// How it is stepped, and in which gravity.
-    solver: Solver = Solver::default(), "solver" => Kind::Part(&SOLVER),
+    solver: SolverSpec = SolverSpec::default(), "solver" => ValueKind::Part(&SOLVER),
         Required("add `solver: {type: symplectic_euler, timestep: 0.0005}`"), None;
     /// Seconds, at least one timestep.
-    duration: f64 = 5.0, "duration" => Kind::Number(limits::DURATION), Usual, None;
+    duration: f64 = 5.0, "duration" => ValueKind::Number(limits::DURATION), Usual, None;
     /// The axis gravity acts along.
-    up: Axis = Axis::Z, "up" => Kind::Word(Axis::WORDS), Usual, Some("gravity");
+    up: Axis = Axis::Z, "up" => ValueKind::Word(Axis::WORDS), Usual, Some("gravity");
     /// The part of the ends' relative velocity that dampers resist.
     damping_model: DampingModel = DampingModel::Axial,
-        "damping_model" => Kind::Word(DampingModel::WORDS), Usual, Some("damping_model");
+        "damping_model" => ValueKind::Word(DampingModel::WORDS), Usual, Some("damping_model");
     /// The curve the report shows first.
-    plot: Option<Plot> = None, "plot" => Kind::Part(&PLOT), Usual, None;
+    plot: Option<Plot> = None, "plot" => ValueKind::Part(&PLOT), Usual, None;
     /// At least one of them free.
     particles: Vec<Particle> = Vec::new(),
-        "particles" => Kind::Part(&PARTICLES), Required(NO_PARTICLES), None;
+        "particles" => ValueKind::Part(&PARTICLES), Required(NO_PARTICLES), None;
     /// Springs with dampers.
-    springs: Vec<Spring> = Vec::new(), "springs" => Kind::Part(&SPRINGS), Usual, None;
+    springs: Vec<Spring> = Vec::new(), "springs" => ValueKind::Part(&SPRINGS), Usual, None;
     /// Attractions.
     gravitational: Vec<GravitationalPair> = Vec::new(),
-        "gravitational" => Kind::Part(&GRAVITATIONAL), Usual, None;
+        "gravitational" => ValueKind::Part(&GRAVITATIONAL), Usual, None;
     /// A constant force.
-    wind: Option<Wind> = None, "wind" => Kind::Part(&WIND), Usual, None;
+    wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
     /// What engines must do, in the order of the file. Changes no run.
-    expect: Vec<Expectation> = Vec::new(), "expect" => Kind::Expect, Usual, None;
+    expect: Vec<Expectation> = Vec::new(), "expect" => ValueKind::Expect, Usual, None;
 }
 
 declare! {
     /// What the file asks for under `solver`.
-    SOLVER: Solver, one solver, "a mapping with `type` and `timestep`", later [];
+    SOLVER: SolverSpec, one solver, "a mapping with `type` and `timestep`", later [];
 
     /// An integrator's id.
-    method: String = "symplectic_euler".into(), "type" => Kind::Text(limits::method),
+    method: String = "symplectic_euler".into(), "type" => ValueKind::Text(limits::method),
         Required("name an integrator, as symplectic_euler"), None;
     /// Seconds, positive.
-    timestep: f64 = 1e-3, "timestep" => Kind::Number(limits::TIMESTEP),
+    timestep: f64 = 1e-3, "timestep" => ValueKind::Number(limits::TIMESTEP),
         Required("give the step in seconds, as 0.0005"), None;
     /// Signed acceleration along `up`, m/s².
     gravity: f64 = -9.81,
-        "gravity" => Kind::Number(Quantity::signed(1e12, "m/s²")), Usual, Some("gravity");
+        "gravity" => ValueKind::Number(Bounds::signed(1e12, "m/s²")), Usual, Some("gravity");
     /// Relative residual at which an implicit method's solve ends; the method's own if absent.
     tolerance: Option<f64> = None,
-        "tolerance" => Kind::Number(Quantity::from(1e-300, 1.0, "relative")), Usual, None;
+        "tolerance" => ValueKind::Number(Bounds::from(1e-300, 1.0, "relative")), Usual, None;
 }
 
 declare! {
@@ -182,12 +182,13 @@ declare! {
 
     /// Whose curve.
     particle: usize = 0,
-        "particle_id" => Kind::Id, Required("say which particle's curve to show"), None;
+        "particle_id" => ValueKind::Id, Required("say which particle's curve to show"), None;
     /// Coordinate 0, 1 or 2.
     dof: usize = 0,
-        "dof" => Kind::Coordinate, Required("say which coordinate to show: 0, 1 or 2"), None;
+        "dof" => ValueKind::Coordinate, Required("say which coordinate to show: 0, 1 or 2"), None;
     /// Lower and upper, m; fits the data if absent.
-    y_range: Option<[f64; 2]> = None, "y_range" => Kind::Numbers(2, limits::POSITION), Usual, None;
+    y_range: Option<[f64; 2]> = None,
+        "y_range" => ValueKind::Numbers(2, limits::POSITION), Usual, None;
 }
 
 declare! {
@@ -195,21 +196,21 @@ declare! {
     PARTICLES: Particle, list particles, "a particle: a mapping with `pos` and `mass`", later [];
 
     /// Metres, at the start.
-    position: [f64; 3] = [0.0; 3], "pos" => Kind::Numbers(3, limits::POSITION),
+    position: [f64; 3] = [0.0; 3], "pos" => ValueKind::Numbers(3, limits::POSITION),
         Required("give its position: `pos: [x, y, z]`"), Some("positions");
     /// Metres per second, at the start; zero for a fixed particle.
-    velocity: [f64; 3] = [0.0; 3], "vel" => Kind::Numbers(3, Quantity::signed(1e12, "m/s")),
+    velocity: [f64; 3] = [0.0; 3], "vel" => ValueKind::Numbers(3, Bounds::signed(1e12, "m/s")),
         Usual, Some("velocities");
     /// Whether it never moves.
-    fixed: bool = false, "fixed" => Kind::Flag, Usual, Some("fixed");
+    fixed: bool = false, "fixed" => ValueKind::Flag, Usual, Some("fixed");
     /// Kilograms, positive. Only what is fixed and attracts nothing may leave it out.
     mass: f64 = 1.0,
-        "mass" => Kind::Number(Quantity::from(1e-30, 1e30, "kg")), Derived, Some("masses");
+        "mass" => ValueKind::Number(Bounds::from(1e-30, 1e30, "kg")), Derived, Some("masses");
     /// Metres; the ball's radius once a scene asks for contact.
-    radius: f64 = 0.1, "radius" => Kind::Number(Quantity::not_negative(1e12, "m")), Usual, None;
+    radius: f64 = 0.1, "radius" => ValueKind::Number(Bounds::not_negative(1e12, "m")), Usual, None;
     /// Linear drag coefficient b, N s/m.
     drag: f64 = 0.0,
-        "drag" => Kind::Number(Quantity::not_negative(1e18, "N s/m")), Usual, Some("drag");
+        "drag" => ValueKind::Number(Bounds::not_negative(1e18, "N s/m")), Usual, Some("drag");
 }
 
 declare! {
@@ -218,19 +219,19 @@ declare! {
     later [];
 
     /// Two different particles.
-    ends: [usize; 2] = [0, 1], "particle_ids" => Kind::Ids,
+    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids,
         Required("name the two ends: `particle_ids: [0, 1]`"), Some("ids");
     /// k, N/m, not negative.
-    stiffness: f64 = 0.0, "stiffness" => Kind::Number(limits::STIFFNESS),
+    stiffness: f64 = 0.0, "stiffness" => ValueKind::Number(limits::STIFFNESS),
         Required("a spring needs its stiffness in N/m"), Some("stiffness");
     /// q, N/m³, not negative: adds q (l - L)³ to the pull.
     cubic: f64 = 0.0,
-        "cubic" => Kind::Number(Quantity::not_negative(1e18, "N/m³")), Usual, Some("cubic");
+        "cubic" => ValueKind::Number(Bounds::not_negative(1e18, "N/m³")), Usual, Some("cubic");
     /// c, N s/m, not negative.
     damping: f64 = 0.0,
-        "damping" => Kind::Number(Quantity::not_negative(1e18, "N s/m")), Usual, Some("damping");
+        "damping" => ValueKind::Number(Bounds::not_negative(1e18, "N s/m")), Usual, Some("damping");
     /// L, metres, not negative. A file without it means the initial distance of the ends.
-    rest_length: f64 = 0.0, "rest_length" => Kind::Number(Quantity::not_negative(1e12, "m")),
+    rest_length: f64 = 0.0, "rest_length" => ValueKind::Number(Bounds::not_negative(1e12, "m")),
         Derived, Some("rest_lengths");
 }
 
@@ -241,10 +242,10 @@ declare! {
     later [];
 
     /// Two different particles.
-    ends: [usize; 2] = [0, 1], "particle_ids" => Kind::Ids,
+    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids,
         Required("name the two particles: `particle_ids: [0, 1]`"), Some("ids");
     /// G, N m²/kg²; negative repels.
-    g: f64 = 0.0, "G" => Kind::Number(Quantity::signed(1e30, "N m²/kg²")),
+    g: f64 = 0.0, "G" => ValueKind::Number(Bounds::signed(1e30, "N m²/kg²")),
         Required("give the constant of attraction in N m²/kg²"), Some("g");
 }
 
@@ -255,10 +256,10 @@ declare! {
 
     /// Unit vector; in the file of any length but 0.
     direction: [f64; 3] = [1.0, 0.0, 0.0],
-        "direction" => Kind::Numbers(3, Quantity::signed(1e12, "any unit")),
+        "direction" => ValueKind::Numbers(3, Bounds::signed(1e12, "any unit")),
         Required("say where it blows: `direction: [1, 0, 0]`"), Some("wind_force");
     /// Newtons; negative blows the other way.
-    strength: f64 = 0.0, "strength" => Kind::Number(Quantity::signed(1e18, "N")),
+    strength: f64 = 0.0, "strength" => ValueKind::Number(Bounds::signed(1e18, "N")),
         Required("give its force in newtons"), Some("wind_force");
 }
 

@@ -9,7 +9,7 @@ use super::error::{Fault, Refusal};
 use super::expect::Engines;
 use super::expectation::Names;
 use super::limits::known;
-use super::model::{Absent, Kind, Part, Row, SCENE, Scene};
+use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
 use super::values::{Any, Key, Maybe, Number, Numbers, flag, index_of, number, text};
@@ -135,10 +135,10 @@ impl<'n> Entry<'_, 'n> {
     /// Takes a number, or one of a list.
     fn number(&mut self, component: usize, number: Number) -> Result<(), Refusal> {
         let value = match self.row.kind {
-            Kind::Number(quantity) | Kind::Numbers(_, quantity) => {
+            ValueKind::Number(quantity) | ValueKind::Numbers(_, quantity) => {
                 Value::Number(quantity.judge(number)?)
             }
-            Kind::Coordinate => Value::Id(coordinate(number)?),
+            ValueKind::Coordinate => Value::Id(coordinate(number)?),
             _ => Value::Id(self.id(component, number)),
         };
         self.set(component, value);
@@ -149,7 +149,7 @@ impl<'n> Entry<'_, 'n> {
     fn id(&mut self, component: usize, number: Number) -> usize {
         number.whole().unwrap_or_else(|| {
             let mut path = self.part.path(Some(self.at), self.row.key);
-            if let Kind::Ids = self.row.kind {
+            if let ValueKind::Ids = self.row.kind {
                 path += &format!("[{component}]");
             }
             self.reading.no_id.get_or_insert((path, number));
@@ -163,30 +163,30 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
 
     fn deserialize<D: Deserializer<'de>>(mut self, from: D) -> Result<(), D::Error> {
         match self.row.kind {
-            Kind::Number(_) | Kind::Id | Kind::Coordinate => {
+            ValueKind::Number(_) | ValueKind::Id | ValueKind::Coordinate => {
                 from.deserialize_any(number(|n| self.number(0, n)))
             }
-            Kind::Numbers(count, _) => {
+            ValueKind::Numbers(count, _) => {
                 from.deserialize_any(Numbers(count, |i, n| self.number(i, n)))
             }
-            Kind::Ids => from.deserialize_any(Numbers(2, |i, n| self.number(i, n))),
-            Kind::Flag => {
+            ValueKind::Ids => from.deserialize_any(Numbers(2, |i, n| self.number(i, n))),
+            ValueKind::Flag => {
                 let flag = from.deserialize_any(flag())?;
                 self.set(0, Value::Flag(flag));
                 Ok(())
             }
-            Kind::Word(_) | Kind::Text(_) => from.deserialize_any(text(|text| {
+            ValueKind::Word(_) | ValueKind::Text(_) => from.deserialize_any(text(|text| {
                 match self.row.kind {
-                    Kind::Word(words) => known(text, words, "choice")?,
-                    Kind::Text(judge) => judge(text, self.reading.names)?,
+                    ValueKind::Word(words) => known(text, words, "choice")?,
+                    ValueKind::Text(judge) => judge(text, self.reading.names)?,
                     _ => {}
                 }
                 self.set(0, Value::Text(text));
                 Ok(())
             })),
-            Kind::Part(part) if part.list => from.deserialize_any(List(part, self)),
-            Kind::Part(part) => from.deserialize_any(self.member(part)),
-            Kind::Expect => from.deserialize_any(Engines {
+            ValueKind::Part(part) if part.list => from.deserialize_any(List(part, self)),
+            ValueKind::Part(part) => from.deserialize_any(self.member(part)),
+            ValueKind::Expect => from.deserialize_any(Engines {
                 names: self.reading.names,
                 expect: &mut self.reading.scene.expect,
                 problem: &mut self.reading.problem,

@@ -10,7 +10,7 @@ mod solver;
 pub use integrator::{AdaptiveEngine, IntegratorEngine, advance};
 pub use run::{Ended, Limits, Run, Status, Tally};
 pub use setting::Setting;
-pub use solver::{BuildIntegrator, Kind, Solver, catalogue, find, methods, own_first};
+pub use solver::{BuildIntegrator, Solver, SolverKind, catalogue, find, methods, own_first};
 
 use crate::integrators::StepError;
 use crate::physics::{Refused, State};

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum SolverKind {
     Integrator,
     Rapier,
     External,
@@ -26,7 +26,7 @@ pub enum Kind {
 pub struct Solver {
     /// What reports and the command line call it.
     pub id: Cow<'static, str>,
-    pub kind: Kind,
+    pub kind: SolverKind,
     /// A line for lists.
     pub summary: &'static str,
     /// The method whose step each of its substeps is; None where it is none, or nobody knows.
@@ -48,7 +48,7 @@ enum Source {
     Method(&'static Method),
     Own(Arc<BuildIntegrator>),
     /// rapier's world in its own terms.
-    Joints(rapier::Settings),
+    Joints(rapier::RapierSettings),
     /// rapier's bodies under forces computed here.
     Forces,
     Program(Arc<dyn Program>),
@@ -79,7 +79,7 @@ impl Solver {
     /// Another program, under a name no other solver has. It gives whole trajectories.
     pub fn program(name: &str, program: Arc<dyn Program>) -> Self {
         Self {
-            kind: Kind::External,
+            kind: SolverKind::External,
             ..Self::integrator(
                 name.to_owned().into(),
                 "another program",
@@ -90,7 +90,7 @@ impl Solver {
 
     /// rapier's spring joints with settings of the caller's own, named after those that are not rapier's
     /// defaults.
-    pub fn rapier(settings: rapier::Settings) -> Self {
+    pub fn rapier(settings: rapier::RapierSettings) -> Self {
         Self {
             id: format!("rapier({})", settings.changes()).into(),
             summary: "rapier with settings of your own",
@@ -101,7 +101,7 @@ impl Solver {
     fn integrator(id: Cow<'static, str>, summary: &'static str, source: Source) -> Self {
         Self {
             id,
-            kind: Kind::Integrator,
+            kind: SolverKind::Integrator,
             summary,
             follows: None,
             substeps: 1,
@@ -217,24 +217,24 @@ fn worlds() -> [Solver; 3] {
         id: rapier::IDS[2].into(),
         summary: "rapier's spring joints swept until they converge: linearly implicit Euler",
         follows: integrators::find("linearized_implicit_material"),
-        ..joints(rapier::Settings::CONVERGED)
+        ..joints(rapier::RapierSettings::CONVERGED)
     };
     let forces = Solver {
         id: rapier::IDS[1].into(),
         summary: "rapier's bodies under this program's forces: symplectic Euler",
         follows: integrators::find("symplectic_euler"),
-        substeps: rapier::Settings::FORCES.iterations,
+        substeps: rapier::RapierSettings::FORCES.iterations,
         dissipates: None,
         source: Source::Forces,
-        ..joints(rapier::Settings::FORCES)
+        ..joints(rapier::RapierSettings::FORCES)
     };
-    [joints(rapier::Settings::DEFAULT), forces, converged]
+    [joints(rapier::RapierSettings::DEFAULT), forces, converged]
 }
 
 /// rapier's spring joints under these settings; only at the defaults is it what people ship.
-fn joints(settings: rapier::Settings) -> Solver {
+fn joints(settings: rapier::RapierSettings) -> Solver {
     Solver {
-        kind: Kind::Rapier,
+        kind: SolverKind::Rapier,
         substeps: settings.iterations.max(1),
         reference: true,
         dissipates: Some(

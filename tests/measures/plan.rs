@@ -3,8 +3,8 @@
 use crate::testkit::scenes::shipped;
 use springcheck::integrators::{self, Settings};
 use springcheck::scene::Scene;
-use springcheck::solvers::Kind;
 use springcheck::solvers::Solver;
+use springcheck::solvers::SolverKind;
 use springcheck::verbs::Report;
 use springcheck::verbs::run::Outcome;
 use springcheck::verbs::run::{Choice, Plan};
@@ -63,12 +63,12 @@ fn it_stands_after_the_integrators_and_its_evaluations_count() {
     assert!(
         report.outcomes()[..=at]
             .iter()
-            .all(|o| o.kind == Kind::Integrator)
+            .all(|o| o.kind == SolverKind::Integrator)
     );
     assert!(
         report.outcomes()[at + 1..]
             .iter()
-            .all(|o| o.kind == Kind::Rapier)
+            .all(|o| o.kind == SolverKind::Rapier)
     );
     let evaluations = |report: &Report| report.header.scene.effects[0].evaluations;
     assert_eq!(evaluations(&report), evaluations(&without) + 500);

@@ -1,7 +1,7 @@
 //! Cloths built in memory: what the spring kernel is tested and timed on.
 
 use super::scenes::{empty, fixed, free, spring};
-use springcheck::scene::{DampingModel, Particle, Scene, Solver, Spring};
+use springcheck::scene::{DampingModel, Particle, Scene, SolverSpec, Spring};
 
 /// m between neighbours.
 const SPACING: f64 = 0.1;
@@ -43,10 +43,10 @@ pub fn cloth(n: usize, damping: f64, model: DampingModel) -> Scene {
     }
     Scene {
         name: format!("cloth {n} x {n}"),
-        solver: Solver {
+        solver: SolverSpec {
             method: "symplectic_euler".into(),
             timestep: 1e-4,
-            ..Solver::default()
+            ..SolverSpec::default()
         },
         duration: 1.0,
         damping_model: model,

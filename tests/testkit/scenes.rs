@@ -1,6 +1,6 @@
 //! One way to a scene: a shipped file, a text, or particles and springs put together in code.
 
-use springcheck::scene::{self, DampingModel, Particle, Scene, Solver, Spring};
+use springcheck::scene::{self, DampingModel, Particle, Scene, SolverSpec, Spring};
 use springcheck::verbs::names;
 use std::path::{Path, PathBuf};
 
@@ -57,10 +57,10 @@ pub fn parsed(yaml: &str) -> Scene {
 pub fn empty() -> Scene {
     Scene {
         name: "a test".into(),
-        solver: Solver {
+        solver: SolverSpec {
             method: "rk4".into(),
             gravity: 0.0,
-            ..Solver::default()
+            ..SolverSpec::default()
         },
         ..Scene::default()
     }

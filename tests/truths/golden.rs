@@ -5,7 +5,7 @@ use crate::testkit::scenes::shipped;
 use crate::testkit::{advance, method, own};
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::{self, Scene};
-use springcheck::solvers::{Solver, rapier::Settings};
+use springcheck::solvers::{Solver, rapier::RapierSettings};
 use springcheck::truth::Demand;
 use springcheck::verbs::run::{Choice, Expectations, Orders, Plan};
 use springcheck::verbs::session::Quiet;
@@ -14,9 +14,9 @@ const SIXTIETH: f64 = 1.0 / 60.0;
 
 /// rapier at its defaults but for `n` substeps.
 fn rapier(n: u32) -> Solver {
-    Solver::rapier(Settings {
+    Solver::rapier(RapierSettings {
         iterations: n,
-        ..Settings::DEFAULT
+        ..RapierSettings::DEFAULT
     })
 }
 

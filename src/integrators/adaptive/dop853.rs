@@ -1,14 +1,14 @@
 //! DOP853. The converged truth takes its coefficients at fixed steps, too.
 
-use super::{Estimate, Pair};
-use crate::integrators::{Coefficients, Row, Tableau};
+use super::{ErrorEstimate, Pair};
+use crate::integrators::{Coefficients, MethodRow, Tableau};
 
-pub(in crate::integrators) const DOP853: Row = Row {
+pub(in crate::integrators) const DOP853: MethodRow = MethodRow {
     id: "dop853",
     name: "Dormand-Prince 8(5,3)",
     coefficients: Coefficients::Pair(Pair {
         tableau: DORMAND_PRINCE_8,
-        estimate: Estimate::Mixed53 {
+        estimate: ErrorEstimate::Mixed53 {
             fifth: &ERROR_5,
             third: &ERROR_3,
         },

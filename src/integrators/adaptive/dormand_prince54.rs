@@ -1,14 +1,14 @@
 //! Dormand and Prince's pair of orders 5 and 4.
 
-use super::{Estimate, Pair};
-use crate::integrators::{Coefficients, Row, Tableau};
+use super::{ErrorEstimate, Pair};
+use crate::integrators::{Coefficients, MethodRow, Tableau};
 
-pub(in crate::integrators) const DORMAND_PRINCE_54: Row = Row {
+pub(in crate::integrators) const DORMAND_PRINCE_54: MethodRow = MethodRow {
     id: "dormand_prince54",
     name: "Dormand-Prince 5(4)",
     coefficients: Coefficients::Pair(Pair {
         tableau: DORMAND_PRINCE_5,
-        estimate: Estimate::Embedded {
+        estimate: ErrorEstimate::Embedded {
             order: 4,
             weights: &ERROR_4,
         },

@@ -21,7 +21,7 @@ use super::Tableau;
 pub struct Pair {
     /// Its stages, and the weights of the formula that is advanced.
     pub tableau: Tableau,
-    pub estimate: Estimate,
+    pub estimate: ErrorEstimate,
     /// The last stage is evaluated at the step's end, with these weights as its row, and is the first
     /// of the next step.
     pub first_same_as_last: bool,
@@ -29,7 +29,7 @@ pub struct Pair {
 
 /// How a step's error is estimated from its stages, by sums Σ e k.
 #[derive(Debug, Clone, Copy)]
-pub enum Estimate {
+pub enum ErrorEstimate {
     /// The distance from a formula of this order.
     Embedded { order: u32, weights: &'static [f64] },
     /// DOP853's mixture of distances from formulas of order 5 and 3.
@@ -39,7 +39,7 @@ pub enum Estimate {
     },
 }
 
-impl Estimate {
+impl ErrorEstimate {
     /// The power of h it falls with.
     pub fn order(&self) -> u32 {
         match self {

@@ -1,7 +1,7 @@
 //! One step of a pair, tried: its stages, its error, and its end.
 
-use super::{Estimate, Pair, mixed};
-use crate::integrators::nystrom::{LANES, Stage, Weight, stages, sums, weights};
+use super::{ErrorEstimate, Pair, mixed};
+use crate::integrators::nystrom::{LANES, NystromStage, Weight, stages, sums, weights};
 use crate::integrators::{axpy, largest, worst_particle};
 use crate::physics::{Power, State, System};
 
@@ -40,7 +40,7 @@ impl Scale {
 
 /// Stages of the step at hand. Vectors are padded with zeros to whole lanes.
 pub(super) struct Trial {
-    stages: Vec<Stage>,
+    stages: Vec<NystromStage>,
     end: Vec<Weight>,
     /// Of the estimate, and of DOP853's second.
     errors: Vec<Vec<Weight>>,
@@ -64,8 +64,8 @@ impl Trial {
     pub fn new(pair: &Pair) -> Self {
         let tableau = &pair.tableau;
         let estimates: Vec<_> = match pair.estimate {
-            Estimate::Embedded { weights, .. } => vec![weights],
-            Estimate::Mixed53 { fifth, third } => vec![fifth, third],
+            ErrorEstimate::Embedded { weights, .. } => vec![weights],
+            ErrorEstimate::Mixed53 { fifth, third } => vec![fifth, third],
         };
         let estimates = estimates.into_iter();
         Self {
@@ -150,7 +150,7 @@ impl Trial {
     pub fn attempt(&mut self, system: &dyn System, t: f64, h: f64, scale: &Scale) -> f64 {
         let dim = self.dim;
         for stage in 1..self.stages.len() {
-            let Stage { node, row } = &self.stages[stage];
+            let NystromStage { node, row } = &self.stages[stage];
             let from = [&self.from_x[..], &self.from_v];
             let to = [&mut self.x[..], &mut self.v];
             place(from, to, [node * h, h], row, &self.accelerations);

@@ -21,7 +21,7 @@ pub(super) struct Conjugate {
 
 /// How a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Ended {
+pub(super) enum ConjugateEnd {
     Solved,
     /// Negative curvature was met: the matrix is not positive definite.
     Indefinite,
@@ -57,7 +57,7 @@ impl Conjugate {
         tolerance: f64,
         cap: usize,
         z: &mut [f64],
-    ) -> Ended {
+    ) -> ConjugateEnd {
         self.left.copy_from_slice(z);
         z.fill(0.0);
         let enough = tolerance * dot(&self.left, &self.left).sqrt();
@@ -65,13 +65,13 @@ impl Conjugate {
         self.direction.copy_from_slice(&self.preconditioned);
         for _ in 0..cap {
             if product == 0.0 {
-                return Ended::Solved;
+                return ConjugateEnd::Solved;
             }
             matrix.symmetric_product(&self.direction, &mut self.image);
             let curvature = dot(&self.direction, &self.image);
             // NaN is not positive.
             if curvature.is_nan() || curvature <= 0.0 {
-                return Ended::Indefinite;
+                return ConjugateEnd::Indefinite;
             }
             let length = product / curvature;
             let mut squares = [0.0; 4];
@@ -90,7 +90,7 @@ impl Conjugate {
                 }
             }
             if squares.iter().sum::<f64>().sqrt() <= enough {
-                return Ended::Solved;
+                return ConjugateEnd::Solved;
             }
             let before = std::mem::replace(&mut product, self.precondition());
             let share = product / before;
@@ -98,7 +98,7 @@ impl Conjugate {
                 *d = p + share * *d;
             }
         }
-        Ended::Slow
+        ConjugateEnd::Slow
     }
 
     /// Returns the product of what is left and its preconditioned self.

@@ -2,7 +2,7 @@
 //! Jacobian in the same places at every call, so where pairs go is looked up once.
 
 use super::worst_particle;
-use crate::physics::{Jacobian, PairBlock, Slope};
+use crate::physics::{Derivative, Jacobian, PairBlock};
 use nalgebra::{Matrix3, Vector3};
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -50,7 +50,7 @@ struct Emitted {
 }
 
 const NOWHERE: usize = usize::MAX;
-const BOTH: [Slope; 2] = [Slope::Position, Slope::Velocity];
+const BOTH: [Derivative; 2] = [Derivative::Position, Derivative::Velocity];
 
 impl Pattern {
     /// Whether this is the pattern of that Jacobian: the same places in the same order.
@@ -124,7 +124,7 @@ impl Pattern {
 }
 
 /// Places of a Jacobian's single entries.
-fn entries(jacobian: &Jacobian, by: Slope) -> impl Iterator<Item = (usize, usize)> {
+fn entries(jacobian: &Jacobian, by: Derivative) -> impl Iterator<Item = (usize, usize)> {
     jacobian.triplets(by).iter().map(|&(r, c, _)| (r, c))
 }
 
@@ -197,7 +197,10 @@ impl Matrix {
         };
         restart(&mut self.diagonal, pattern.coordinates.len() / 3);
         restart(&mut self.lower, pattern.rows.len());
-        let slopes = [(Slope::Velocity, -gamma), (Slope::Position, -gamma * gamma)];
+        let slopes = [
+            (Derivative::Velocity, -gamma),
+            (Derivative::Position, -gamma * gamma),
+        ];
         let skew = BOTH.iter().any(|&by| {
             let skew = |pair: &PairBlock| !is_symmetric(&pair.block);
             jacobian.pairs(by).iter().any(skew) || entries(jacobian, by).any(|(r, c)| r != c)

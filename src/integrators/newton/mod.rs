@@ -20,10 +20,10 @@ mod solver;
 mod tests;
 
 use super::{StepError, fit, largest, worst_particle};
-use crate::physics::{Jacobian, Linearization, Power, Slope, State, System};
+use crate::physics::{Derivative, Jacobian, Linearization, Power, State, System};
 use matrix::Matrix;
-use search::{Merit, Stage, Trial};
-use solver::Solver;
+use search::{Merit, StageEquation, Trial};
+use solver::LinearSolver;
 
 /// Quadratic convergence needs four to six, a way around hills a few dozen, along a valley that bends
 /// hundreds; more means it is not converging.
@@ -45,7 +45,7 @@ const SHIFTS: u32 = 30;
 
 pub(super) struct Newton {
     tolerance: f64,
-    solver: Solver,
+    solver: LinearSolver,
     matrix: Matrix,
     jacobian: Jacobian,
     /// Where the iteration is, and where it may go next.
@@ -64,7 +64,7 @@ impl Newton {
     pub(super) fn new(tolerance: f64) -> Self {
         Self {
             tolerance,
-            solver: Solver::default(),
+            solver: LinearSolver::default(),
             matrix: Matrix::default(),
             jacobian: Jacobian::in_blocks(),
             at: Trial::default(),
@@ -92,7 +92,7 @@ impl Newton {
         y: &[f64],
         u: &mut [f64],
     ) -> Result<Power, StepError> {
-        let stage = Stage {
+        let stage = StageEquation {
             system,
             t,
             gamma,
@@ -107,7 +107,7 @@ impl Newton {
     /// Leaves the solution in `self.at`; `seen` is shown every accepted iterate.
     fn iterate(
         &mut self,
-        stage: &Stage,
+        stage: &StageEquation,
         guess: &[f64],
         mut seen: impl FnMut(&Trial),
     ) -> Result<(), StepError> {
@@ -178,7 +178,7 @@ impl Newton {
     /// [`StepError::Singular`] where there is no memory for factors.
     fn direction(
         &mut self,
-        stage: &Stage,
+        stage: &StageEquation,
         kept: Linearization,
         tolerance: f64,
     ) -> Result<bool, StepError> {
@@ -190,7 +190,7 @@ impl Newton {
     ///
     /// # Errors
     /// [`StepError::Singular`] where nothing makes the matrix definite.
-    fn descend(&mut self, stage: &Stage, tolerance: f64) -> Result<(), StepError> {
+    fn descend(&mut self, stage: &StageEquation, tolerance: f64) -> Result<(), StepError> {
         let mut definite = self.direction(stage, Linearization::Definite, tolerance)?;
         let (mut shift, mut added) = (SHIFT, 0.0);
         for _ in 0..SHIFTS {
@@ -214,7 +214,7 @@ impl Newton {
     /// A plane chain under compression would rather buckle sideways, where nothing pushes it: Φ then has
     /// a saddle, which solves the equation as well as a minimum does, and the directions of
     /// [`descend`](Self::descend) come near it only linearly.
-    fn leap(&mut self, stage: &Stage) -> bool {
+    fn leap(&mut self, stage: &StageEquation) -> bool {
         self.matrix.gather(&self.at.residual, &mut self.z);
         if self.solver.solve_lu(&self.matrix, &mut self.z).is_err() {
             return false;
@@ -224,7 +224,7 @@ impl Newton {
         self.leaps(stage)
     }
 
-    fn assemble(&mut self, stage: &Stage, kept: Linearization) {
+    fn assemble(&mut self, stage: &StageEquation, kept: Linearization) {
         let (system, t) = (stage.system, stage.t);
         self.jacobian.clear();
         system.jacobian(t, &self.at.x, &self.at.u, kept, &mut self.jacobian);
@@ -240,7 +240,7 @@ impl Newton {
     }
 
     /// False where the matrix is not positive definite, or too nearly so for a finite direction.
-    fn try_direction(&mut self, stage: &Stage, tolerance: f64) -> Result<bool, StepError> {
+    fn try_direction(&mut self, stage: &StageEquation, tolerance: f64) -> Result<bool, StepError> {
         self.matrix.gather(&self.at.residual, &mut self.z);
         let (solver, inverse_mass) = (&mut self.solver, stage.system.inverse_mass());
         if !solver.solve(&self.matrix, inverse_mass, tolerance, &mut self.z)? {
@@ -259,7 +259,7 @@ impl Newton {
 
     /// What a few roundings of positions and velocities do to the residual at `self.at`, in its norm:
     /// eps (γ |∂f/∂x| max(|y|, |γ u|) + M (|u| + |b|)), with the last Jacobian.
-    fn floor(&mut self, stage: &Stage) -> f64 {
+    fn floor(&mut self, stage: &StageEquation) -> f64 {
         let (at, size) = (&self.at, &mut self.z);
         size.clear();
         size.resize(at.u.len(), 0.0);
@@ -268,7 +268,7 @@ impl Newton {
         let reach: Vec<f64> = parts
             .map(|(y, u)| y.abs().max((stage.gamma * u).abs()))
             .collect();
-        let position = Slope::Position;
+        let position = Derivative::Position;
         (self.jacobian).add_magnitudes(position, stage.gamma, &reach, size);
         let mut squares = 0.0;
         for (i, &w) in stage.system.inverse_mass().iter().enumerate() {
@@ -304,7 +304,7 @@ impl Newton {
             *right = if w > 0.0 { h * *right / w } else { 0.0 };
         }
         self.jacobian
-            .add_product(Slope::Position, h * h, &state.v, &mut right);
+            .add_product(Derivative::Position, h * h, &state.v, &mut right);
         for (right, &w) in right.iter_mut().zip(inverse_mass) {
             *right = if w > 0.0 { *right } else { 0.0 };
         }

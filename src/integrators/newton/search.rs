@@ -11,7 +11,7 @@
 //! Hager & Zhang 2005, SIAM J. Optim. 16.)
 
 use super::{Newton, fit, worst_particle};
-use crate::physics::{ForceKinds, Jacobian, Power, Slope, System};
+use crate::physics::{Derivative, ForceKinds, Jacobian, Power, System};
 
 /// Share of the decrease its slope promises that Φ has to make (Armijo).
 const ARMIJO: f64 = 1e-4;
@@ -27,7 +27,7 @@ const STILL_STEEP: f64 = 0.5;
 
 /// What is to be solved for u.
 #[derive(Clone, Copy)]
-pub(super) struct Stage<'a> {
+pub(super) struct StageEquation<'a> {
     pub system: &'a dyn System,
     pub t: f64,
     pub gamma: f64,
@@ -58,7 +58,7 @@ pub(super) struct Trial {
 
 impl Trial {
     /// Evaluates the equation `alpha` times `d` from another trial.
-    fn step(&mut self, stage: &Stage, from: &Self, alpha: f64, d: &[f64]) {
+    fn step(&mut self, stage: &StageEquation, from: &Self, alpha: f64, d: &[f64]) {
         self.u.clear();
         let steps = from.u.iter().zip(d);
         self.u.extend(steps.map(|(u, d)| u + alpha * d));
@@ -66,7 +66,7 @@ impl Trial {
     }
 
     /// Evaluates the equation at `self.u`.
-    pub(super) fn evaluate(&mut self, stage: &Stage) {
+    pub(super) fn evaluate(&mut self, stage: &StageEquation) {
         let n = self.u.len();
         for buffer in [&mut self.x, &mut self.a, &mut self.residual] {
             fit(buffer, n);
@@ -102,7 +102,7 @@ impl Trial {
         };
     }
 
-    fn potential(&mut self, stage: &Stage) -> f64 {
+    fn potential(&mut self, stage: &StageEquation) -> f64 {
         let x = &self.x;
         *self
             .potential
@@ -138,7 +138,7 @@ struct Line {
 }
 
 impl Line {
-    fn new(stage: &Stage, from: &mut Trial, d: &[f64], jacobian: &Jacobian) -> Self {
+    fn new(stage: &StageEquation, from: &mut Trial, d: &[f64], jacobian: &Jacobian) -> Self {
         let (system, gamma) = (stage.system, stage.gamma);
         let (mut slope, mut curvature, mut rest) = (0.0, 0.0, 0.0);
         for (i, &w) in system.inverse_mass().iter().enumerate() {
@@ -150,7 +150,7 @@ impl Line {
         }
         if system.kinds().depends_on_velocity() {
             let mut damping = vec![0.0; d.len()];
-            jacobian.add_product(Slope::Velocity, gamma, d, &mut damping);
+            jacobian.add_product(Derivative::Velocity, gamma, d, &mut damping);
             // D is symmetric, and d is 0 where a coordinate is fixed.
             curvature -= dot(&damping, d);
             rest -= dot(&damping, &from.u);
@@ -170,7 +170,7 @@ impl Line {
     /// Whether a trial is good: α from the start, where the residual was `before`, with this slope there.
     fn accepts(
         &self,
-        stage: &Stage,
+        stage: &StageEquation,
         merit: Merit,
         before: f64,
         to: &mut Trial,
@@ -187,7 +187,7 @@ impl Line {
     }
 
     /// Φ(u + α d) - Φ(u), and how much of it may be rounding.
-    fn change(&self, stage: &Stage, alpha: f64, to: &mut Trial) -> (f64, f64) {
+    fn change(&self, stage: &StageEquation, alpha: f64, to: &mut Trial) -> (f64, f64) {
         let potential = to.potential(stage);
         let change =
             alpha * (self.rest + 0.5 * alpha * self.curvature) + (potential - self.potential);
@@ -203,7 +203,7 @@ impl Newton {
     /// Leaves in `self.next` the first good trial along `self.d`, a direction of descent that is 0 on fixed
     /// coordinates: the full step, if it is one, and further with `extend`. A trial that solves the equation,
     /// or leaves a residual of a few roundings, is good. False if no trial is.
-    pub(super) fn advance(&mut self, stage: &Stage, merit: Merit, extend: bool) -> bool {
+    pub(super) fn advance(&mut self, stage: &StageEquation, merit: Merit, extend: bool) -> bool {
         let (mut line, mut floor, mut alpha) = (None, None, 1.0);
         for _ in 0..TRIALS {
             self.next.step(stage, &self.at, alpha, &self.d);
@@ -236,12 +236,12 @@ impl Newton {
         false
     }
 
-    fn line(&mut self, stage: &Stage) -> Line {
+    fn line(&mut self, stage: &StageEquation) -> Line {
         Line::new(stage, &mut self.at, &self.d, &self.jacobian)
     }
 
     /// Doubles the step while Φ falls as steeply as at the start.
-    fn lengthen(&mut self, stage: &Stage, line: &Line, mut slope: f64) {
+    fn lengthen(&mut self, stage: &StageEquation, line: &Line, mut slope: f64) {
         let mut alpha = 1.0;
         let mut further = Trial::default();
         for _ in 0..TRIALS {
@@ -262,7 +262,7 @@ impl Newton {
     }
 
     /// Leaves the full step in `self.next`; false unless Φ does not rise and a tenth of the residual is left.
-    pub(super) fn leaps(&mut self, stage: &Stage) -> bool {
+    pub(super) fn leaps(&mut self, stage: &StageEquation) -> bool {
         self.next.step(stage, &self.at, 1.0, &self.d);
         if !self.next.is_finite() || self.next.off > 0.1 * self.at.off {
             return false;

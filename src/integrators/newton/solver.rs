@@ -1,7 +1,7 @@
 //! One linear solve: with the symmetric part, by what the matrix calls for, and refined where that is not
 //! all of the matrix.
 
-use super::conjugate::{Conjugate, Ended, dot};
+use super::conjugate::{Conjugate, ConjugateEnd, dot};
 use super::factors::{Dense, Sparse, SparseLu, solve_dense_lu};
 use super::matrix::Matrix;
 use super::{StepError, fit, largest};
@@ -21,7 +21,7 @@ const DENSER: f64 = 4.0;
 
 /// What solves with the symmetric part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum Algorithm {
     /// Dense Cholesky.
     Dense,
     /// Sparse Cholesky.
@@ -32,9 +32,9 @@ pub(super) enum Kind {
 
 /// Factors and their memory, for matrices of one pattern.
 #[derive(Default)]
-pub(super) struct Solver {
+pub(super) struct LinearSolver {
     /// Instead of what the matrix calls for.
-    pub forced: Option<Kind>,
+    pub forced: Option<Algorithm>,
     dense: Dense,
     sparse: Option<Sparse>,
     lu: Option<SparseLu>,
@@ -43,7 +43,7 @@ pub(super) struct Solver {
     left: Vec<f64>,
 }
 
-impl Solver {
+impl LinearSolver {
     /// What was made for another pattern is of no use.
     pub(super) fn forget(&mut self) {
         self.sparse = None;
@@ -61,7 +61,7 @@ impl Solver {
         z: &mut [f64],
     ) -> Result<bool, StepError> {
         let kind = self.kind(matrix, inverse_mass, tolerance)?;
-        if kind == Kind::Conjugate {
+        if kind == Algorithm::Conjugate {
             if !self.conjugate.prepare(matrix) {
                 return Ok(false);
             }
@@ -71,12 +71,12 @@ impl Solver {
             self.right.clear();
             self.right.extend_from_slice(z);
             match self.by_iteration(matrix, tolerance, cap, z) {
-                Ended::Solved => return Ok(true),
-                Ended::Indefinite => return Ok(false),
-                Ended::Slow => z.copy_from_slice(&self.right),
+                ConjugateEnd::Solved => return Ok(true),
+                ConjugateEnd::Indefinite => return Ok(false),
+                ConjugateEnd::Slow => z.copy_from_slice(&self.right),
             }
         }
-        let dense = kind == Kind::Dense;
+        let dense = kind == Algorithm::Dense;
         let definite = if dense {
             self.dense.factorise(matrix)
         } else {
@@ -107,20 +107,20 @@ impl Solver {
         matrix: &Matrix,
         inverse_mass: &[f64],
         tolerance: f64,
-    ) -> Result<Kind, StepError> {
+    ) -> Result<Algorithm, StepError> {
         if let Some(kind) = self.forced {
             return Ok(kind);
         }
         if is_small(matrix) {
-            return Ok(Kind::Dense);
+            return Ok(Algorithm::Dense);
         }
         let product = (9 * matrix.diagonal.len() + 18 * matrix.lower.len()) as f64;
         let iterated = iterations(matrix, inverse_mass, tolerance) * product * DENSER;
         let fill = self.sparse(matrix)?.fill() as f64;
         Ok(if iterated <= fill * fill / matrix.size() as f64 {
-            Kind::Conjugate
+            Algorithm::Conjugate
         } else {
-            Kind::Sparse
+            Algorithm::Sparse
         })
     }
 
@@ -159,7 +159,7 @@ impl Solver {
         tolerance: f64,
         cap: usize,
         z: &mut [f64],
-    ) -> Ended {
+    ) -> ConjugateEnd {
         if matrix.is_symmetric() {
             return self.conjugate.solve(matrix, tolerance, cap, z);
         }
@@ -169,12 +169,12 @@ impl Solver {
         fit(&mut left, n);
         left.copy_from_slice(z);
         z.fill(0.0);
-        let mut ended = Ended::Slow;
+        let mut ended = ConjugateEnd::Slow;
         for _ in 0..REFINEMENTS {
             // Half of what is allowed goes to the symmetric part.
             let inner = (0.5 * enough / norm(&left)).min(0.5);
             ended = self.conjugate.solve(matrix, inner, cap, &mut left);
-            if ended != Ended::Solved {
+            if ended != ConjugateEnd::Solved {
                 break;
             }
             axpy(z, 1.0, &left);
@@ -185,7 +185,7 @@ impl Solver {
             if norm(&left) <= enough {
                 break;
             }
-            ended = Ended::Slow;
+            ended = ConjugateEnd::Slow;
         }
         self.left = left;
         ended

@@ -1,6 +1,6 @@
 //! What only shows from inside: descent, the three linear solvers, and the choice between them.
 
-use super::solver::Kind;
+use super::solver::Algorithm;
 use super::*;
 use crate::conformance::systems::swinging_triangle;
 use crate::integrators::axpy;
@@ -63,10 +63,10 @@ fn cloth(n: usize, stiffness: f64, mass: f64) -> Scene {
 }
 
 /// An implicit Euler step's equation from the scene's start.
-fn with_stage<T>(scene: &Scene, h: f64, act: impl FnOnce(&Stage, &State) -> T) -> T {
+fn with_stage<T>(scene: &Scene, h: f64, act: impl FnOnce(&StageEquation, &State) -> T) -> T {
     let system = ParticleSystem::new(scene);
     let start = ParticleSystem::initial_state(scene);
-    let stage = Stage {
+    let stage = StageEquation {
         system: &system,
         t: h,
         gamma: h,
@@ -77,7 +77,7 @@ fn with_stage<T>(scene: &Scene, h: f64, act: impl FnOnce(&Stage, &State) -> T) -
 }
 
 /// Φ at an iterate, J.
-fn incremental_potential(stage: &Stage, at: &Trial) -> f64 {
+fn incremental_potential(stage: &StageEquation, at: &Trial) -> f64 {
     let mut twice = 0.0;
     for (i, w) in stage.system.inverse_mass().iter().enumerate() {
         if *w > 0.0 {
@@ -191,7 +191,7 @@ fn the_incremental_potential_never_rises() {
 }
 
 /// One solve of the equation with a given linear solver: the velocities, and the iterations.
-fn solved_by(scene: &Scene, h: f64, kind: Option<Kind>) -> Result<(Vec<f64>, u64), StepError> {
+fn solved_by(scene: &Scene, h: f64, kind: Option<Algorithm>) -> Result<(Vec<f64>, u64), StepError> {
     with_stage(scene, h, |stage, start| {
         let mut newton = Newton::new(1e-12);
         newton.solver.forced = kind;
@@ -205,7 +205,7 @@ fn off(a: &[f64], b: &[f64]) -> f64 {
     largest(&apart) / largest(a)
 }
 
-const ALL: [Kind; 3] = [Kind::Dense, Kind::Sparse, Kind::Conjugate];
+const ALL: [Algorithm; 3] = [Algorithm::Dense, Algorithm::Sparse, Algorithm::Conjugate];
 
 #[test]
 fn every_linear_solver_leads_to_the_same_solution() {
@@ -217,7 +217,7 @@ fn every_linear_solver_leads_to_the_same_solution() {
         scene
     };
     for scene in [cloth(6, 100.0, 0.01), damped(cloth(6, 100.0, 0.01), 0.3)] {
-        let (dense, _) = solved_by(&scene, 5e-3, Some(Kind::Dense)).unwrap();
+        let (dense, _) = solved_by(&scene, 5e-3, Some(Algorithm::Dense)).unwrap();
         for kind in ALL {
             let (u, solves) = solved_by(&scene, 5e-3, Some(kind)).unwrap();
             let found = off(&dense, &u);
@@ -233,7 +233,7 @@ fn a_hundred_thousand_unknowns_are_solved_either_way() {
     // 183² particles, two of them fixed: 100,461 unknowns.
     let scene = cloth(183, 1e3, 0.01);
     let mut found = Vec::new();
-    for kind in [Kind::Sparse, Kind::Conjugate] {
+    for kind in [Algorithm::Sparse, Algorithm::Conjugate] {
         let (u, solves) = solved_by(&scene, 5e-3, Some(kind)).unwrap();
         assert!(solves <= 6, "{kind:?}: {solves} iterations");
         found.push(u);
@@ -259,17 +259,17 @@ fn matrix_of(n: usize, stiffness: f64) -> (Matrix, Vec<f64>) {
 fn the_solver_follows_size_and_stiffness() {
     let kind = |n: usize, stiffness: f64| {
         let (matrix, inverse_mass) = matrix_of(n, stiffness);
-        let mut solver = Solver::default();
+        let mut solver = LinearSolver::default();
         let mut z = vec![1.0; matrix.size()];
         let solved = solver.solve(&matrix, &inverse_mass, 1e-3, &mut z).unwrap();
         assert!(solved);
         solver.kind(&matrix, &inverse_mass, 1e-3).unwrap()
     };
-    assert_eq!(kind(4, 100.0), Kind::Dense);
-    assert_eq!(kind(12, 100.0), Kind::Conjugate);
-    assert_eq!(kind(12, 1e8), Kind::Sparse);
-    assert_eq!(kind(100, 100.0), Kind::Conjugate);
-    assert_eq!(kind(60, 1e8), Kind::Sparse);
+    assert_eq!(kind(4, 100.0), Algorithm::Dense);
+    assert_eq!(kind(12, 100.0), Algorithm::Conjugate);
+    assert_eq!(kind(12, 1e8), Algorithm::Sparse);
+    assert_eq!(kind(100, 100.0), Algorithm::Conjugate);
+    assert_eq!(kind(60, 1e8), Algorithm::Sparse);
 }
 
 /// Conjugate gradients keep their promise: |r - A z| <= tolerance |r|.
@@ -277,8 +277,8 @@ fn promise(asked: f64, kept: f64) -> bool {
     let (matrix, inverse_mass) = matrix_of(12, 1e4);
     let right: Vec<f64> = (0..matrix.size()).map(|i| (i as f64).sin()).collect();
     let mut z = right.clone();
-    let mut solver = Solver::default();
-    solver.forced = Some(Kind::Conjugate);
+    let mut solver = LinearSolver::default();
+    solver.forced = Some(Algorithm::Conjugate);
     solver.solve(&matrix, &inverse_mass, asked, &mut z).unwrap();
     let mut left = vec![0.0; z.len()];
     matrix.product(&z, &mut left);

@@ -3,7 +3,7 @@
 
 use super::springs::{SHORTEST, difference, dot};
 use super::{Effect, EffectRow, boxed};
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Slope};
+use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;
 use nalgebra::{Matrix3, Vector3};
 
@@ -186,7 +186,11 @@ impl Effect for Central {
         out: &mut Jacobian,
     ) {
         for (law, [i, j], d) in self.separations(x) {
-            out.add_pair(Slope::Position, [i / 3, j / 3], law.block(d.into(), kept));
+            out.add_pair(
+                Derivative::Position,
+                [i / 3, j / 3],
+                law.block(d.into(), kept),
+            );
         }
     }
 

@@ -18,7 +18,7 @@ pub use drag::Drag;
 pub use gravity::Gravity;
 pub use scaled::Scaled;
 pub use springs::Springs;
-pub use wind::Wind;
+pub use wind::WindForce;
 
 use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;

@@ -10,18 +10,18 @@ pub(super) const ROW: EffectRow = EffectRow {
     source: "f = strength * direction; its work is counted as injected, it has no potential here",
     elastic: false,
     constant: true,
-    build: |scene| Wind::new(scene).map(boxed),
+    build: |scene| WindForce::new(scene).map(boxed),
 };
 
 /// The same force on every free particle whatever its mass.
 ///
 /// Not to be confused with moving air, which drags in proportion to the relative velocity.
-pub struct Wind {
+pub struct WindForce {
     force: [f64; 3],
     free: Vec<usize>,
 }
 
-impl Wind {
+impl WindForce {
     /// None without `wind`, or when its strength is 0.
     pub fn new(scene: &Scene) -> Option<Self> {
         let wind = scene.wind.as_ref().filter(|w| w.strength != 0.0)?;
@@ -34,7 +34,7 @@ impl Wind {
     }
 }
 
-impl Effect for Wind {
+impl Effect for WindForce {
     fn members(&self) -> usize {
         self.free.len()
     }

@@ -2,7 +2,7 @@
 //! (Okabe and Ito, without the yellow that white swallows), dashes for rapier.
 
 use super::canvas::{Shape, Stroke};
-use crate::solvers::Kind;
+use crate::solvers::SolverKind;
 
 pub const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255",
@@ -25,15 +25,15 @@ pub const HOLDS: [&str; 2] = ["#0072b2", "#f1ece4"];
 pub const BOUNDARY: [Stroke; 2] = [Stroke::new("#ffffff", "", 3.6), Stroke::new(BLACK, "", 1.6)];
 
 /// The look of the engine that is number `place` of its kind.
-pub fn look(kind: Kind, place: usize, own: bool) -> Stroke {
+pub fn look(kind: SolverKind, place: usize, own: bool) -> Stroke {
     let round = |at: usize| ROUNDS[at % ROUNDS.len()];
     match kind {
-        Kind::Rapier => {
+        SolverKind::Rapier => {
             let (dash, width) = RAPIER[place % RAPIER.len()];
             Stroke::new(BLACK, dash, width)
         }
-        Kind::External => Stroke::new(BLACK, round(place), 2.4),
-        Kind::Integrator => {
+        SolverKind::External => Stroke::new(BLACK, round(place), 2.4),
+        SolverKind::Integrator => {
             let width = if own { 3.0 } else { 1.5 };
             let dash = round(place / COLOURS.len());
             Stroke::new(COLOURS[place % COLOURS.len()], dash, width)
@@ -43,7 +43,7 @@ pub fn look(kind: Kind, place: usize, own: bool) -> Stroke {
 
 /// The look of the n-th timestep, where a panel belongs to one engine.
 pub fn timestep(place: usize) -> Stroke {
-    look(Kind::Integrator, place, false)
+    look(SolverKind::Integrator, place, false)
 }
 
 /// The truth where lines are to be compared with it one by one.

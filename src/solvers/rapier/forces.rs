@@ -1,6 +1,6 @@
 //! rapier's bodies under forces computed here.
 
-use super::settings::Settings;
+use super::settings::RapierSettings;
 use super::world::World;
 use crate::integrators::StepError;
 use crate::physics::{ParticleSystem, State};
@@ -30,7 +30,7 @@ impl RapierForces {
     pub fn new(scene: &Scene, system: ParticleSystem, timestep: f64) -> Result<Self, Unsupported> {
         let state = ParticleSystem::initial_state(scene);
         Ok(Self {
-            world: World::new(scene, timestep, &Settings::FORCES)?,
+            world: World::new(scene, timestep, &RapierSettings::FORCES)?,
             system,
             forces: vec![0.0; state.x.len()],
             state,

@@ -1,7 +1,7 @@
 //! rapier with the scene in its own terms: spring joints, motors, its own gravity.
 
 use super::mirrors;
-use super::settings::Settings;
+use super::settings::RapierSettings;
 use super::world::World;
 use crate::integrators::StepError;
 use crate::physics::{ParticleSystem, Power, State, System};
@@ -37,7 +37,7 @@ impl RapierEngine {
         scene: &Scene,
         system: ParticleSystem,
         timestep: f64,
-        settings: &Settings,
+        settings: &RapierSettings,
     ) -> Result<Self, Unsupported> {
         let mut world = World::new(scene, timestep, settings)?;
         mirrors::add_all(scene, &system, settings.substep(timestep), &mut world)?;

@@ -16,7 +16,7 @@ mod world;
 
 pub use forces::RapierForces;
 pub use joints::RapierEngine;
-pub use settings::Settings;
+pub use settings::RapierSettings;
 
 /// The ids of rapier's worlds at fixed settings, in the order reports list them.
 pub const IDS: [&str; 3] = ["rapier", "rapier-forces", "rapier-converged"];

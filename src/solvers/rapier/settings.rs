@@ -4,7 +4,7 @@
 ///
 /// rapier's continuous collision detection is always off here: it has nothing to do without contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct RapierSettings {
     /// `num_solver_iterations`, n: *substeps* of h = dt / n, each with a solve of its own. Not to
     /// be confused with sweeps of one solve, which are `pgs`. At least 1; 0 is taken for 1.
     pub iterations: u32,
@@ -19,7 +19,7 @@ pub struct Settings {
     pub speed: Option<f64>,
 }
 
-impl Settings {
+impl RapierSettings {
     /// rapier's own defaults (0.36).
     pub const DEFAULT: Self = Self {
         iterations: 4,
@@ -72,7 +72,7 @@ impl Settings {
     }
 }
 
-impl Default for Settings {
+impl Default for RapierSettings {
     fn default() -> Self {
         Self::DEFAULT
     }

@@ -1,6 +1,6 @@
 //! A scene's particles as rapier bodies, and back.
 
-use super::settings::Settings;
+use super::settings::RapierSettings;
 use crate::physics::State;
 use crate::scene::{Axis, Scene};
 use crate::solvers::Unsupported;
@@ -37,7 +37,7 @@ impl World {
     pub(super) fn new(
         scene: &Scene,
         timestep: f64,
-        settings: &Settings,
+        settings: &RapierSettings,
     ) -> Result<Self, Unsupported> {
         let mut inner = PhysicsWorld::new();
         inner.gravity = Vector::ZERO;

@@ -5,7 +5,7 @@ pub use crate::integrators::adaptive::DORMAND_PRINCE_8;
 use super::stepper::{Precise, Stepper, fit};
 use crate::integrators::Tableau;
 use crate::integrators::adaptive::{ERROR_3, ERROR_5, mixed};
-use crate::integrators::nystrom::{self, LANES, Stage, Weight, sums, weights};
+use crate::integrators::nystrom::{self, LANES, NystromStage, Weight, sums, weights};
 use crate::physics::System;
 
 /// Steps of an explicit tableau in Nyström form, of compensated states.
@@ -13,7 +13,7 @@ use crate::physics::System;
 /// The first weight is taken as what makes the weights sum to 1, and to 1/2 for positions: rounded
 /// coefficients would drift with time.
 pub struct DormandPrince {
-    stages: Vec<Stage>,
+    stages: Vec<NystromStage>,
     /// Weights of the end, the first stage's left out.
     end: Vec<Weight>,
     /// Weights of the error estimates of order 5 and 3.

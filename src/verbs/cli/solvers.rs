@@ -2,7 +2,7 @@
 
 use crate::integrators::{self, Method};
 use crate::scene::Scene;
-use crate::solvers::{self, Kind, Solver, rapier};
+use crate::solvers::{self, Solver, SolverKind, rapier};
 use anyhow::{Context, bail};
 use std::str::FromStr;
 
@@ -25,9 +25,9 @@ pub fn chosen(
         methods(integrators, scene, usual)?
     };
     let known = || format!("engines: {}, or none", rapier::IDS.join(", "));
-    let find = |id: &str| solvers::find(id).filter(|solver| solver.kind == Kind::Rapier);
+    let find = |id: &str| solvers::find(id).filter(|solver| solver.kind == SolverKind::Rapier);
     chosen.extend(match engines {
-        [] => of_kind(usual, Kind::Rapier),
+        [] => of_kind(usual, SolverKind::Rapier),
         [none] if none == "none" => Vec::new(),
         ids => each(ids, find, known)?,
     });
@@ -49,7 +49,7 @@ fn methods(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Ve
     };
     let find = |id: &str| among(fixed, id);
     match ids {
-        [] => Ok(of_kind(usual, Kind::Integrator)),
+        [] => Ok(of_kind(usual, SolverKind::Integrator)),
         [all] if all == "all" => Ok(solvers::methods(&scene.solver.method)),
         ids => each(ids, find, known),
     }
@@ -87,7 +87,7 @@ fn among(methods: &'static [Method], id: &str) -> Option<Solver> {
     found.map(Solver::method)
 }
 
-fn of_kind(solvers: &[Solver], kind: Kind) -> Vec<Solver> {
+fn of_kind(solvers: &[Solver], kind: SolverKind) -> Vec<Solver> {
     let of = |solver: &&Solver| solver.kind == kind;
     solvers.iter().filter(of).cloned().collect()
 }
@@ -121,7 +121,7 @@ fn each(
 pub struct Custom {
     /// Seconds; None takes everybody's.
     pub timestep: Option<f64>,
-    settings: rapier::Settings,
+    settings: rapier::RapierSettings,
 }
 
 /// More iterations or sweeps than this are a typing error.
@@ -133,7 +133,7 @@ impl FromStr for Custom {
     fn from_str(text: &str) -> Result<Self, String> {
         let mut custom = Self {
             timestep: None,
-            settings: rapier::Settings::DEFAULT,
+            settings: rapier::RapierSettings::DEFAULT,
         };
         for pair in text.split(',') {
             let (key, value) = pair

@@ -3,7 +3,7 @@
 use super::CostChoice;
 use super::runs::{Curve, Setup};
 use super::settings::Sweep;
-use crate::solvers::{Kind, Solver};
+use crate::solvers::{Solver, SolverKind};
 use crate::verbs::cost::rank;
 use crate::verbs::cost::{Cost, CostCurve};
 
@@ -49,7 +49,7 @@ pub fn answer(setup: &Setup, choice: &CostChoice, sweeps: &[Sweep], curves: Vec<
 
 /// Why a reference engine's line is what it is: it is explained and not ranked.
 fn explanation(solver: &Solver) -> Option<String> {
-    let rapier = solver.kind == Kind::Rapier;
+    let rapier = solver.kind == SolverKind::Rapier;
     rapier.then(|| match (solver.dissipates(), solver.follows) {
         (None, Some(method)) => format!(
             "it moves its bodies by {} under the forces computed here, so its errors are that method's, \

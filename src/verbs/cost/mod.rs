@@ -26,7 +26,7 @@ use crate::integrators;
 use crate::physics::ParticleSystem;
 use crate::report::Header;
 use crate::scene::Scene;
-use crate::solvers::rapier::Settings;
+use crate::solvers::rapier::RapierSettings;
 use crate::solvers::{self, Setting, Solver};
 use crate::truth::{self, Demand};
 use crate::verbs::session::{Estimate, Label, Session};
@@ -67,9 +67,9 @@ impl CostChoice {
     /// Every method and pair, and rapier at three numbers of iterations.
     pub fn default_for(scene: &Scene) -> Self {
         let others = ITERATIONS.map(|iterations| {
-            Solver::rapier(Settings {
+            Solver::rapier(RapierSettings {
                 iterations,
-                ..Settings::DEFAULT
+                ..RapierSettings::DEFAULT
             })
         });
         let mut solvers = crate::solvers::methods(&scene.solver.method);

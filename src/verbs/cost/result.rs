@@ -3,7 +3,7 @@
 //! Wall times differ from run to run, and with them what is chosen by them: [`CostTarget::cheapest`],
 //! the order of [`CostTarget::ranking`] and every key that holds `wall`. All else is the same in every run.
 
-use crate::solvers::{Kind, Status};
+use crate::solvers::{SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use serde::{Deserialize, Serialize};
 
@@ -74,7 +74,7 @@ pub struct CostRank {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CostCurve {
     pub engine: String,
-    pub kind: Kind,
+    pub kind: SolverKind,
     /// What its row states for this scene (order with damping where there is some); null for rapier.
     pub order: Option<u32>,
     /// Slope of ln(error_m) over ln(timestep) through `slope_points`, which for a fixed number of
@@ -94,7 +94,7 @@ pub struct CostCurve {
 impl CostCurve {
     /// Whether it takes part in the ranking: distance from the truth is no error of a reference engine's.
     pub fn is_ranked(&self) -> bool {
-        self.kind == Kind::Integrator
+        self.kind == SolverKind::Integrator
     }
 }
 

@@ -6,7 +6,7 @@ use super::samples::{Sampler, Samples};
 use super::settings::Sweep;
 use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
-use crate::solvers::{Counts, Ended, Kind, Limits, Run, Setting, Solver, Status};
+use crate::solvers::{Counts, Ended, Limits, Run, Setting, Solver, SolverKind, Status};
 use crate::trajectory::Unwatched;
 use crate::truth::{States, Truth, TruthKind, farthest};
 use crate::verbs::clock::{WallTime, spread};
@@ -273,7 +273,7 @@ impl Curve {
     /// What hand-written integrators evaluated in all these runs: full, damping alone.
     pub fn evaluations(all: &[Curve], sweeps: &[Sweep]) -> [u64; 2] {
         let ours = all.iter().zip(sweeps);
-        let ours = ours.filter(|(_, sweep)| sweep.solver.kind == Kind::Integrator);
+        let ours = ours.filter(|(_, sweep)| sweep.solver.kind == SolverKind::Integrator);
         ours.fold([0, 0], |[forces, damping], (curve, _)| {
             [forces + curve.counted[0], damping + curve.counted[1]]
         })

@@ -6,7 +6,7 @@ use crate::integrators::Stable;
 use crate::measure::stability::{Effort, Limit, Linearised};
 use crate::physics::{ParticleSystem, System};
 use crate::scene::{Scene, limits};
-use crate::solvers::{Kind, Setting, Solver};
+use crate::solvers::{Setting, Solver, SolverKind};
 
 /// A solver and the settings it is planned to run at: one line of the diagram.
 pub struct Sweep {
@@ -124,7 +124,7 @@ fn afforded(
     let runs = (1.0 + TIMED) * least_runs(LEAST_SETTINGS);
     let most = (1e9 * share_s / each / runs).max(FEWEST);
     let always = match solver.follows {
-        None => solver.kind == Kind::Rapier,
+        None => solver.kind == SolverKind::Rapier,
         Some(method) => {
             let prediction = linearised.predict(method, scene.solver.timestep);
             prediction.limit == Limit::Unconditional
@@ -308,7 +308,7 @@ fn price_of_step(
     setting: &Setting,
 ) -> f64 {
     let (particles, springs) = (scene.particles.len() as f64, scene.springs.len() as f64);
-    if solver.kind == Kind::Rapier {
+    if solver.kind == SolverKind::Rapier {
         let substeps = f64::from(solver.substeps);
         return WORLD + (particles + springs) * (BODY + SWEPT * substeps);
     }

@@ -1,10 +1,10 @@
 //! `springcheck list integrators|effects|engines|mistakes`
 
-use crate::integrators::adaptive::Estimate;
+use crate::integrators::adaptive::ErrorEstimate;
 use crate::integrators::{self, EnergyLaw, Method, PerStep, Stable};
 use crate::measure::identify::{MISTAKES, Mistake, Wrong};
 use crate::physics::effects;
-use crate::solvers::Kind;
+use crate::solvers::SolverKind;
 use crate::solvers::catalogue;
 use clap::ValueEnum;
 use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
@@ -41,7 +41,7 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
             .to_string()
         }
         What::Engines => {
-            let rows = catalogue().filter(|solver| solver.kind == Kind::Rapier);
+            let rows = catalogue().filter(|solver| solver.kind == SolverKind::Rapier);
             table(
                 &["engine", "what"],
                 rows.map(|row| vec![row.id.to_string(), row.summary.into()]),
@@ -114,8 +114,8 @@ fn of_pairs() -> Table {
                 method.id.into(),
                 method.order.to_string(),
                 match pair.estimate {
-                    Estimate::Embedded { order, .. } => format!("of order {order}"),
-                    Estimate::Mixed53 { .. } => "of orders 5 and 3, mixed".into(),
+                    ErrorEstimate::Embedded { order, .. } => format!("of order {order}"),
+                    ErrorEstimate::Mixed53 { .. } => "of orders 5 and 3, mixed".into(),
                 },
                 pair.stages().to_string(),
                 accepted.to_string(),

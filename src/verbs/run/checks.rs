@@ -6,14 +6,14 @@ use crate::measure::order::{Study, check};
 use crate::measure::twin;
 use crate::measure::{Check, CheckStatus};
 use crate::physics::System;
-use crate::solvers::Kind;
+use crate::solvers::SolverKind;
 use crate::truth::Truth;
 use rayon::prelude::*;
 
 /// That rapier's world and ours are the same scene, by a few steps of it; nothing unless it is asked for, and
 /// where nothing is computed here.
 pub fn proofs(plan: &Plan) -> Vec<Check> {
-    let computed = |case: &Case| case.solver.kind != Kind::External;
+    let computed = |case: &Case| case.solver.kind != SolverKind::External;
     if !plan.choice.prove || !plan.cases.iter().any(computed) {
         return Vec::new();
     }

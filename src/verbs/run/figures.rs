@@ -8,7 +8,7 @@ use crate::report::svg::{
     TRUTH_NAME, WHITE, heading, padded, range, shortened, tamed,
 };
 use crate::report::{svg, words};
-use crate::solvers::{Kind, Status};
+use crate::solvers::{SolverKind, Status};
 use crate::verbs::Report;
 use crate::verbs::formats::Figure;
 use crate::verbs::run::text::{engine, several_timesteps};
@@ -45,9 +45,9 @@ fn by_timestep(
     let mut drawn = runs.iter().flat_map(|(_, paths)| paths);
     drawn.find(|path| !path.is_empty())?;
     let mut timesteps: Vec<f64> = Vec::new();
-    let all_rapier = runs.iter().all(|(o, _)| o.kind == Kind::Rapier);
+    let all_rapier = runs.iter().all(|(o, _)| o.kind == SolverKind::Rapier);
     for (outcome, _) in &runs {
-        let counts = all_rapier || outcome.kind != Kind::Rapier;
+        let counts = all_rapier || outcome.kind != SolverKind::Rapier;
         if counts && !timesteps.contains(&outcome.timestep) {
             timesteps.push(outcome.timestep);
         }
@@ -298,7 +298,7 @@ fn is_wild(outcome: &Outcome) -> bool {
 /// rapier's dashes, which let what they cover show through.
 fn layer(report: &Report, outcome: &Outcome) -> u8 {
     match outcome.kind {
-        Kind::Rapier => 3,
+        SolverKind::Rapier => 3,
         _ if is_wild(outcome) => 0,
         _ if report.header.is_own(&outcome.engine) => 2,
         _ => 1,

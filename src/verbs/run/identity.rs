@@ -5,7 +5,7 @@ use super::program::begin_with;
 use crate::integrators::Settings;
 use crate::measure::identify::{Fault, Identified, Question, first_fault, identify, moved_anchor};
 use crate::physics::ParticleSystem;
-use crate::solvers::Kind;
+use crate::solvers::SolverKind;
 use crate::trajectory::{Rows, Trajectory};
 use std::borrow::Cow;
 
@@ -24,7 +24,7 @@ pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Option<Identified> 
 
 /// What a run should turn out to be.
 fn expected(plan: &Plan, case: &Case) -> Option<(&'static str, u32)> {
-    let joints = case.solver.kind == Kind::Rapier && plan.scene.springs.len() > 1;
+    let joints = case.solver.kind == SolverKind::Rapier && plan.scene.springs.len() > 1;
     let rapier = joints.then_some(("linearized_implicit_material", case.solver.substeps));
     case.solver
         .as_method()

@@ -27,7 +27,7 @@ pub use result::{Curves, Figures, Outcome, PlotAxis, TruthCurves, Work};
 pub(super) use text::{page, view};
 
 use crate::report::Header;
-use crate::solvers::Kind;
+use crate::solvers::SolverKind;
 use crate::trajectory::SaveError;
 use crate::truth;
 use crate::verbs::session::Session;
@@ -59,7 +59,7 @@ impl Plan<'_> {
         let (outcomes, series) = outcomes::all(self, &records, &truths, scale);
         let mut evaluations = [0, 0];
         for (case, record) in self.cases.iter().zip(&records) {
-            if case.solver.kind == Kind::Integrator {
+            if case.solver.kind == SolverKind::Integrator {
                 evaluations[0] += record.counts.force_evaluations.unwrap_or(0);
                 evaluations[1] += record.counts.damping_evaluations.unwrap_or(0);
             }

@@ -3,7 +3,7 @@
 use crate::integrators;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::solvers::{self, Kind, Run, Setting, Solver, Unsupported};
+use crate::solvers::{self, Run, Setting, Solver, SolverKind, Unsupported};
 use crate::truth::Demand;
 use crate::verbs::session::{Estimate, Label};
 use std::time::{Duration, Instant};
@@ -86,7 +86,7 @@ impl Choice {
     #[must_use]
     pub fn with(mut self, solver: Solver) -> Self {
         let last = self.solvers.iter().rposition(|s| s.kind == solver.kind);
-        let none = if solver.kind == Kind::Integrator {
+        let none = if solver.kind == SolverKind::Integrator {
             0
         } else {
             self.solvers.len()

@@ -2,7 +2,7 @@
 
 use crate::measure::identify::Identified;
 use crate::measure::{Deviation, Energy, Momentum, Spread};
-use crate::solvers::{Kind, Status};
+use crate::solvers::{SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Outcome {
     pub engine: String,
-    pub kind: Kind,
+    pub kind: SolverKind,
     /// Seconds between recorded steps of this engine.
     pub timestep: f64,
     /// The step the scheme really takes: rapier's dt / iterations, else the timestep.

@@ -137,8 +137,8 @@ fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> 
     Ok(plan)
 }
 
-fn within(value: f64, quantity: limits::Quantity) -> anyhow::Result<()> {
-    let limits::Quantity { low, high, unit } = quantity;
+fn within(value: f64, quantity: limits::Bounds) -> anyhow::Result<()> {
+    let limits::Bounds { low, high, unit } = quantity;
     if !(low..=high).contains(&value) {
         bail!("expected {low:e} to {high:e} ({unit}), found {value}");
     }

@@ -1,7 +1,7 @@
 //! How large a step may be, as data.
 
 use crate::measure::stability::{Cell, TightestLimit};
-use crate::solvers::Kind;
+use crate::solvers::SolverKind;
 use serde::{Deserialize, Serialize};
 
 /// How large a step may be, on this scene.
@@ -31,7 +31,7 @@ pub struct Stability {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct StabilityRow {
     pub engine: String,
-    pub kind: Kind,
+    pub kind: SolverKind,
     /// The engine does not take the scene: `reason` says why, and nothing was searched.
     pub unsupported: bool,
     /// About the start; 0 where no step is stable; null where every step is (`unconditional`) and

@@ -5,7 +5,7 @@ use crate::integrators::Method;
 use crate::measure::stability::{Limit, Linearised, Prediction, TightestLimit, measure};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::solvers::{Kind, Run, Setting, Solver, Tally, Unsupported};
+use crate::solvers::{Run, Setting, Solver, SolverKind, Tally, Unsupported};
 use crate::verbs::session::Session;
 use crate::verbs::stability::StabilityRow;
 use std::sync::Arc;
@@ -68,8 +68,8 @@ pub fn start(
     let system = ParticleSystem::new(scene);
     let run = solver.start(scene, &system, &Setting::step(timestep))?;
     Ok(match solver.kind {
-        Kind::Integrator => run.tallied(tally),
-        Kind::Rapier | Kind::External => run,
+        SolverKind::Integrator => run.tallied(tally),
+        SolverKind::Rapier | SolverKind::External => run,
     })
 }
 

@@ -1,7 +1,7 @@
 //! `springs.stiffness=1e2..1e8:24`: what a map varies, from where to where, in how many values.
 
-use crate::scene::limits::Quantity;
-use crate::scene::model::{Kind, PARTICLES, PARTS, Part, Row};
+use crate::scene::limits::Bounds;
+use crate::scene::model::{PARTICLES, PARTS, Part, Row, ValueKind};
 use crate::scene::words::nearest;
 use crate::scene::{Scene, Value};
 use std::fmt;
@@ -79,7 +79,7 @@ impl Range {
 struct Key {
     part: &'static Part,
     row: &'static Row,
-    quantity: Quantity,
+    quantity: Bounds,
     member: Option<usize>,
 }
 
@@ -87,7 +87,7 @@ struct Key {
 fn keys() -> impl Iterator<Item = Key> {
     let of = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
     let number = |(part, row): (_, &'static Row)| match row.kind {
-        Kind::Number(quantity) if row.flat.is_some() => Some(Key {
+        ValueKind::Number(quantity) if row.flat.is_some() => Some(Key {
             part,
             row,
             quantity,
@@ -168,7 +168,7 @@ impl Vary {
             _ => {}
         }
         let range: Range = range.parse().map_err(|VaryError(why)| refused(why))?;
-        let Quantity { low, high, unit } = key.quantity;
+        let Bounds { low, high, unit } = key.quantity;
         let outside = |end: &f64| !(low..=high).contains(end);
         if let Some(found) = [range.low, range.high].into_iter().find(outside) {
             return Err(refused(format!(

@@ -31,7 +31,7 @@ pub fn hostile() -> Report {
         linear_solves: None,
         wall_s: None,
     };
-    let mut unsupported = outcome(&long, Kind::Rapier, f64::MIN_POSITIVE);
+    let mut unsupported = outcome(&long, SolverKind::Rapier, f64::MIN_POSITIVE);
     unsupported.status = Status::Unsupported;
     unsupported.reason = Some(long.clone());
     report.outcomes_mut().push(unsupported);
@@ -46,7 +46,7 @@ pub fn hostile() -> Report {
     {
         report
             .outcomes_mut()
-            .push(outcome(&format!("odd{i}"), Kind::External, 0.01));
+            .push(outcome(&format!("odd{i}"), SolverKind::External, 0.01));
         let outcome = report.outcomes().len() - 1;
         report.figures_mut().curves.push(Curves {
             outcome,

@@ -20,7 +20,7 @@ fn all() -> Vec<Report> {
     bare.header.checks.clear();
     bare.header.scene.effects.clear();
     let mut unsupported = empty("unsupported");
-    let mut rapier = outcome("rapier", Kind::Rapier, 0.01);
+    let mut rapier = outcome("rapier", SolverKind::Rapier, 0.01);
     rapier.status = Status::Unsupported;
     rapier.reason = Some("isotropic damping has no joint".into());
     unsupported.outcomes_mut().push(rapier);
@@ -222,7 +222,7 @@ mod data {
     pub use crate::measure::stability::{Cell, TightestLimit};
     pub use crate::measure::{Check, CheckStatus, Deviation, Energy, EnergyClass, Spread};
     pub use crate::report::{EffectUse, Header, SceneFacts, TruthFacts};
-    pub use crate::solvers::{Kind, Status};
+    pub use crate::solvers::{SolverKind, Status};
     pub use crate::truth::TruthKind;
     pub use crate::verbs::clock::WallTime;
     pub use crate::verbs::cost::{

@@ -1,6 +1,6 @@
 //! A planar oscillator under textbook schemes.
 
-use crate::solvers::Kind;
+use crate::solvers::SolverKind;
 
 /// k / m of the oscillator, 1/s².
 const K: f64 = 50.0;
@@ -8,27 +8,35 @@ const K: f64 = 50.0;
 /// One step of (x, v) in the plane; each scheme is linear and acts on the axes alike.
 pub type Step = fn(f64, [f64; 2]) -> [f64; 2];
 
-pub const SCHEMES: [(&str, Kind, f64, Step); 9] = [
-    ("symplectic_euler", Kind::Integrator, 1.0, symplectic),
-    ("explicit_euler", Kind::Integrator, 1.0, |h, [x, v]| {
-        [x + h * v, v - h * K * x]
-    }),
-    ("midpoint", Kind::Integrator, 1.0, |h, [x, v]| {
+pub const SCHEMES: [(&str, SolverKind, f64, Step); 9] = [
+    ("symplectic_euler", SolverKind::Integrator, 1.0, symplectic),
+    (
+        "explicit_euler",
+        SolverKind::Integrator,
+        1.0,
+        |h, [x, v]| [x + h * v, v - h * K * x],
+    ),
+    ("midpoint", SolverKind::Integrator, 1.0, |h, [x, v]| {
         let (xm, vm) = (x + h / 2.0 * v, v - h / 2.0 * K * x);
         [x + h * vm, v - h * K * xm]
     }),
-    ("velocity_verlet", Kind::Integrator, 1.0, |h, [x, v]| {
-        let half = v - h / 2.0 * K * x;
-        let x = x + h * half;
-        [x, half - h / 2.0 * K * x]
-    }),
-    ("rk4", Kind::Integrator, 1.0, rk4),
-    ("implicit_euler", Kind::Integrator, 1.0, implicit),
-    ("rapier", Kind::Rapier, 4.0, implicit),
-    ("rapier-forces", Kind::Rapier, 1.0, symplectic),
+    (
+        "velocity_verlet",
+        SolverKind::Integrator,
+        1.0,
+        |h, [x, v]| {
+            let half = v - h / 2.0 * K * x;
+            let x = x + h * half;
+            [x, half - h / 2.0 * K * x]
+        },
+    ),
+    ("rk4", SolverKind::Integrator, 1.0, rk4),
+    ("implicit_euler", SolverKind::Integrator, 1.0, implicit),
+    ("rapier", SolverKind::Rapier, 4.0, implicit),
+    ("rapier-forces", SolverKind::Rapier, 1.0, symplectic),
     (
         "symplectic_euler_drift_first",
-        Kind::Integrator,
+        SolverKind::Integrator,
         1.0,
         |h, [x, v]| {
             let x = x + h * v;

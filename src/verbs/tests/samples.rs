@@ -131,7 +131,7 @@ pub fn crowd() -> Report {
 }
 
 /// An outcome with nothing measured.
-pub fn outcome(engine: &str, kind: Kind, timestep: f64) -> Outcome {
+pub fn outcome(engine: &str, kind: SolverKind, timestep: f64) -> Outcome {
     Outcome {
         engine: engine.into(),
         kind,

@@ -8,7 +8,7 @@ use crate::verbs::tests::data::*;
 fn row(engine: &str, predicted: Option<f64>, measured: Option<f64>) -> StabilityRow {
     StabilityRow {
         engine: engine.into(),
-        kind: Kind::Integrator,
+        kind: SolverKind::Integrator,
         unsupported: false,
         predicted_limit_s: predicted,
         measured_limit_s: measured,
@@ -30,7 +30,7 @@ pub fn limits() -> Report {
     let mut report = empty("circle");
     report.header.checks.clear();
     let mut rapier = row("rapier", None, None);
-    rapier.kind = Kind::Rapier;
+    rapier.kind = SolverKind::Rapier;
     rapier.unconditional = false;
     let mut material = row("linearized_implicit_material", Some(0.2828), Some(0.2829));
     for row in [&mut material, &mut rapier] {

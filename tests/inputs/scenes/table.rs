@@ -4,7 +4,7 @@
 use super::{NAMES, parse};
 use crate::testkit::everything;
 use springcheck::physics::ParticleSystem;
-use springcheck::scene::model::{Absent, Kind, PARTS, Part, Row, SCENE};
+use springcheck::scene::model::{Absent, PARTS, Part, Row, SCENE, ValueKind};
 use springcheck::scene::{DampingModel, Plot, Scene, Value};
 use springcheck::solvers::external::{Flat, Task};
 use springcheck::truth::converged::key;
@@ -13,14 +13,14 @@ use springcheck::verbs::stability::Vary;
 /// Each row that holds values itself, with its part.
 fn rows() -> impl Iterator<Item = (&'static Part, &'static Row)> {
     let of = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
-    let holds = |(_, row): &(_, &Row)| !matches!(row.kind, Kind::Part(_) | Kind::Expect);
+    let holds = |(_, row): &(_, &Row)| !matches!(row.kind, ValueKind::Part(_) | ValueKind::Expect);
     PARTS.into_iter().flat_map(of).filter(holds)
 }
 
 fn components(row: &Row) -> usize {
     match row.kind {
-        Kind::Numbers(count, _) => count,
-        Kind::Ids => 2,
+        ValueKind::Numbers(count, _) => count,
+        ValueKind::Ids => 2,
         _ => 1,
     }
 }
@@ -69,14 +69,14 @@ fn differences(a: &serde_json::Value, b: &serde_json::Value) -> Vec<String> {
 #[test]
 fn every_part_of_the_file_is_in_the_table() {
     let below = |part: &&Part| {
-        let is = |row: &&Row| matches!(row.kind, Kind::Part(of) if of.key == part.key);
+        let is = |row: &&Row| matches!(row.kind, ValueKind::Part(of) if of.key == part.key);
         SCENE.rows.iter().filter(is).count()
     };
     for part in PARTS.iter().filter(|part| part.key != SCENE.key) {
         assert_eq!(below(part), 1, "{}", part.key);
     }
     let parts = SCENE.rows.iter().filter_map(|row| match row.kind {
-        Kind::Part(part) => Some(part.key),
+        ValueKind::Part(part) => Some(part.key),
         _ => None,
     });
     assert_eq!(parts.count(), PARTS.len() - 1);
@@ -94,8 +94,8 @@ fn a_change_is_seen_by_whatever_depends_on_it() {
                 (Some(Value::Number(x)), _) => Value::Number(0.5 * x + 0.25),
                 (Some(Value::Id(id)), _) => Value::Id(id + 1),
                 (Some(Value::Flag(flag)), _) => Value::Flag(!flag),
-                (Some(Value::Text(_)), Kind::Word(words)) => Value::Text(words[1]),
-                (None, Kind::Number(_) | Kind::Numbers(..)) => Value::Number(0.25),
+                (Some(Value::Text(_)), ValueKind::Word(words)) => Value::Text(words[1]),
+                (None, ValueKind::Number(_) | ValueKind::Numbers(..)) => Value::Number(0.25),
                 _ => Value::Text("other"),
             };
             let mut scene = original.clone();
@@ -127,7 +127,7 @@ fn every_number_that_moves_something_can_be_varied() {
     for (part, row) in rows() {
         let id = part.path(None, row.key);
         let vary = Vary::parse(&format!("{id}=0.25..0.5:2"), &scene);
-        let number = matches!(row.kind, Kind::Number(_)) && row.flat.is_some();
+        let number = matches!(row.kind, ValueKind::Number(_)) && row.flat.is_some();
         assert_eq!(vary.is_ok(), number, "{id}");
         if let Ok(vary) = vary {
             let varied = vary.apply(&scene, 0.5);
@@ -185,7 +185,7 @@ fn yaml(row: &Row, numbers: &[f64]) -> String {
     let list: Vec<String> = numbers.iter().map(|x| format!("{x:e}")).collect();
     let list = list.join(", ").replace("NaN", ".nan");
     match row.kind {
-        Kind::Numbers(..) => format!("[{list}]"),
+        ValueKind::Numbers(..) => format!("[{list}]"),
         _ => list,
     }
 }
@@ -193,10 +193,10 @@ fn yaml(row: &Row, numbers: &[f64]) -> String {
 #[test]
 fn numbers_are_read_at_their_bounds_and_refused_beyond() {
     for (part, row) in rows() {
-        let (Kind::Number(quantity) | Kind::Numbers(_, quantity)) = row.kind else {
+        let (ValueKind::Number(quantity) | ValueKind::Numbers(_, quantity)) = row.kind else {
             continue;
         };
-        let springcheck::scene::limits::Quantity { low, high, unit } = quantity;
+        let springcheck::scene::limits::Bounds { low, high, unit } = quantity;
         // What a list has besides: y_range must rise, a direction has a length.
         let rest = [low, high, 0.0];
         let count = components(row);
@@ -237,7 +237,7 @@ fn numbers_are_read_at_their_bounds_and_refused_beyond() {
             let error = parse(&text).expect_err(&text);
             // The second particle, else the first member.
             let mut path = part.path(Some(usize::from(part.key == "particles")), row.key);
-            if let Kind::Numbers(..) = row.kind {
+            if let ValueKind::Numbers(..) = row.kind {
                 path += &format!("[{}]", count - 1);
             }
             let said = format!(": {path}: expected {expected}, found ");
@@ -252,7 +252,7 @@ fn a_key_left_out_means_the_default_or_is_missed() {
     let mut defaults = Scene::default();
     for row in SCENE.rows {
         // A member of each part.
-        if let Kind::Part(_) = row.kind {
+        if let ValueKind::Part(_) = row.kind {
             (row.set)(&mut defaults, 0, 0, Value::Flag(true));
         }
     }

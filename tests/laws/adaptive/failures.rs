@@ -3,7 +3,7 @@
 use super::{pair, pairs, run};
 use crate::testkit::scenes::shipped;
 use springcheck::integrators::StepError;
-use springcheck::integrators::adaptive::{Adaptive, Estimate, Pair};
+use springcheck::integrators::adaptive::{Adaptive, ErrorEstimate, Pair};
 use springcheck::physics::{Power, State, System};
 use springcheck::solvers::Engine;
 use std::f64::consts::PI;
@@ -33,7 +33,7 @@ fn steps_are_short_where_the_force_is_sudden() {
     }
     // The mutant: an estimate of nothing rejects nothing.
     let wrong = Pair {
-        estimate: Estimate::Embedded {
+        estimate: ErrorEstimate::Embedded {
             order: 4,
             weights: &[0.0; 7],
         },

@@ -2,7 +2,7 @@
 
 use super::{pair, pairs};
 use springcheck::integrators::Tableau;
-use springcheck::integrators::adaptive::{Estimate, Pair};
+use springcheck::integrators::adaptive::{ErrorEstimate, Pair};
 
 fn less(b: &[f64], e: &[f64]) -> Vec<f64> {
     b.iter().zip(e).map(|(b, e)| b - e).collect()
@@ -27,8 +27,8 @@ fn law(id: &str, pair: &Pair) -> Result<(), String> {
         }
     }
     let beside = match pair.estimate {
-        Estimate::Embedded { order, weights } => vec![(order, weights)],
-        Estimate::Mixed53 { fifth, third } => vec![(5, fifth), (3, third)],
+        ErrorEstimate::Embedded { order, weights } => vec![(order, weights)],
+        ErrorEstimate::Mixed53 { fifth, third } => vec![(5, fifth), (3, third)],
     };
     let embedded = beside.into_iter().map(|(order, e)| (order, less(b, e)));
     for (stated, weights) in [(published(id), b.to_vec())].into_iter().chain(embedded) {
@@ -98,7 +98,7 @@ fn wrong_coefficients_break_a_condition() {
 fn wrong_estimates_break_a_condition() {
     let id = "dormand_prince54";
     let right = pair(id);
-    let Estimate::Embedded { order, weights } = right.estimate else {
+    let ErrorEstimate::Embedded { order, weights } = right.estimate else {
         panic!("an embedded formula");
     };
     let mut sign = weights.to_vec();
@@ -107,7 +107,7 @@ fn wrong_estimates_break_a_condition() {
     // One that estimates nothing is the formula itself, of an order too high.
     for weights in [sign, dropped, vec![0.0; 7]] {
         let weights = weights.leak();
-        let estimate = Estimate::Embedded { order, weights };
+        let estimate = ErrorEstimate::Embedded { order, weights };
         law(id, &Pair { estimate, ..*right }).unwrap_err();
     }
 }
@@ -117,7 +117,7 @@ fn wrong_estimates_break_a_condition() {
 #[test]
 fn published_values_are_met() {
     let five = pair("dormand_prince54");
-    let Estimate::Embedded { weights, .. } = five.estimate else {
+    let ErrorEstimate::Embedded { weights, .. } = five.estimate else {
         panic!("an embedded formula");
     };
     let printed = [

@@ -3,7 +3,7 @@
 use super::{chain, pair, pairs, run, slope, tolerances};
 use crate::testkit::line::released;
 use crate::testkit::scenes::shipped;
-use springcheck::integrators::adaptive::{Estimate, Pair};
+use springcheck::integrators::adaptive::{ErrorEstimate, Pair};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
 use springcheck::truth::{self, Demand, Motion, NoStore};
@@ -70,19 +70,19 @@ fn errors_are_proportional_to_the_tolerance() {
 fn estimates_of_another_order_are_not() {
     let (scene, truth) = oscillator();
     let right = pair("dop853");
-    let Estimate::Mixed53 { fifth, third } = right.estimate else {
+    let ErrorEstimate::Mixed53 { fifth, third } = right.estimate else {
         panic!("a mixture");
     };
     // As h^4 alone: 8 / 4. As h^6 alone: 8 / 6.
     for (order, weights, expected) in [(3, third, 2.0), (5, fifth, 8.0 / 6.0)] {
-        let estimate = Estimate::Embedded { order, weights };
+        let estimate = ErrorEstimate::Embedded { order, weights };
         let wrong = Pair { estimate, ..*right };
         let seen = slope(&points(&scene, &wrong, &truth));
         law(seen).unwrap_err();
         assert!((seen - expected).abs() < 0.1, "{order}: {seen}");
     }
     // One that estimates nothing: steps only grow, whatever the tolerance.
-    let estimate = Estimate::Embedded {
+    let estimate = ErrorEstimate::Embedded {
         order: 7,
         weights: &[0.0; 12],
     };

@@ -1,7 +1,9 @@
 //! Integrators that do not do what every one has to: a finding says so, and nothing panics.
 
 use springcheck::conformance::{Claims, LAWS, check};
-use springcheck::integrators::{EnergyLaw, Integrator, Oscillator, PerStep, Stable, StepError};
+use springcheck::integrators::{
+    EnergyLaw, Integrator, OscillatorFacts, PerStep, Stable, StepError,
+};
 use springcheck::measure::CheckStatus;
 use springcheck::physics::{State, System};
 
@@ -35,7 +37,7 @@ fn a_broken_step_fails_every_law_and_says_why() {
     let claims = Claims {
         order_damped: Some(2),
         evaluations: Some(PerStep::Exactly(1)),
-        oscillator: Some(Oscillator {
+        oscillator: Some(OscillatorFacts {
             stable: Stable::Below(2.0),
             energy: EnergyLaw::Bounded,
         }),

@@ -3,8 +3,8 @@
 use crate::testkit::{method, own};
 use springcheck::conformance::{Claims, find};
 use springcheck::integrators::{
-    Amplification, Coefficients, DampingTreatment, EnergyLaw, Method, REGISTRY, Row, Settings,
-    Stable, Stage, Tableau, fixed,
+    Amplification, Coefficients, DampingTreatment, EnergyLaw, Method, MethodRow, REGISTRY,
+    Settings, Stable, Stage, Tableau, fixed,
 };
 use springcheck::measure::CheckStatus;
 
@@ -134,7 +134,7 @@ fn formulas_for_people_are_what_is_computed() {
 }
 
 fn with(coefficients: Coefficients) -> Method {
-    Method::new(Row {
+    Method::new(MethodRow {
         id: "own",
         name: "one's own",
         coefficients,

@@ -7,7 +7,7 @@ use springcheck::conformance::Build;
 use springcheck::integrators::{Integrator, StepError, fixed};
 use springcheck::physics::{State, System};
 use springcheck::scene::{Scene, Wanted};
-use springcheck::solvers::{Solver, rapier::Settings};
+use springcheck::solvers::{Solver, rapier::RapierSettings};
 use springcheck::verbs::run::{Choice, Plan};
 use springcheck::verbs::session::Quiet;
 
@@ -154,12 +154,12 @@ fn errors_do_not_depend_on_a_common_velocity() {
 #[test]
 fn rapier_as_shipped_slows_fast_scenes_down() {
     let scene = scene("moving_together");
-    let capped = Solver::rapier(Settings {
+    let capped = Solver::rapier(RapierSettings {
         speed: Some(400.0),
-        ..Settings::DEFAULT
+        ..RapierSettings::DEFAULT
     });
     let choice = Choice {
-        solvers: vec![Solver::rapier(Settings::DEFAULT), capped],
+        solvers: vec![Solver::rapier(RapierSettings::DEFAULT), capped],
         ..Choice::default_for(&scene)
     };
     let report = Plan::new(&scene, &choice)

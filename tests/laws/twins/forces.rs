@@ -4,7 +4,7 @@ use super::{apart, mutated, ours, scenes, theirs};
 use springcheck::integrators::{self, StepError};
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::Scene;
-use springcheck::solvers::rapier::Settings;
+use springcheck::solvers::rapier::RapierSettings;
 use springcheck::solvers::{Counts, Engine, IntegratorEngine};
 
 /// Both sides round v += h (f (1/m)) and x += h v, on forces from the same code: no tolerance.
@@ -177,9 +177,9 @@ fn fast_particles_stay_fast() {
         assert_eq!(engine.state().v[0], 5000.0, "{id}");
     }
     // As rapier ships, where somebody asks for it.
-    let capped = springcheck::solvers::Solver::rapier(Settings {
+    let capped = springcheck::solvers::Solver::rapier(RapierSettings {
         speed: Some(400.0),
-        ..Settings::DEFAULT
+        ..RapierSettings::DEFAULT
     });
     assert_eq!(capped.id, "rapier(speed=400)");
     let mut engine = super::build(&capped, &scene, 0.01);

@@ -10,7 +10,9 @@ mod worlds;
 use springcheck::integrators;
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
-use springcheck::solvers::{Engine, IntegratorEngine, Setting, Solver, find, rapier::Settings};
+use springcheck::solvers::{
+    Engine, IntegratorEngine, Setting, Solver, find, rapier::RapierSettings,
+};
 
 /// An integrator of ours on a scene.
 fn ours(scene: &Scene, method: &str, h: f64) -> Box<dyn Engine> {
@@ -36,11 +38,11 @@ fn build(solver: &Solver, scene: &Scene, timestep: f64) -> Box<dyn Engine> {
 
 /// rapier with so many substeps and sweeps, none after the drift.
 fn swept(iterations: u32, pgs: u32) -> Solver {
-    Solver::rapier(Settings {
+    Solver::rapier(RapierSettings {
         iterations,
         pgs,
         stabilization: 0,
-        ..Settings::DEFAULT
+        ..RapierSettings::DEFAULT
     })
 }
 

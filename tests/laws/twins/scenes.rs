@@ -2,16 +2,16 @@
 
 use crate::testkit::scenes::{self, all_shipped, shipped, spring};
 pub use crate::testkit::scenes::{fixed, free};
-use springcheck::scene::{DampingModel, GravitationalPair, Scene, Solver, Spring, Wind};
+use springcheck::scene::{DampingModel, GravitationalPair, Scene, SolverSpec, Spring, Wind};
 
 /// Nothing in it: gravity along z, a step of 5e-4 s, one second.
 pub fn empty(name: &str) -> Scene {
     Scene {
         name: name.to_owned(),
-        solver: Solver {
+        solver: SolverSpec {
             method: "symplectic_euler".to_owned(),
             timestep: 5e-4,
-            ..Solver::default()
+            ..SolverSpec::default()
         },
         duration: 1.0,
         ..scenes::empty()

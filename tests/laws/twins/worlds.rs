@@ -3,8 +3,8 @@
 
 use super::{apart, build, mutated, ours, scenes, theirs};
 use springcheck::scene::Scene;
-use springcheck::solvers::Kind;
-use springcheck::solvers::rapier::{IDS, Settings};
+use springcheck::solvers::SolverKind;
+use springcheck::solvers::rapier::{IDS, RapierSettings};
 use springcheck::solvers::{Solver, catalogue, find};
 
 /// Symplectic Euler at h = dt / n falls g h² N (N + 1) / 2 in N substeps from rest.
@@ -13,9 +13,9 @@ fn free_fall_travels_what_symplectic_euler_does() {
     let (dt, steps) = (0.01, 100);
     for n in [1, 3, 4, 8] {
         let scene = scenes::course(0);
-        let settings = Settings {
+        let settings = RapierSettings {
             iterations: n,
-            ..Settings::DEFAULT
+            ..RapierSettings::DEFAULT
         };
         let mut engine = build(&Solver::rapier(settings), &scene, dt);
         let h = dt / f64::from(n);
@@ -83,13 +83,16 @@ fn the_order_of_springs_matters_until_the_sweeps_converge() {
 /// Rows are named once, and what they say of themselves is what they do.
 #[test]
 fn the_registry_is_consistent() {
-    let rapier = catalogue().filter(|solver| solver.kind == Kind::Rapier);
+    let rapier = catalogue().filter(|solver| solver.kind == SolverKind::Rapier);
     let ids: Vec<_> = rapier.map(|solver| solver.id).collect();
     assert_eq!(ids, ["rapier", "rapier-forces", "rapier-converged"]);
     assert_eq!(ids, IDS);
     assert_eq!(find("rapier").map(|row| row.substeps), Some(4));
     assert_eq!(find("rapier-forces").map(|row| row.substeps), Some(1));
-    let custom = Solver::rapier(Settings::CONVERGED);
+    let custom = Solver::rapier(RapierSettings::CONVERGED);
     assert_eq!(custom.id, "rapier(pgs=64,stabilization=0)");
-    assert_eq!(Solver::rapier(Settings::DEFAULT).id, "rapier(defaults)");
+    assert_eq!(
+        Solver::rapier(RapierSettings::DEFAULT).id,
+        "rapier(defaults)"
+    );
 }

@@ -5,7 +5,7 @@ use crate::testkit::mutants;
 use crate::testkit::scenes::shipped;
 use springcheck::integrators::{self, Settings};
 use springcheck::solvers::Solver;
-use springcheck::solvers::{Kind, Status};
+use springcheck::solvers::{SolverKind, Status};
 
 #[test]
 fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {
@@ -25,7 +25,7 @@ fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {
         let curve = of(&cost, method.id);
         assert_eq!(
             (curve.kind, curve.order),
-            (Kind::Integrator, Some(method.order))
+            (SolverKind::Integrator, Some(method.order))
         );
         let tolerances: Vec<f64> = curve.points.iter().filter_map(|p| p.tolerance).collect();
         assert_eq!(tolerances.len(), curve.points.len());

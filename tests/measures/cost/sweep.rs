@@ -5,7 +5,7 @@ use crate::testkit::scenes::shipped;
 use springcheck::integrators;
 use springcheck::scene::Scene;
 use springcheck::solvers;
-use springcheck::solvers::{Kind, Status};
+use springcheck::solvers::{SolverKind, Status};
 use springcheck::truth::Demand;
 use springcheck::verbs::cost::Cost;
 use springcheck::verbs::cost::{CostChoice, CostPlan};
@@ -89,7 +89,10 @@ fn laws(cost: &Cost) {
                 .iter()
                 .all(|at| !curve.points[*at].at_floor)
         );
-        assert_eq!(curve.explanation.is_some(), curve.kind == Kind::Rapier);
+        assert_eq!(
+            curve.explanation.is_some(),
+            curve.kind == SolverKind::Rapier
+        );
     }
     for target in &cost.targets {
         for rank in target.ranking.iter().chain(&target.reference) {

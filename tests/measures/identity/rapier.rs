@@ -4,7 +4,7 @@ use super::*;
 use crate::testkit::swinging_triangle;
 use springcheck::measure::identify::Sameness;
 use springcheck::scene::DampingModel;
-use springcheck::solvers::{Setting, Solver, find, rapier::Settings};
+use springcheck::solvers::{Setting, Solver, find, rapier::RapierSettings};
 
 fn of(row: &Solver, scene: &Scene) -> Identity {
     let h = scene.solver.timestep;
@@ -88,9 +88,9 @@ fn its_converged_network_is_linearly_implicit_without_geometric_stiffness() {
 #[test]
 fn its_nearly_converged_network_is_named_with_a_remark() {
     let scene = swinging_triangle(0.7, DampingModel::Isotropic);
-    let row = Solver::rapier(Settings {
+    let row = Solver::rapier(RapierSettings {
         pgs: 4,
-        ..Settings::CONVERGED
+        ..RapierSettings::CONVERGED
     });
     let identity = of(&row, &scene);
     assert_eq!(identity.method, "linearized_implicit_material");

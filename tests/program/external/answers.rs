@@ -8,7 +8,7 @@ use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
 use springcheck::solvers::Solver;
 use springcheck::solvers::external::{Failure, Program, Recording, Task};
-use springcheck::solvers::{Kind, Status};
+use springcheck::solvers::{SolverKind, Status};
 use springcheck::trajectory::{Precision, Rows};
 use springcheck::verbs::run::Outcome;
 use springcheck::verbs::run::{Choice, Plan};
@@ -34,7 +34,10 @@ fn outcome(scene: &Scene, solver: impl Fn(&Task) -> Rows + Send + Sync + 'static
     choice.solvers.push(Solver::program("mine", program));
     let report = Plan::new(scene, &choice).execute(&Quiet).expect("no files");
     let mine = report.outcomes().last().expect("an outcome").clone();
-    assert_eq!((mine.engine.as_str(), mine.kind), ("mine", Kind::External));
+    assert_eq!(
+        (mine.engine.as_str(), mine.kind),
+        ("mine", SolverKind::External)
+    );
     mine
 }
 

@@ -1,7 +1,7 @@
 //! One step of each wrong method, written as people write it.
 
 use crate::integrators::{
-    DampingTreatment, Implicit, Integrator, RungeKutta, Scheme, Settings, Splitting, Stage,
+    DampingTreatment, Implicit, ImplicitScheme, Integrator, RungeKutta, Settings, Splitting, Stage,
     StepError, Tableau,
 };
 use crate::physics::{State, System};
@@ -247,7 +247,7 @@ pub(super) fn implicit_euler_old_velocity(
     s: &mut State,
 ) -> Stepped {
     let x = plus(&s.x, h, &s.v);
-    Implicit::new(Scheme::Euler, &Settings::default()).step(system, h, s)?;
+    Implicit::new(ImplicitScheme::Euler, &Settings::default()).step(system, h, s)?;
     s.x = x;
     Ok(())
 }

@@ -4,7 +4,7 @@ mod kernel;
 mod network;
 
 use super::{Effect, EffectRow, boxed};
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Slope};
+use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::{DampingModel, Scene, Spring};
 use kernel::Motion;
 use nalgebra::{Matrix3, Vector3};
@@ -138,9 +138,9 @@ impl Effect for Springs {
     ) {
         self.network.springs().for_each(|spring| {
             let (position, velocity) = blocks(&spring, self.damping, x, v, linearization);
-            out.add_pair(Slope::Position, spring.ends, position);
+            out.add_pair(Derivative::Position, spring.ends, position);
             if self.damping != Damping::None {
-                out.add_pair(Slope::Velocity, spring.ends, velocity);
+                out.add_pair(Derivative::Velocity, spring.ends, velocity);
             }
         });
     }

@@ -7,7 +7,7 @@ use crate::report::svg::{
     self, Axis, Chart, FAINT, Key, Look, Mark, Panel, Shape, Stroke, Symbol, WHITE, engine,
     heading, palette, range, shortened,
 };
-use crate::solvers::{Kind, Status};
+use crate::solvers::{SolverKind, Status};
 use crate::verbs::Report;
 use crate::verbs::cost::text::{is_timed, metres};
 use crate::verbs::cost::{Cost, CostCurve, CostPoint};
@@ -213,7 +213,7 @@ fn marked(report: &Report, curves: &[CostCurve]) -> Vec<(Stroke, Shape)> {
         let place = before.filter(|other| other.kind == curve.kind).count();
         let own = report.header.is_own(&curve.engine);
         let mut stroke = look(curve.kind, place, own);
-        if curve.kind == Kind::Integrator {
+        if curve.kind == SolverKind::Integrator {
             stroke.dash = "";
             return (stroke, SHAPES[place / COLOURS.len() % SHAPES.len()]);
         }

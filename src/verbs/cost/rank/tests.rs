@@ -1,7 +1,7 @@
 //! Laws on made-up curves: their answers are known by construction.
 
 use super::{Misses, pareto, reach, slope, target};
-use crate::solvers::{Kind, Status};
+use crate::solvers::{SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use crate::verbs::cost::{CostCurve, CostPoint};
 
@@ -38,7 +38,7 @@ fn points(errors: &[Option<f64>]) -> Vec<CostPoint> {
     counts.zip(errors).map(|(n, e)| point(n, *e)).collect()
 }
 
-fn curve(engine: &str, kind: Kind, points: Vec<CostPoint>) -> CostCurve {
+fn curve(engine: &str, kind: SolverKind, points: Vec<CostPoint>) -> CostCurve {
     let slope = slope(&points);
     CostCurve {
         engine: engine.into(),
@@ -142,11 +142,11 @@ fn targets_rank_integrators_and_only_list_the_engine() {
         .map(|k| point(10 << k, Some(0.1 / f64::from(1 << k))))
         .collect();
     let curves = [
-        curve("dear", Kind::Integrator, second(3)),
-        curve("slow", Kind::Integrator, first),
-        curve("cheap", Kind::Integrator, second(1)),
-        curve("rapier", Kind::Rapier, points(&[Some(1e-9)])),
-        curve("ended", Kind::Integrator, points(&[None])),
+        curve("dear", SolverKind::Integrator, second(3)),
+        curve("slow", SolverKind::Integrator, first),
+        curve("cheap", SolverKind::Integrator, second(1)),
+        curve("rapier", SolverKind::Rapier, points(&[Some(1e-9)])),
+        curve("ended", SolverKind::Integrator, points(&[None])),
     ];
     let answer = target(&curves, 1e-4, None);
     let names: Vec<&str> = answer.ranking.iter().map(|r| r.engine.as_str()).collect();

@@ -2,7 +2,7 @@
 
 use crate::integrators;
 use crate::measure::identify::{MISTAKES, Wrong};
-use crate::scene::{Key, KeyKind, Names};
+use crate::scene::{KeyKind, Names, OutcomeKey};
 use crate::solvers::rapier;
 use std::sync::LazyLock;
 
@@ -21,7 +21,7 @@ pub fn names() -> &'static Names {
 ///
 /// Left out is what the expectation states itself (`engine`, `kind`, `timestep`, `substep`), what
 /// varies from run to run (`work.wall_s`), lists, and what the energy at the end is made of.
-fn keys() -> Vec<Key> {
+fn keys() -> Vec<OutcomeKey> {
     let word = |words: &[&'static str]| KeyKind::Word(words.to_vec());
     let rows = [
         (
@@ -72,7 +72,7 @@ fn keys() -> Vec<Key> {
         } else {
             &[""]
         };
-        keys.extend(engines.iter().map(|engine| Key {
+        keys.extend(engines.iter().map(|engine| OutcomeKey {
             path: path.replace('*', engine),
             kind: kind.clone(),
         }));

@@ -7,7 +7,7 @@ pub use keys::names;
 use super::plan::{Choice, Expectations, Orders};
 use crate::measure::{Check, CheckStatus};
 use crate::scene::{Expectation, Scene, Wanted};
-use crate::solvers::{Kind, Solver, Status, catalogue};
+use crate::solvers::{Solver, SolverKind, Status, catalogue};
 use crate::truth::{Demand, TruthKind};
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
@@ -107,7 +107,7 @@ fn fixed() -> impl Iterator<Item = Solver> {
 
 /// What is expected of a solver.
 fn expected_of<'a>(scene: &'a Scene, solver: &Solver) -> Vec<&'a Expectation> {
-    scene.expected_of(&solver.id, solver.kind == Kind::Integrator)
+    scene.expected_of(&solver.id, solver.kind == SolverKind::Integrator)
 }
 
 impl Choice {
@@ -121,7 +121,7 @@ impl Choice {
         };
         let referred = |solver: &Solver| {
             let prefix = format!("deviation_m.{}.", solver.id);
-            solver.kind == Kind::Rapier && mentions(&[&prefix])
+            solver.kind == SolverKind::Rapier && mentions(&[&prefix])
         };
         Self {
             solvers: fixed()

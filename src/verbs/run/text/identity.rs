@@ -3,7 +3,7 @@
 use crate::integrators;
 use crate::measure::identify::{Fault, Identified, Quantity, Undecided};
 use crate::report::words::{self, listed};
-use crate::solvers::Kind;
+use crate::solvers::SolverKind;
 use crate::verbs::run::Outcome;
 use crate::verbs::{Body, Report};
 
@@ -13,7 +13,7 @@ const NAMED: usize = 6;
 /// What replay found of an outcome; None where it found nothing, or only what the row says anyway.
 pub fn sentence(outcome: &Outcome) -> Option<String> {
     let found = outcome.identified.as_ref()?;
-    let itself = outcome.kind == Kind::Integrator
+    let itself = outcome.kind == SolverKind::Integrator
         && found.substeps == 1
         && (found.method == outcome.engine || found.equivalent.contains(&outcome.engine));
     let scheme = scheme(found, outcome.timestep);

@@ -103,7 +103,7 @@ pub fn curve(line: Line) -> CostCurve {
         .collect();
     CostCurve {
         engine: line.engine.into(),
-        kind: Kind::Integrator,
+        kind: SolverKind::Integrator,
         order: Some(line.order),
         observed_order: Some(f64::from(line.order) + 0.004),
         slope_points: (4..8).collect(),
@@ -144,7 +144,7 @@ fn pair() -> CostCurve {
         .collect();
     CostCurve {
         engine: "dopri5".into(),
-        kind: Kind::Integrator,
+        kind: SolverKind::Integrator,
         order: Some(5),
         observed_order: Some(5.02),
         slope_points: (1..7).collect(),
@@ -171,7 +171,7 @@ fn rapier(engine: &str, best: f64) -> CostCurve {
         .collect();
     CostCurve {
         engine: engine.into(),
-        kind: Kind::Rapier,
+        kind: SolverKind::Rapier,
         order: None,
         observed_order: None,
         slope_points: Vec::new(),
@@ -191,7 +191,7 @@ fn unsupported() -> CostCurve {
     only.reason = Some("isotropic damping has no joint".into());
     CostCurve {
         engine: "rapier-forces".into(),
-        kind: Kind::Rapier,
+        kind: SolverKind::Rapier,
         order: None,
         observed_order: None,
         slope_points: Vec::new(),
@@ -423,7 +423,7 @@ pub fn odd() -> Report {
     cost.curves[0].engine = nasty.clone();
     cost.curves[2].points.clear();
     let mut empty = cost.curves[2].clone();
-    (empty.engine, empty.kind) = (String::new(), Kind::External);
+    (empty.engine, empty.kind) = (String::new(), SolverKind::External);
     cost.curves.push(empty);
     for target in &mut cost.targets {
         target.error_m = f64::MAX;
