@@ -1,24 +1,24 @@
-//! Krylov spaces of a matrix that is known by its products only (Lanczos, Arnoldi).
+//! Krylov spaces of a matrix known only by its products with vectors (Lanczos, Arnoldi).
 
 use crate::vector::axpy;
 
-/// A Krylov space by a basis that is orthonormal to rounding, in an inner product of one's own.
+/// A Krylov space with a basis that is orthonormal to rounding in the caller's inner product.
 pub(crate) struct Space<D> {
     pub basis: Vec<Vec<f64>>,
-    /// Of each vector's image, its components along the basis so far and the length of the rest: the
-    /// columns of a Hessenberg matrix.
+    /// The columns of the Hessenberg matrix: for each basis vector, the components of its image along
+    /// the basis so far, then the norm of the rest.
     pub columns: Vec<Vec<f64>>,
-    /// The length of the last image.
+    /// The norm of the last image.
     pub image: f64,
-    /// Of a self-adjoint matrix the diagonal, each entry taken before anything is orthogonalised.
+    /// The diagonal of a self-adjoint matrix. Each entry is taken before orthogonalisation.
     alphas: Vec<f64>,
-    /// What of the last image is not in the space.
+    /// The part of the last image that is orthogonal to the space.
     rest: Vec<f64>,
     dot: D,
 }
 
 impl<D: Fn(&[f64], &[f64]) -> f64> Space<D> {
-    /// Of one vector, of length 1 in the inner product.
+    /// The space of one vector, which has norm 1 in the inner product.
     pub fn new(start: Vec<f64>, dot: D) -> Self {
         Self {
             rest: vec![0.0; start.len()],
@@ -30,7 +30,7 @@ impl<D: Fn(&[f64], &[f64]) -> f64> Space<D> {
         }
     }
 
-    /// Multiplies the last vector of the basis; returns the length of what of its image is new.
+    /// Multiplies the last vector of the basis; returns the norm of the part of its image that is new.
     /// `product` overwrites its second argument.
     pub fn multiply(&mut self, product: impl Fn(&[f64], &mut [f64])) -> f64 {
         let last = &self.basis[self.basis.len() - 1];
@@ -38,7 +38,7 @@ impl<D: Fn(&[f64], &[f64]) -> f64> Space<D> {
         self.image = (self.dot)(&self.rest, &self.rest).sqrt();
         self.alphas.push((self.dot)(&self.rest, last));
         let mut column = vec![0.0; self.basis.len()];
-        // Twice is enough (Parlett), to stay orthogonal to rounding.
+        // Two passes keep the basis orthogonal to rounding (Parlett).
         for _ in 0..2 {
             for (taken, q) in column.iter_mut().zip(&self.basis) {
                 let overlap = (self.dot)(&self.rest, q);
@@ -52,7 +52,7 @@ impl<D: Fn(&[f64], &[f64]) -> f64> Space<D> {
         beta
     }
 
-    /// Takes what is new into the basis; None where there is nothing, or nothing finite.
+    /// Adds the new part to the basis, normalised; None where it is zero or not finite.
     pub fn extend(&mut self) -> Option<()> {
         let beta = *self.columns.last()?.last()?;
         (beta.is_finite() && beta > 0.0).then(|| {

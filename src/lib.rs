@@ -1,5 +1,5 @@
 //! `springcheck` holds hand-written particle-spring integrators against rapier and the laws of
-//! mechanics: who gains energy, who loses it, who is where, and at what cost.
+//! mechanics. It says which gain or lose energy, how far each is from the truth, and at what cost.
 //!
 //! Data flows one way, and the modules are its stages in order:
 //!
@@ -9,19 +9,20 @@
 //! ```
 //!
 //! - [`scene`] reads a YAML file, strictly;
-//! - [`physics`] is what acts: a [`System`](physics::System) of flat vectors, accelerations and Jacobians, from the
-//!   [`effects`](physics::effects) the scene calls for and no others;
+//! - [`physics`] holds the forces: a [`System`](physics::System) of flat vectors, accelerations and Jacobians, from
+//!   the [`effects`](physics::effects) the scene calls for and no others;
 //! - [`integrators`] are rows of facts over three steppers: tableau, splitting, Newton; beside them are
 //!   [`adaptive`](integrators::adaptive) pairs, which choose their own steps;
 //! - [`solvers`] run an integrator, rapier worlds built from the same scene, or other programs;
-//! - [`truth`] is what really happens: a closed form or a converged reference, with an error bar;
-//! - [`trajectory`] keeps a bounded record of a run, or all of it in a file, and reads other people's;
-//! - [`measure`] turns records into errors, energy verdicts, deviations, orders, the scheme they
-//!   follow, the steps they are stable at, and the twin proof;
+//! - [`truth`] is the true motion: a closed form or a converged reference, with an error bar;
+//! - [`trajectory`] keeps a bounded record of a run, or all of it in a file, and reads those of other
+//!   programs;
+//! - [`measure`] turns records into errors, energy verdicts, deviations, orders, the scheme they follow,
+//!   stability limits, and the twin proof;
 //! - [`conformance`] holds any integrator, ours or yours, to the facts it claims;
-//! - [`report`] is what all reports are written with: tables, sentences, charts;
-//! - [`verbs`] are the program's, one folder each: arguments, plan, result, text, figures of a
-//!   [`Report`](verbs::Report).
+//! - [`report`] holds what all reports share: tables, sentences, charts;
+//! - [`verbs`] holds the program's verbs, one folder each: arguments, plan, result, text and figures of
+//!   a [`Report`](verbs::Report).
 //!
 //! ```
 //! use springcheck::verbs;

@@ -1,12 +1,11 @@
-//! Loops over flat vectors: on several threads where they are long, element by element the same
-//! bits as on one.
+//! Loops over flat vectors. Long ones run on several threads, with the same bits as on one.
 
 use rayon::prelude::*;
 
 /// Vectors shorter than this are not worth waking a thread for.
 const LONG: usize = 1 << 15;
 
-/// What a thread takes at a time, 32 KB of each vector.
+/// Elements a thread takes at a time: 32 KB of each vector.
 const CHUNK: usize = 1 << 12;
 
 /// y += a x.
@@ -36,7 +35,7 @@ pub(crate) fn copy(y: &mut [f64], x: &[f64]) {
     y.copy_from_slice(x);
 }
 
-/// y *= x, each element by its own.
+/// y *= x, element by element.
 #[inline(always)]
 pub(crate) fn multiply(y: &mut [f64], x: &[f64]) {
     if y.len() >= LONG {
@@ -54,7 +53,7 @@ pub(crate) fn clear(y: &mut [f64]) {
     y.fill(0.0);
 }
 
-/// v += kick a, then x += drift v: both in one pass, since memory is what they wait for.
+/// v += kick a, then x += drift v. One pass does both, since memory bandwidth limits them.
 #[inline(always)]
 pub(crate) fn kick_and_drift(x: &mut [f64], v: &mut [f64], a: &[f64], kick: f64, drift: f64) {
     if x.len() >= LONG {
@@ -85,7 +84,7 @@ fn multiply_short(y: &mut [f64], x: &[f64]) {
     }
 }
 
-// Kept out of line, so that short vectors do not pay for them.
+// The long loops are kept out of line, so that short vectors do not pay for them.
 
 #[cold]
 #[inline(never)]
@@ -94,7 +93,7 @@ fn long(y: &mut [f64], x: &[f64], pass: impl Fn(&mut [f64], &[f64]) + Sync) {
     chunks.for_each(|(y, x)| pass(y, x));
 }
 
-// Numbers are handed over by value: a closure would hold them by reference, in memory.
+// Scalars are passed by value: a closure would hold them by reference, in memory.
 #[cold]
 #[inline(never)]
 fn long_axpy(y: &mut [f64], a: f64, x: &[f64]) {

@@ -1,5 +1,5 @@
-//! Judges what concerns several values of a scene, fills in the defaults that follow from others, and says
-//! whether a timestep fits a duration.
+//! Checks that involve several values of a scene, defaults that follow from other values, and the check of
+//! a timestep against a duration.
 
 use super::error::Refusal;
 use super::limits;
@@ -9,10 +9,10 @@ use super::read::Reading;
 use super::values::Number;
 use std::fmt::Display;
 
-/// At least one step, and not more than a run can take; both in seconds.
+/// Checks that the duration holds at least one step, and no more than a run can take; both in seconds.
 ///
 /// # Errors
-/// What was expected, also for what is not finite or not positive.
+/// A [`Refusal`] that says what was expected, also where a value is not finite or not positive.
 pub fn check_times(timestep: f64, duration: f64) -> Result<(), Refusal> {
     for (what, seconds, limit) in [
         ("a timestep", timestep, limits::TIMESTEP),
@@ -38,7 +38,7 @@ pub fn check_times(timestep: f64, duration: f64) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The scene that was read. The first problem ends it.
+/// Completes the scene that was read. The first problem ends the check.
 pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
     let Reading { mut scene, .. } = reading;
     if let Some(problem) = reading.problem {
@@ -85,7 +85,7 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
     Ok(scene)
 }
 
-/// At least one, and at least one that can move.
+/// Checks that there is a particle, and one that can move.
 fn particles(particles: &[Particle]) -> Result<(), Problem> {
     if particles.is_empty() {
         let message = "expected at least one particle, found none";
@@ -98,7 +98,7 @@ fn particles(particles: &[Particle]) -> Result<(), Problem> {
             let help = "remove `vel`, or `fixed: true`";
             return Problem::because(format!("particles[{at}].vel"), message, help);
         }
-        // Of what acts on a particle that cannot move, only attraction depends on its mass.
+        // A fixed particle needs a mass only if it attracts others.
         if !particle.fixed && particle.mass.is_nan() {
             let help = "a free particle needs its mass in kg";
             return Problem::because(format!("particles[{at}].mass"), "missing", help);
@@ -112,7 +112,7 @@ fn particles(particles: &[Particle]) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Two different particles of those there are.
+/// Checks that the two ends exist and differ.
 fn ends(ends: [usize; 2], count: usize, of: &impl Display) -> Result<(), Problem> {
     if let Some(index) = ends.iter().position(|&end| end >= count) {
         let refusal = no_particle(whole(ends[index]), count);
@@ -135,12 +135,12 @@ fn no_particle(found: Number, count: usize) -> Refusal {
     Refusal::new(message, help)
 }
 
-/// An id as it was read: from an i64.
+/// The id as the number it was read from, an i64.
 fn whole(id: usize) -> Number {
     Number::Whole(id as i64)
 }
 
-/// Two particles that state their mass and do not start at one place.
+/// Checks that both particles state their mass and start at different places.
 fn attraction(ends: [usize; 2], particles: &[Particle]) -> Result<(), Refusal> {
     if let Some(id) = ends.into_iter().find(|id| particles[*id].mass.is_nan()) {
         let message = format!("expected particles with a mass, found that {id} states none");
@@ -157,7 +157,7 @@ fn attraction(ends: [usize; 2], particles: &[Particle]) -> Result<(), Refusal> {
 
 /// Makes the direction a unit vector.
 fn normalise(wind: &mut Wind) -> Result<(), Problem> {
-    // Scaled first, so that the squares of tiny components do not vanish.
+    // The vector is scaled first, so that the squares of tiny components do not vanish.
     let largest = wind.direction.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
     if largest == 0.0 {
         let message = "expected a direction, found a vector of length 0";

@@ -1,4 +1,4 @@
-//! The one error this module gives: what is wrong, where, and what to do about it.
+//! The error of this module: it says what is wrong, where, and what to do about it.
 
 use super::words::printable;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -8,14 +8,14 @@ use std::ops::Range;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct Refusal {
-    /// The key at fault: the whole path where the place is known, else what stands below the value being
-    /// read; empty for that value itself.
+    /// The key at fault: the whole path where the place is known, else the path below the value being
+    /// read, which is empty for that value itself.
     pub(super) key: String,
     /// What was expected and what was found.
     pub message: String,
     /// What to do; empty where the message says it all.
     pub help: String,
-    /// Whether the value was read and then judged.
+    /// Whether the value could be read, but its content is wrong.
     judged: bool,
 }
 
@@ -52,11 +52,11 @@ impl Refusal {
     }
 }
 
-/// Stands around the parts of a [`Refusal`] that travels through serde, whose errors are nothing but
-/// text: no YAML file may contain it as it is.
+/// Separates the parts of a [`Refusal`] that travels through serde, whose errors are plain text. No YAML
+/// file may contain this character unescaped.
 pub(super) const MARK: char = '\u{1f}';
 
-/// The refusal of the value being read.
+/// Turns the refusal of the value being read into a serde error.
 pub(super) fn refuse<E: serde::de::Error>(refusal: Refusal) -> E {
     let judged = if refusal.judged { "judged" } else { "" };
     let parts = [refusal.key, refusal.message, refusal.help].map(|text| text.replace(MARK, " "));
@@ -90,11 +90,11 @@ impl Fault {
 pub struct SceneError {
     /// The file as it was named.
     pub file: String,
-    /// From 1; absent where the file as a whole is at fault.
+    /// Counted from 1; absent where the file as a whole is at fault.
     pub line: Option<u32>,
-    /// From 1, in characters.
+    /// Counted from 1, in characters.
     pub column: Option<u32>,
-    /// What is wrong with which key, without the place; no key for the file as a whole.
+    /// The fault without its place; its key is empty where the file as a whole is at fault.
     pub refusal: Refusal,
     excerpt: Option<Box<Excerpt>>,
 }
@@ -103,7 +103,7 @@ pub struct SceneError {
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Excerpt {
     line: String,
-    /// Bytes of `line`.
+    /// The bytes of `line` that are underlined.
     marked: Range<usize>,
 }
 
@@ -143,7 +143,7 @@ impl SceneError {
         }
     }
 
-    /// The whole block, by a renderer of the caller's choice: plain or styled.
+    /// Renders the whole block, plain or styled by the caller's renderer.
     pub fn render(&self, renderer: &Renderer) -> String {
         let Refusal {
             key, message, help, ..
@@ -174,7 +174,7 @@ impl SceneError {
 /// Longest part of a line shown before and after the marked place, in characters.
 const AROUND: usize = 70;
 
-/// Cuts the line to what fits, and control characters to what a terminal may be shown.
+/// Shortens the line to what fits, and replaces control characters, which a terminal must not receive.
 fn excerpt(before: &str, after: &str) -> Excerpt {
     let skipped = before.chars().count().saturating_sub(AROUND);
     let mut line = String::new();
@@ -195,7 +195,7 @@ fn excerpt(before: &str, after: &str) -> Excerpt {
     }
 }
 
-/// Characters of the value or key that begins here; a bracket or an indicator is one.
+/// The number of characters of the value or key that begins here; a bracket or an indicator counts as 1.
 fn token(text: &str) -> usize {
     let mut chars = text.chars();
     let one = |c: char| matches!(c, ',' | ':' | '[' | ']' | '{' | '}');

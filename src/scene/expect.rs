@@ -1,5 +1,5 @@
-//! Reads `expect`: engines, keys and words that exist, bounds that a number can meet. Everything here is
-//! bounded: aliases multiply.
+//! Reads `expect`. Engines, keys and words have to exist, and some number has to meet the bounds. All
+//! sizes are limited, since YAML aliases could multiply them.
 
 use super::error::{Refusal, refuse};
 use super::expectation::{ALL, Expectation, KeyKind, Names, REST, Scope, Wanted};
@@ -12,11 +12,11 @@ use std::fmt;
 
 const MAPPING: &str = "a mapping such as {status: completed}";
 
-/// The whole of `expect`: a line for each engine.
+/// Reads the whole of `expect`: a line for each engine.
 pub(super) struct Engines<'r> {
     pub(super) names: &'r Names,
     pub(super) expect: &'r mut Vec<Expectation>,
-    /// The first unknown key: the value it has may say better what is wrong.
+    /// The first unknown key. It is reported last: an error in its value may say better what is wrong.
     pub(super) problem: &'r mut Option<Problem>,
 }
 
@@ -39,7 +39,7 @@ impl<'de> Visitor<'de> for Engines<'_> {
     }
 }
 
-/// Refuses a key that is too long, was there before, is one too many, or merges.
+/// Refuses a key that is too long, is repeated, exceeds the number of keys, or is a merge key.
 fn fresh(key: &str, before: &mut Vec<String>) -> Result<(), Refusal> {
     short(key)?;
     if before.iter().any(|before| before == key) {
@@ -76,7 +76,7 @@ fn scope(engine: &str, names: &Names) -> Result<Scope, Refusal> {
     }
 }
 
-/// What is expected of one engine.
+/// Reads what is expected of one engine.
 struct Line<'l, 'r>(Scope, &'l mut Engines<'r>);
 
 impl<'de> Visitor<'de> for Line<'_, '_> {
@@ -117,7 +117,7 @@ impl<'de> Visitor<'de> for Line<'_, '_> {
     }
 }
 
-/// What is expected under a key of this kind; with no kind, only its shape is judged.
+/// Reads what is expected under a key of this kind. Without a kind only the shape is checked.
 struct Value<'k>(Option<&'k KeyKind>);
 
 impl Value<'_> {
@@ -218,7 +218,7 @@ impl<'de> Visitor<'de> for Value<'_> {
     }
 }
 
-/// The key among those of bounds, if it fits the kind.
+/// The key of a bound (`below`, `above` or `contains`), if it fits the kind.
 fn bound(key: &str, seen: &mut u32, kind: Option<&KeyKind>) -> Result<&'static str, Refusal> {
     const KEYS: [&str; 3] = ["below", "above", "contains"];
     let known = KEYS[index_of(key, KEYS.into_iter(), seen)?];

@@ -1,6 +1,5 @@
-//! What a scene says that every engine must do, and the words of other stages that it may use. The scene
-//! module knows none of them by itself: [`verbs::names`](crate::verbs::names) is what this
-//! program knows.
+//! The expectations a scene states of each engine, and the ids and words it may use in them. These come
+//! from other modules, by [`verbs::names`](crate::verbs::names): the scene module defines none itself.
 
 use std::fmt;
 
@@ -9,18 +8,18 @@ pub(super) const ALL: &str = "all";
 /// The line about every integrator without a line of its own.
 pub(super) const REST: &str = "rest";
 
-/// What a scene may name.
+/// The ids, keys and words of other modules that a scene may name.
 #[derive(Debug, Clone, Default)]
 pub struct Names {
-    /// Ids of integrators: what `solver.type` may be, and what `expect` may be about.
+    /// Ids of integrators, for `solver.type` and for `expect`.
     pub methods: Vec<&'static str>,
-    /// Ids of reference engines, which `expect` may be about.
+    /// Ids of reference engines, for `expect`.
     pub engines: Vec<&'static str>,
-    /// What `expect` may say of them.
+    /// The keys an expectation may be about.
     pub keys: Vec<OutcomeKey>,
 }
 
-/// A key of an outcome that a scene may expect something of.
+/// A key of an outcome that an expectation may be about.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OutcomeKey {
     /// Dotted, as `energy.class`.
@@ -28,14 +27,14 @@ pub struct OutcomeKey {
     pub kind: KeyKind,
 }
 
-/// What stands under a key, and so how an expectation of it looks.
+/// The kind of value under a key, which decides how an expectation of it is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum KeyKind {
-    /// One of these words: a word or a list of those allowed.
+    /// One of these words. The expectation is a word, or a list of those allowed.
     Word(Vec<&'static str>),
-    /// A number: `below` and `above`.
+    /// A number. The expectation has `below` and `above`.
     Number,
-    /// A sentence: `contains`.
+    /// A sentence. The expectation has `contains`.
     Text,
 }
 
@@ -51,7 +50,7 @@ pub struct Expectation {
 /// The engines an expectation is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Scope {
-    /// Every integrator, but for the keys given for it otherwise.
+    /// Every integrator, except for keys that its own line or `rest` states.
     All,
     /// Every integrator that has no line of its own.
     Rest,
@@ -59,17 +58,17 @@ pub enum Scope {
     Engine(String),
 }
 
-/// What must stand under the key.
+/// The value that is expected under the key.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Wanted {
-    /// One of these; not empty.
+    /// One of these words; the list is not empty.
     Words(Vec<String>),
     /// A number strictly between these, in the key's unit; at least one is given.
     Bounds {
         above: Option<f64>,
         below: Option<f64>,
     },
-    /// A text with this in it; not empty.
+    /// A text that contains this one, which is not empty.
     Contains(String),
 }
 

@@ -1,9 +1,8 @@
-//! How large a scene and its numbers may be.
+//! Limits on the size of a scene and of its numbers.
 //!
 //! The bounds lie far outside any sensible scene. They keep sums, squares and products of accepted
 //! numbers (energies, k/m, 1/h²) inside the range of a double, so that a NaN met later is the
-//! integrator's doing and not the file's. Those of a single key stand on its row of
-//! the table.
+//! integrator's doing and not the file's. A bound that only one key has stands on that key's row.
 
 use super::error::Refusal;
 use super::expectation::Names;
@@ -22,24 +21,24 @@ pub const STEPS: f64 = 1e9;
 /// The longest name, in characters.
 pub const NAME_CHARS: usize = 200;
 
-/// The most entries of `expect`, of one engine in it, and of one list of words there: an alias could
+/// The most entries of `expect`, of one engine in it, and of one list of words there. YAML aliases could
 /// multiply them.
 pub const EXPECTED: usize = 64;
 
 /// The longest key or word under `expect`, in bytes.
 pub const WORD_BYTES: usize = 200;
 
-/// The smallest distance two attracting particles may start at, m: at 0 the force is infinite.
+/// The smallest initial distance of two attracting particles, m. At 0 the force is infinite.
 pub const ATTRACTION_DISTANCE: f64 = 1e-12;
 
-/// What a number stands for, and the values it may take.
+/// The values a number may take, and its unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     /// The smallest value.
     pub low: f64,
     /// The largest value.
     pub high: f64,
-    /// Its unit, as messages write it.
+    /// The unit, as messages write it.
     pub unit: &'static str,
 }
 
@@ -86,10 +85,10 @@ pub const STIFFNESS: Bounds = Bounds::not_negative(1e18, "N/m");
 pub const TIMESTEP: Bounds = Bounds::from(1e-30, 1e12, "s");
 /// The simulated time.
 pub const DURATION: Bounds = Bounds::from(1e-30, 1e12, "s");
-/// What a number is expected to stay below or above.
+/// A bound of an expectation.
 pub const BOUND: Bounds = Bounds::signed(f64::MAX, "in the key's unit");
 
-/// Whether a scene may be called so.
+/// Checks a scene's name.
 pub(super) fn name(name: &str, _: &Names) -> Result<(), Refusal> {
     if name.trim().is_empty() {
         let message = "expected a name, found none";
@@ -105,7 +104,7 @@ pub(super) fn name(name: &str, _: &Names) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Whether reports may print it: an escape sequence would reach the terminal.
+/// Checks that reports may print the text: an escape sequence would reach the terminal.
 pub(super) fn description(text: &str, _: &Names) -> Result<(), Refusal> {
     if text.contains(|c: char| c.is_control() && !matches!(c, '\n' | '\t')) {
         return Refusal::because("expected text without control characters", "");
@@ -113,12 +112,12 @@ pub(super) fn description(text: &str, _: &Names) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Whether there is such an integrator.
+/// Checks that the integrator exists.
 pub(super) fn method(word: &str, names: &Names) -> Result<(), Refusal> {
     known(word, &names.methods, "integrator")
 }
 
-/// Whether the word is one of those known.
+/// Checks that the word is one of those known.
 pub(super) fn known(word: &str, words: &[&str], what: &str) -> Result<(), Refusal> {
     if words.contains(&word) {
         return Ok(());

@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! bytes -> text (size, UTF-8, nesting) -> read (keys and values, by the table of the model)
-//!       -> complete (what concerns several values) -> Scene
+//!       -> complete (checks across several values) -> Scene
 //! ```
-//! Only [`Scene`] and what it is made of leaves this module, so nothing after it needs to doubt a
-//! number: ids are valid, quantities are finite and within their bounds.
+//! Only [`Scene`] and its parts leave this module, so later stages need not check numbers again: ids are
+//! valid, quantities are finite and within their bounds.
 
 mod complete;
 mod error;
@@ -35,9 +35,9 @@ use std::path::Path;
 
 /// Reads a scene from the bytes of a YAML file.
 ///
-/// `file` names the source in errors and, without a `name` in the file, the scene. `names` are the
-/// words of other stages it may use: [`verbs::names`](crate::verbs::names). A UTF-8 BOM and
-/// CRLF line ends are fine.
+/// `file` names the source in errors and, without a `name` in the file, the scene. `names` are the ids
+/// and words of other modules it may use: [`verbs::names`](crate::verbs::names). A UTF-8 BOM and
+/// CRLF line ends are accepted.
 ///
 /// # Errors
 /// The first thing wrong, with its line and column. No input panics.
@@ -82,7 +82,7 @@ pub fn read(path: &Path, names: &Names) -> Result<Scene, SceneError> {
         return refuse("this is a directory: name a scene file, such as scene.yml".into());
     }
     let mut bytes = Vec::new();
-    // One byte beyond the cap is enough to know, even of a pipe or a device that never ends.
+    // One byte beyond the limit shows that the input is too long, even if it is a device that never ends.
     let opened = File::open(path).and_then(|f| {
         f.take(limits::FILE_BYTES as u64 + 1)
             .read_to_end(&mut bytes)

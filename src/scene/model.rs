@@ -1,14 +1,14 @@
-//! The scene as a file states it, checked and complete, and the one table of what a file may say.
+//! The scene as a file states it, checked and complete, and the table of all keys a file may have.
 //!
-//! Each key is a [`Row`]: reading and its messages, `--vary`, the flat arrays handed to
-//! [other programs](crate::solvers::external) and the key of the
-//! [converged truth](crate::truth::converged) come from it. A field is declared together with its row:
+//! Each key is a [`Row`]. Reading and its messages, `--vary`, the flat arrays for
+//! [other programs](crate::solvers::external) and the cache key of the
+//! [converged truth](crate::truth::converged) follow from it. A field is declared with its row:
 //! ```text
 //! /// What it is, and its unit.
-//! field: type = default, "key" => kind and bounds, what a file without it means, its flat array;
+//! field: type = default, "key" => kind and bounds, meaning of an absent key, its flat array;
 //! ```
-//! `Default` is what a file means that leaves the key out. Where a file has to give the key it is
-//! something harmless, such as a force of 0.
+//! `Default` is the value of an absent key. Where the key is required, it is something harmless, such as
+//! a force of 0.
 
 use super::error::Refusal;
 use super::expectation::{Expectation, Names, Scope};
@@ -36,12 +36,12 @@ pub struct Part {
     pub key: &'static str,
     /// Whether the file has a list of such mappings.
     pub list: bool,
-    /// What stands there, in a message's words.
+    /// What is expected there, as messages say it.
     pub(super) expected: &'static str,
-    /// Keys the format names, but this version does not read.
+    /// Keys that the format reserves, but this version does not read.
     pub(super) later: &'static [&'static str],
     pub rows: &'static [Row],
-    /// How many members the scene has: 0 or 1 of what is no list.
+    /// How many members the scene has; 0 or 1 where the part is not a list.
     pub count: fn(&Scene) -> usize,
 }
 
@@ -49,22 +49,22 @@ pub struct Part {
 #[derive(Debug)]
 pub struct Row {
     pub key: &'static str,
-    /// What it is, for its reader.
+    /// One line that says what the key is.
     pub summary: &'static str,
     pub kind: ValueKind,
     pub absent: Absent,
-    /// Its name among the flat arrays; several rows may share one. None of what has no say in the
-    /// motion, and so does not count in the truth's key either.
+    /// Its name among the flat arrays; several rows may share one. None where the key does not influence
+    /// the motion; the truth's cache key leaves it out too.
     pub flat: Option<&'static str>,
-    /// A component of the member of this index; None where there is none.
+    /// The component of the member of this index; None where it does not exist.
     pub get: fn(&Scene, usize, usize) -> Option<Value<'_>>,
-    /// Sets a component, unjudged. A value of another kind or of a member that is not there changes
+    /// Sets a component, unchecked. A value of another kind, or a member that does not exist, changes
     /// nothing. Where the key holds a part, any value adds a member with its defaults.
     pub set: fn(&mut Scene, usize, usize, Value<'_>),
 }
 
 impl Part {
-    /// Where a key stands, of one member or of all: `springs[3].stiffness`, `springs.stiffness`.
+    /// The path of a key, for one member or for all: `springs[3].stiffness`, `springs.stiffness`.
     pub fn path(&self, member: Option<usize>, key: &str) -> String {
         match member {
             Some(at) if self.list => format!("{}[{at}].{key}", self.key),
@@ -82,38 +82,38 @@ impl Row {
     }
 }
 
-/// What stands under a key.
+/// The kind of value under a key.
 #[derive(Debug)]
 pub enum ValueKind {
     Number(Bounds),
-    /// A list of so many numbers.
+    /// A list of this many numbers.
     Numbers(usize, Bounds),
-    /// A particle.
+    /// The id of a particle.
     Id,
-    /// A list of two particles.
+    /// A list of two particle ids.
     Ids,
     /// 0, 1 or 2 for x, y, z.
     Coordinate,
     /// `true` or `false`.
     Flag,
-    /// One of these.
+    /// One of these words.
     Word(&'static [&'static str]),
-    /// Text in which this finds no fault.
+    /// Text that this function accepts.
     Text(fn(&str, &Names) -> Result<(), Refusal>),
     /// A mapping or a list of them, with rows of its own.
     Part(&'static Part),
-    /// What engines must do, by engine and key.
+    /// Expectations, by engine and key.
     Expect,
 }
 
-/// What a file means that leaves the key out.
+/// The meaning of an absent key.
 #[derive(Debug)]
 pub enum Absent {
-    /// Nothing: it is refused, with this advice.
+    /// The file is refused, with this advice.
     Required(&'static str),
     /// The default of the model.
     Usual,
-    /// What follows from the rest of the scene. A number; NaN until the whole file is read.
+    /// A number that follows from the rest of the scene. It is NaN until the whole file is read.
     Derived,
 }
 use Absent::{Derived, Required, Usual};
@@ -132,7 +132,7 @@ declare! {
     /// Any text.
     description: Option<String> = None,
         "description" => ValueKind::Text(limits::description), Usual, None;
-    /// How it is stepped, and in which gravity.
+    /// Method, step and gravity.
     solver: SolverSpec = SolverSpec::default(), "solver" => ValueKind::Part(&SOLVER),
         Required("add `solver: {type: symplectic_euler, timestep: 0.0005}`"), None;
     /// Seconds, at least one timestep.
@@ -144,7 +144,7 @@ declare! {
         "damping_model" => ValueKind::Word(DampingModel::WORDS), Usual, Some("damping_model");
     /// The curve the report shows first.
     plot: Option<Plot> = None, "plot" => ValueKind::Part(&PLOT), Usual, None;
-    /// At least one of them free.
+    /// The particles, at least one of them free.
     particles: Vec<Particle> = Vec::new(),
         "particles" => ValueKind::Part(&PARTICLES), Required(NO_PARTICLES), None;
     /// Springs with dampers.
@@ -154,12 +154,13 @@ declare! {
         "gravitational" => ValueKind::Part(&GRAVITATIONAL), Usual, None;
     /// A constant force.
     wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
-    /// What engines must do, in the order of the file. Changes no run.
+    /// Expectations of engines, in the order of the file. They change no run.
     expect: Vec<Expectation> = Vec::new(), "expect" => ValueKind::Expect, Usual, None;
 }
 
 declare! {
-    /// What the file asks for under `solver`.
+    /// The block `solver`. Not to be confused with [`solvers::Solver`](crate::solvers::Solver), which runs
+    /// a scene.
     SOLVER: SolverSpec, one solver, "a mapping with `type` and `timestep`", later [];
 
     /// An integrator's id.
@@ -171,7 +172,7 @@ declare! {
     /// Signed acceleration along `up`, m/s².
     gravity: f64 = -9.81,
         "gravity" => ValueKind::Number(Bounds::signed(1e12, "m/s²")), Usual, Some("gravity");
-    /// Relative residual at which an implicit method's solve ends; the method's own if absent.
+    /// Relative residual at which an implicit solve ends; the method's default if absent.
     tolerance: Option<f64> = None,
         "tolerance" => ValueKind::Number(Bounds::from(1e-300, 1.0, "relative")), Usual, None;
 }
@@ -180,13 +181,13 @@ declare! {
     /// The curve the report shows first.
     PLOT: Plot, maybe plot, "a mapping with `particle_id` and `dof`", later [];
 
-    /// Whose curve.
+    /// The particle whose curve is shown.
     particle: usize = 0,
         "particle_id" => ValueKind::Id, Required("say which particle's curve to show"), None;
     /// Coordinate 0, 1 or 2.
     dof: usize = 0,
         "dof" => ValueKind::Coordinate, Required("say which coordinate to show: 0, 1 or 2"), None;
-    /// Lower and upper, m; fits the data if absent.
+    /// Lower and upper end, m; fitted to the data if absent.
     y_range: Option<[f64; 2]> = None,
         "y_range" => ValueKind::Numbers(2, limits::POSITION), Usual, None;
 }
@@ -203,10 +204,10 @@ declare! {
         Usual, Some("velocities");
     /// Whether it never moves.
     fixed: bool = false, "fixed" => ValueKind::Flag, Usual, Some("fixed");
-    /// Kilograms, positive. Only what is fixed and attracts nothing may leave it out.
+    /// Kilograms, positive. Only a fixed particle that attracts nothing may leave it out.
     mass: f64 = 1.0,
         "mass" => ValueKind::Number(Bounds::from(1e-30, 1e30, "kg")), Derived, Some("masses");
-    /// Metres; the ball's radius once a scene asks for contact.
+    /// Metres; the radius of the ball where the scene has contact.
     radius: f64 = 0.1, "radius" => ValueKind::Number(Bounds::not_negative(1e12, "m")), Usual, None;
     /// Linear drag coefficient b, N s/m.
     drag: f64 = 0.0,
@@ -263,7 +264,7 @@ declare! {
         Required("give its force in newtons"), Some("wind_force");
 }
 
-/// An expectation is of no use without its words, and has no rows.
+/// Expectations have a reader of their own, and no rows.
 impl Field for Vec<Expectation> {}
 
 /// Advice to a scene without particles.
@@ -281,7 +282,7 @@ pub enum Axis {
 words!(Axis: "z" => Z, "x" => X, "y" => Y);
 
 impl Axis {
-    /// 0, 1 or 2: the coordinate's place in a position.
+    /// The index of the coordinate in a position: 0, 1 or 2.
     pub fn index(self) -> usize {
         self as usize
     }
@@ -291,9 +292,9 @@ impl Axis {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DampingModel {
-    /// Only the component along the spring (the physical dashpot).
+    /// Only the component along the spring, as a physical dashpot.
     Axial,
-    /// The full relative velocity; resists rotation too, so angular momentum is lost.
+    /// The full relative velocity. It resists rotation too, so angular momentum is lost.
     Isotropic,
 }
 
@@ -306,7 +307,7 @@ impl Scene {
     }
 
     /// The scene's size L in metres: the diagonal of the box around all initial positions plus the
-    /// longest rest length. The length scale of energies and tolerances; 0 for a lone particle.
+    /// longest rest length. It is the length scale of energies and tolerances; 0 for a lone particle.
     pub fn size(&self) -> f64 {
         let corners = self.particles.iter().map(|p| Vector::from(p.position));
         let diagonal = if self.particles.is_empty() {
@@ -318,8 +319,8 @@ impl Scene {
         diagonal + rest_lengths.fold(0.0, f64::max)
     }
 
-    /// What is expected of an engine, each key once: what its own line says (or, for an integrator
-    /// without one, `rest`), then what `all` says of other keys if it is an `integrator`.
+    /// The expectations of an engine, each key once: those of its own line (or, for an integrator without
+    /// one, of `rest`), then for an `integrator` those of `all` on other keys.
     pub fn expected_of(&self, engine: &str, integrator: bool) -> Vec<&Expectation> {
         let own = |e: &Expectation| matches!(&e.scope, Scope::Engine(id) if id == engine);
         let named = self.expect.iter().any(own);

@@ -1,12 +1,12 @@
-//! From a refusal to its place in the text.
+//! Finds the place of a refusal in the text.
 //!
-//! What is refused while it is being read travels through serde, whose errors carry nothing but text: the
-//! sentence and its help stand between unit separators, which no YAML file may contain as they are.
-//! The parser adds path and position around them; [`fault`] takes all apart again.
+//! A refusal during reading travels through serde, whose errors are plain text: its message and help
+//! stand between unit separators, which no YAML file may contain unescaped. The parser adds path and
+//! position around them, and [`fault`] takes them apart again.
 //!
-//! What is refused later is a [`Problem`]. The document is walked again to the value's path, and the
-//! walk fails there on purpose, so that the parser names the position. One pass, and only when something is
-//! wrong; no second parser, no positions carried through the good case.
+//! A later refusal is a [`Problem`]. The document is walked again to the value's path, and the walk fails
+//! there on purpose, so that the parser names the position. This costs one pass, only when something is
+//! wrong. It needs no second parser, and reading a good file carries no positions.
 
 use super::error::{Fault, MARK, Refusal};
 use super::values::{Any, Key};
@@ -14,7 +14,7 @@ use super::words::shorten;
 use serde::de::{Deserialize, DeserializeSeed, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
-/// Rebuilds what the parser says as a located fault.
+/// Turns the parser's error into a located fault.
 pub(super) fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
     let said = error.to_string();
     let location = error.location();
@@ -26,7 +26,7 @@ pub(super) fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
 
     let parts: Vec<&str> = said.split(MARK).collect();
     if let [path, key, message, help, judged, _] = parts[..] {
-        // A bracket left open may be why the value is odd: what is not YAML goes first.
+        // An open bracket may be why the value is odd, so an error of syntax is reported first.
         if !judged.is_empty()
             && let Some(document) = serde_yaml::Deserializer::from_str(text).next()
             && let Err(not_yaml) = IgnoredAny::deserialize(document)
@@ -62,7 +62,7 @@ pub(super) fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
     place("", &format!("not valid YAML: {said}"), help)
 }
 
-/// serde's name of what it found, in a scene author's words.
+/// serde's name of what it found, in words for the scene's author.
 fn kind(found: &str) -> String {
     match found {
         "sequence" => "a list".into(),
@@ -78,12 +78,12 @@ fn kind(found: &str) -> String {
     }
 }
 
-/// A refusal that shows once the document is read, and the path of the value that is refused:
-/// `springs[7].stiffness`. An absent value is at its container.
+/// A refusal that is found once the document is read, with the path of the value, as
+/// `springs[7].stiffness`. For an absent value the place is its container.
 #[derive(Debug)]
 pub(super) struct Problem {
     path: String,
-    /// The key itself is at fault, not its value. The message names it.
+    /// Whether the key itself is at fault and not its value. The message then names the key.
     of_key: bool,
     refusal: Refusal,
 }
@@ -107,7 +107,7 @@ impl Problem {
         Err(Problem::new(path, Refusal::new(message, help)))
     }
 
-    /// Of a key of the mapping at the path.
+    /// A problem with a key of the mapping at the path.
     pub(super) fn of_key(path: &str, key: &str, refusal: Refusal) -> Problem {
         Problem {
             path: format!("{path}.{key}"),
@@ -116,7 +116,7 @@ impl Problem {
         }
     }
 
-    /// Looks the path up in the text it was read from.
+    /// Finds the path in the text it was read from.
     pub(super) fn locate(self, text: &str) -> Fault {
         let walk = Any(Walk(&self.path, self.of_key));
         let found = serde_yaml::Deserializer::from_str(text)
@@ -129,10 +129,10 @@ impl Problem {
     }
 }
 
-/// A scene file holds one document; this one is too much, if it is one at all.
+/// The fault of a second document, or of text after the first that does not parse.
 pub(super) fn second_document(document: serde_yaml::Deserializer, text: &str) -> Fault {
     match Any(Walk("", false)).deserialize(document) {
-        // Whatever is not the walk's own failure is text that does not parse.
+        // An error other than the walk's own means that the text does not parse.
         Err(e) if !e.to_string().contains(HERE) => fault(&e, text),
         here => Fault {
             offset: here
@@ -149,11 +149,11 @@ pub(super) fn second_document(document: serde_yaml::Deserializer, text: &str) ->
 
 const HERE: &str = "the place looked for";
 
-/// Goes down the path left; with none left, fails on whatever stands there.
+/// Descends along the rest of the path; at its end it fails on whatever stands there.
 struct Walk<'p>(&'p str, bool);
 
 impl<'p> Walk<'p> {
-    /// Below a key, if the path leads there.
+    /// The walk below a key, if the path leads there.
     fn below(&self, step: &str) -> Option<Walk<'p>> {
         let rest = self.0.strip_prefix(step)?;
         let ends = rest.is_empty() || rest.starts_with(['.', '[']);

@@ -1,9 +1,9 @@
 //! Reads the file by the table of the [model](super::model): known keys, each at most once, with values
 //! of their kind and within their bounds.
 //!
-//! The values are judged as they stream by and go straight into the [`Scene`], never through a free-form
-//! value, whose aliases and nesting a hostile file can multiply. What concerns several values waits for
-//! the end: [`complete`](super::complete) judges it.
+//! Values are checked as the parser delivers them and go straight into the [`Scene`], never through a
+//! free-form value, whose aliases and nesting a hostile file can multiply. Checks that involve several
+//! values wait for the end: [`complete`](super::complete) does them.
 
 use super::error::{Fault, Refusal};
 use super::expect::Engines;
@@ -20,10 +20,11 @@ use std::fmt;
 pub(super) struct Reading<'n> {
     pub(super) scene: Scene,
     pub(super) names: &'n Names,
-    /// The first id that is no whole number from 0, and where: the message says how many particles there are.
+    /// The first id that is no whole number from 0, with its path. The message needs the number of particles,
+    /// so it waits for the end.
     pub(super) no_id: Option<(String, Number)>,
-    /// The first key that is missing, or unknown under `expect`. What the parser says of the rest of the
-    /// file goes first.
+    /// The first key that is missing, or unknown under `expect`. Errors of the parser in the rest of the
+    /// file take precedence.
     pub(super) problem: Option<Problem>,
 }
 
@@ -51,7 +52,7 @@ pub(super) fn document(text: &str, reading: &mut Reading) -> Result<(), Fault> {
 /// Reads one mapping as a member of a part.
 struct Mapping<'r, 'n> {
     part: &'static Part,
-    /// Adds the member; none for the file itself.
+    /// The row that adds the member; None for the file itself.
     row: Option<&'static Row>,
     reading: &'r mut Reading<'n>,
 }
@@ -69,7 +70,7 @@ impl<'de> Visitor<'de> for Mapping<'_, '_> {
             (row.set)(&mut reading.scene, 0, 0, Value::Flag(true));
         }
         let at = (part.count)(&reading.scene) - 1;
-        // Bit i: the key of row i was there, and had a value.
+        // Bit i of `seen`: the key of row i occurred. Bit i of `given`: it had a value.
         let (mut seen, mut given) = (0_u32, 0_u32);
         while let Some(index) = map.next_key_seed(Key(|key: &str| row_of(part, key, &mut seen)))? {
             let row = &part.rows[index];
@@ -102,7 +103,7 @@ impl<'de> Visitor<'de> for Mapping<'_, '_> {
     }
 }
 
-/// The index of the row of a key that was not there before.
+/// The index of the row of a key, which must not be repeated.
 fn row_of(part: &Part, key: &str, seen: &mut u32) -> Result<usize, Refusal> {
     if part.later.contains(&key) {
         let help = "remove the key to run the rest of the scene";
@@ -132,7 +133,7 @@ impl<'n> Entry<'_, 'n> {
         }
     }
 
-    /// Takes a number, or one of a list.
+    /// Sets a number, or one of a list.
     fn number(&mut self, component: usize, number: Number) -> Result<(), Refusal> {
         let value = match self.row.kind {
             ValueKind::Number(quantity) | ValueKind::Numbers(_, quantity) => {
@@ -145,7 +146,7 @@ impl<'n> Entry<'_, 'n> {
         Ok(())
     }
 
-    /// The id; of what is none, the largest number, which is no id either.
+    /// The id. A number that is no id is recorded, and the largest integer stands for it, which is no id either.
     fn id(&mut self, component: usize, number: Number) -> usize {
         number.whole().unwrap_or_else(|| {
             let mut path = self.part.path(Some(self.at), self.row.key);

@@ -1,24 +1,23 @@
-//! What the table of parameters is made of: the [`Value`]s it gets and sets, and `declare!`, which
-//! declares a type of the [model](super::model) together with its rows, so that no field is without
-//! one.
+//! Building blocks of the table of parameters: the [`Value`]s it gets and sets, and `declare!`, which
+//! declares a type of the [model](super::model) together with its rows, so that every field has one.
 
 use serde::Serialize;
 
-/// What a key holds, or one component of it.
+/// The value of a key, or one component of it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value<'a> {
-    /// In the row's unit.
+    /// A number in the row's unit.
     Number(f64),
-    /// A particle, or a coordinate.
+    /// The id of a particle, or the index of a coordinate.
     Id(usize),
     Flag(bool),
-    /// Lent by the scene, or by the file that is read.
+    /// Text borrowed from the scene, or from the file that is read.
     Text(&'a str),
 }
 
-/// A field of the model as the values of its components. A part has none, and takes whatever is put
-/// as one more member.
+/// A field of the model, accessed by the values of its components. A part has none; any value put into it
+/// adds a member.
 pub(super) trait Field {
     fn value(&self, _component: usize) -> Option<Value<'_>> {
         None

@@ -1,10 +1,10 @@
-//! What is refused before any YAML is read: bytes that are no text, and nesting so deep that the
-//! parser's time grows with its square.
+//! Checks before any YAML is read: the bytes have to be text, and must not nest so deep that the parser's
+//! time, which grows with the square of the depth, becomes long.
 
 use super::error::Fault;
 use super::limits::NESTING;
 
-/// The text of a scene file, without BOM.
+/// The bytes of a scene file, without BOM, as text.
 pub(super) fn check(bytes: &[u8]) -> Result<&str, Fault> {
     let text = std::str::from_utf8(bytes).map_err(|e| {
         let message = "these bytes are not UTF-8 text";
@@ -15,8 +15,8 @@ pub(super) fn check(bytes: &[u8]) -> Result<&str, Fault> {
         let message = format!("the control character U+{code:04X} is not allowed in YAML");
         return Err(Fault::new(offset, message, "remove it"));
     }
-    // A quote in a block scalar can hide what follows it, so a second count does without quotes;
-    // it takes quoted prose for structure and is more patient.
+    // A quote in a block scalar can hide what follows it, so a second count ignores quotes. It takes
+    // quoted prose for structure, so its limit is higher.
     let bytes = text.as_bytes();
     match too_deep(bytes, NESTING, true).or_else(|| too_deep(bytes, 16 * NESTING, false)) {
         Some(offset) => {
@@ -28,7 +28,7 @@ pub(super) fn check(bytes: &[u8]) -> Result<&str, Fault> {
     }
 }
 
-/// YAML's non-printable characters; the parser refuses them too, but without a place.
+/// YAML's non-printable characters. The parser refuses them too, but without a place.
 fn forbidden(c: char) -> bool {
     match c {
         '\t' | '\n' | '\r' | '\u{85}' => false,
@@ -37,11 +37,11 @@ fn forbidden(c: char) -> bool {
     }
 }
 
-/// Where flow collections first nest deeper than `limit`. Comments, plain text and, if heeded,
-/// quoted text do not count; brackets in prose elsewhere may, but never as deep.
+/// The index at which flow collections first nest deeper than `limit`. Brackets in comments, in plain text
+/// and, if heeded, in quoted text do not count. Brackets in other prose may count, but never nest so deep.
 fn too_deep(text: &[u8], limit: usize, heed_quotes: bool) -> Option<usize> {
     let mut depth = 0;
-    // Inside a plain scalar quotes, and outside a collection brackets, are letters like any other.
+    // In a plain scalar quotes are ordinary letters, and so are brackets outside a collection.
     let mut plain = false;
     let mut at = 0;
     while let Some(&byte) = text.get(at) {
@@ -72,7 +72,7 @@ fn too_deep(text: &[u8], limit: usize, heed_quotes: bool) -> Option<usize> {
             b':' if spaced || depth > 0 => plain = false,
             b'-' | b'?' if spaced && !plain => {}
             b'&' | b'!' | b'*' if !plain => {
-                // An anchor, a tag or an alias: what follows it is still a beginning.
+                // An anchor, a tag or an alias: a value may still begin after it.
                 let ends = |b: &u8| b.is_ascii_whitespace() || b",[]{}".contains(b);
                 while text.get(at + 1).is_some_and(|b| !ends(b)) {
                     at += 1;
@@ -94,7 +94,7 @@ fn closing(text: &[u8], open: usize) -> usize {
         if byte == b'\\' && quote == b'"' {
             at += 1;
         } else if byte == quote {
-            // A doubled single quote reads as closing and opening again: the same in the end.
+            // A doubled single quote reads as closing and opening again, with the same result.
             return at;
         }
         at += 1;

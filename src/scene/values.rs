@@ -1,13 +1,12 @@
-//! The values a file is made of, read from the stream and judged while the parser still knows their
-//! place.
+//! The values of a file, checked while they are read, when the parser still knows their place.
 
 use super::error::{Refusal, refuse};
 use super::words::{about_key, shorten};
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, SeqAccess, Unexpected, Visitor};
 use std::fmt;
 
-/// A number as the file writes it: `20`, `20.`, `2e1`, `0x14`; never quoted. Ids must be whole,
-/// everything else takes either.
+/// A number as the file writes it: `20`, `20.`, `2e1`, `0x14`; never quoted. Ids must be whole, all
+/// other numbers may be either.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Number {
     Whole(i64),
@@ -41,14 +40,14 @@ impl fmt::Display for Number {
     }
 }
 
-/// What is no list and no mapping.
+/// A value that is neither a list nor a mapping.
 pub(super) enum Scalar<'a> {
     Number(Number),
     Flag(bool),
     Text(&'a str),
 }
 
-/// Reads whatever value the visitor takes.
+/// Reads a value of any type that the visitor accepts.
 pub(super) struct Any<V>(pub(super) V);
 
 impl<'de, V: Visitor<'de>> DeserializeSeed<'de> for Any<V> {
@@ -59,7 +58,7 @@ impl<'de, V: Visitor<'de>> DeserializeSeed<'de> for Any<V> {
     }
 }
 
-/// Reads a key. A function that fails here gives a misspelt or repeated key its exact place.
+/// Reads a key. If the function refuses it, the error has the key's exact place.
 pub(super) struct Key<F>(pub(super) F);
 
 impl<'de, T, F: FnMut(&str) -> Result<T, Refusal>> DeserializeSeed<'de> for Key<F> {
@@ -74,12 +73,13 @@ impl<'de, T, F: FnMut(&str) -> Result<T, Refusal>> DeserializeSeed<'de> for Key<
     }
 }
 
-/// A key that is there for the second time.
+/// The refusal of a repeated key.
 pub(super) fn twice(key: &str) -> Refusal {
     Refusal::new("this key is given twice", "keep one of them").of(key)
 }
 
-/// The index of the key among those of a mapping, where it was not `seen` (bit i: the key of index i).
+/// The index of the key among those of a mapping. Bit i of `seen` says that key i occurred before; a
+/// repeated key is refused.
 pub(super) fn index_of<'k>(
     key: &str,
     keys: impl Iterator<Item = &'k str> + Clone,
@@ -97,13 +97,13 @@ pub(super) fn index_of<'k>(
     Ok(index)
 }
 
-/// A key that is none of those known.
+/// The refusal of an unknown key.
 pub(super) fn unknown(key: &str, known: &[&str]) -> Refusal {
     let message = format!("unknown key `{}`", shorten(key));
     Refusal::new(message, about_key(key, known))
 }
 
-/// YAML 1.1 would merge the mapping under this key into the one around it.
+/// Refuses the merge key, by which YAML 1.1 merges a mapping into the one around it.
 pub(super) fn no_merge(key: &str) -> Result<(), Refusal> {
     let help = "write the keys out, or alias a whole value";
     match key {
@@ -112,8 +112,8 @@ pub(super) fn no_merge(key: &str) -> Result<(), Refusal> {
     }
 }
 
-/// Reads a scalar. The function makes of it what is wanted; None if it is of another kind than the
-/// words say.
+/// Reads a scalar. The function converts it, or gives None where the scalar is not of the kind that the
+/// words name.
 struct One<F>(&'static str, F);
 
 pub(super) fn number<'de, T>(
@@ -130,7 +130,7 @@ pub(super) fn number<'de, T>(
     One("a number", number)
 }
 
-/// `true` or `false`.
+/// Reads `true` or `false`.
 pub(super) fn flag<'de>() -> impl Visitor<'de, Value = bool> {
     One("true or false", |scalar: Scalar| match scalar {
         Scalar::Flag(flag) => Some(Ok(flag)),
@@ -145,7 +145,7 @@ pub(super) fn flag<'de>() -> impl Visitor<'de, Value = bool> {
     })
 }
 
-/// Quoted or not.
+/// Reads text, quoted or not.
 pub(super) fn text<'de, T>(
     mut judge: impl FnMut(&str) -> Result<T, Refusal>,
 ) -> impl Visitor<'de, Value = T> {
@@ -202,7 +202,7 @@ impl<T, F: FnMut(Scalar) -> Option<Result<T, Refusal>>> Visitor<'_> for One<F> {
     }
 }
 
-/// Why the text is no number, though it may look like one.
+/// Advice on a text that stands where a number is expected.
 fn remedy(text: &str) -> String {
     let digits = text.trim_start_matches(['-', '+']);
     let all_digits = !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
@@ -223,7 +223,7 @@ fn remedy(text: &str) -> String {
     }
 }
 
-/// Reads a list of so many numbers. The function also gets the place in the list.
+/// Reads a list of this many numbers. The function also gets the index in the list.
 pub(super) struct Numbers<F>(pub(super) usize, pub(super) F);
 
 impl<'de, F: FnMut(usize, Number) -> Result<(), Refusal>> Visitor<'de> for Numbers<F> {

@@ -1,4 +1,4 @@
-//! Text from a file, made fit to show, and "did you mean": the nearest known word.
+//! Text from a file, made safe to print, and the nearest known word for "did you mean".
 
 use strsim::damerau_levenshtein;
 
@@ -21,7 +21,7 @@ pub(crate) fn shorten(text: &str) -> String {
     short
 }
 
-/// The known word a few letters away, if any.
+/// The known word that is only a few letters away, if there is one.
 pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
     // The distance is quadratic in length, and no known word is this long.
     if found.len() > 64 {
@@ -42,7 +42,7 @@ pub(super) fn did_you_mean(found: &str, known: &[&str]) -> Option<String> {
     nearest(found, known).map(|near| format!("did you mean `{near}`?"))
 }
 
-/// Keys other formats use, or that belong to another mapping of this one.
+/// Keys that other formats use, or that belong to another mapping of this format.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("k", "did you mean `stiffness`?"),
     ("c", "did you mean `damping`?"),
@@ -63,7 +63,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ),
 ];
 
-/// What to do about an unknown key, given those the mapping knows.
+/// Advice on an unknown key, given the keys the mapping knows.
 pub(super) fn about_key(found: &str, known: &[&str]) -> String {
     did_you_mean(found, known).unwrap_or_else(|| {
         // A hint is worth giving only where it does not name the mapping the key was found in.
