@@ -15,7 +15,7 @@ pub(super) const LAW: Law = Law {
         let Some(order) = subject.claims.order_damped else {
             return Ok(Finding::skip("the order with damping"));
         };
-        // Dampers, drag and wind.
+        // The scene has dampers, drag and wind.
         let mut scene = dragged_triangle(0.8);
         scene.wind = Some(Wind {
             direction: [0.6, 0.8, 0.0],
@@ -41,7 +41,7 @@ pub(super) const LAW: Law = Law {
                 .min(state.work.injected.abs());
             Ok((off, rounding(steps, initial.abs())))
         })?;
-        // Dampers take and the wind gives more than 2 J each.
+        // The dampers dissipate and the wind injects more than 2 J each.
         if least < 1.0 {
             let message = format!("only {least:.1e} J of work by dampers or wind in `state.work`");
             return Ok(Finding::of(false, least, 1.0, message));

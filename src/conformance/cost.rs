@@ -1,4 +1,4 @@
-//! Cost: force evaluations a step, counted from outside.
+//! Cost: the force evaluations a step takes, counted by the system.
 
 use super::subject::advance;
 use super::systems::{built, swinging_triangle};
@@ -32,7 +32,7 @@ pub(super) const LAW: Law = Law {
         let steps = u64::from(STEPS);
         let (expected, what) = match claimed {
             PerStep::Exactly(n) => (steps * u64::from(n), format!("{n} a step")),
-            // A step without an iteration would be a step without motion.
+            // Every step takes at least one iteration: without one nothing would move.
             PerStep::PerIteration { plus } => (
                 solves.max(steps) + steps * u64::from(plus),
                 format!("one an iteration and {plus} a step"),

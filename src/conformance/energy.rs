@@ -1,4 +1,4 @@
-//! Energy: what becomes of the undamped oscillator's, as the claimed law says.
+//! Energy: the undamped oscillator's energy follows the claimed law.
 
 use super::stability::W;
 use super::subject::{Broken, Subject, advance};
@@ -18,7 +18,7 @@ pub(super) const LAW: Law = Law {
         };
         let mut findings = Vec::new();
         for z in STEPS {
-            // Outside its limit nothing is bounded; a factor holds anywhere.
+            // Beyond the stability limit the energy is not bounded; a factor holds at any step.
             let inside = match oscillator.stable {
                 Stable::Below(limit) => z < limit,
                 _ => true,
@@ -35,8 +35,8 @@ pub(super) const LAW: Law = Law {
     },
 };
 
-/// z = h w: inside every explicit limit but the smallest ones, and no simple fraction of a turn
-/// but for z = 1, where symplectic Euler turns by exactly a sixth.
+/// z = h w. These lie below all explicit limits but the smallest, and give no simple fraction of a turn
+/// except at z = 1, where symplectic Euler turns by exactly a sixth.
 const STEPS: [f64; 5] = [0.01, 0.1, 0.5, 1.0, 1.5];
 
 /// Steps over which a bound has to hold.
@@ -44,12 +44,13 @@ const LONG: usize = 20_000;
 
 const SYSTEM: Oscillator = Oscillator { w: W, zeta: 0.0 };
 
-/// From rest.
+/// The start, at rest.
 fn start() -> State {
     State::new(vec![0.5], vec![0.0])
 }
 
-/// The maps are normal matrices: the factor holds at every step, whatever the phase.
+/// Compares each step's factor with the claimed one. The one-step maps are normal matrices, so the factor
+/// does not depend on the phase.
 fn by_factor(subject: &Subject, z: f64, factor: f64) -> Result<Finding, Broken> {
     let (mut integrator, mut state) = (subject.fresh(), start());
     let (mut off, mut seen) = (0.0_f64, factor);
@@ -59,7 +60,7 @@ fn by_factor(subject: &Subject, z: f64, factor: f64) -> Result<Finding, Broken> 
         let found = SYSTEM.energy(&state) / before;
         let defect = (found - factor).abs() / factor.max(1.0);
         if defect.is_nan() {
-            // No energy is left to multiply.
+            // The energy is 0, so it has no factor.
             let message = format!("at z = {z} all energy is gone");
             return Ok(Finding::of(false, None, SOLVED_TO, message));
         }
@@ -72,7 +73,7 @@ fn by_factor(subject: &Subject, z: f64, factor: f64) -> Result<Finding, Broken> 
     Ok(Finding::at_most(off, SOLVED_TO, &what))
 }
 
-/// Least and largest energy over many steps onwards, in units of the first.
+/// The least and largest energy over the next many steps, in units of the initial energy.
 fn range(integrator: &mut dyn Integrator, z: f64, state: &mut State) -> Result<(f64, f64), Broken> {
     let initial = SYSTEM.energy(&start());
     let now = SYSTEM.energy(state) / initial;
@@ -91,20 +92,19 @@ fn within(subject: &Subject, z: f64, (low, high): (f64, f64)) -> Result<Finding,
         return Ok(Finding::of(false, None, SOLVED_TO, message));
     }
     let (least, most) = range(subject.fresh().as_mut(), z, &mut start())?;
-    // Rounding wanders along an orbit, hardly off it, so that this holds over all the steps.
+    // Rounding moves the state along its orbit, hardly off it, so this bound holds over all steps.
     let beyond = (low - least).max(most - high).max(0.0);
     let what =
         format!("at z = {z} energies in [{least:.9}, {most:.9}], claimed [{low:.9}, {high:.9}]");
     if beyond > SOLVED_TO {
         return Ok(Finding::at_most(beyond, SOLVED_TO, &what));
     }
-    // The orbit fills the band up to each edge: an edge 1 % too far out would be no law. But at z = 1
-    // symplectic Euler meets three energies only and leaves a quarter of its band unseen, a third of
-    // what it fills.
+    // The orbit fills the band up to each edge, so a band 1 % too wide is wrong. But at z = 1 symplectic
+    // Euler has only three energies, and leaves a quarter of its band empty, a third of what it fills.
     let (unseen, bound) = if z == 1.0 {
         ((high - low) / (most - least), 1.4)
     } else {
-        // An edge at the start itself is met by being there.
+        // An edge at the initial energy is reached at the start.
         let edge = |edge: f64, met: f64| {
             if edge == 0.0 { 1.0 } else { edge / met }
         };
@@ -120,14 +120,14 @@ fn within(subject: &Subject, z: f64, (low, high): (f64, f64)) -> Result<Finding,
     Ok(Finding::of(true, beyond, SOLVED_TO, what))
 }
 
-/// The second half of a long run spans the same energies as the first.
+/// Checks that the second half of a long run spans the same energies as the first.
 fn bounded(subject: &Subject, z: f64) -> Result<Finding, Broken> {
     let (mut integrator, mut state) = (subject.fresh(), start());
     let (low, high) = range(integrator.as_mut(), z, &mut state)?;
     let (later_low, later_high) = range(integrator.as_mut(), z, &mut state)?;
-    // 20,000 phases come within 1e-4 of the extreme ones, and (1e-4)² / 2 of the span. Rounding is one
-    // last bit at random in each of 40,000 steps; a solver may err the same way every time. Drift would
-    // shift the second half by a span of its own.
+    // 20,000 phases come within 1e-4 of the extreme ones, so energies come within (1e-4)² / 2 of the span.
+    // Rounding is a random last bit in each of 40,000 steps; a solver may err the same way every time. Drift
+    // would shift the second half by a whole span.
     let solver = match subject.claims.evaluations {
         Some(PerStep::Exactly(_)) => 0.0,
         _ => LONG as f64 * SOLVED_TO,

@@ -1,10 +1,10 @@
-//! Exactness: motions followed without error, at any step.
+//! Exactness: free fall is followed without error at any step.
 
 use super::subject::distance;
 use super::systems::ConstantForce;
 use super::{Finding, Law, SOLVED_TO};
 
-/// s; nothing depends on it.
+/// s; the result does not depend on it.
 const STEP: f64 = 0.1;
 const STEPS: usize = 10;
 

@@ -1,28 +1,28 @@
-//! What came of a law.
+//! The result of a law.
 
 use crate::measure::{Check, CheckStatus};
 use std::cmp::Ordering;
 use std::fmt::Display;
 
-/// What one law found of one integrator.
+/// The result of one law on one integrator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// The law's id.
     pub law: &'static str,
-    /// `Skip` where nothing was claimed, `Inconclusive` where the law cannot tell.
+    /// `Skip` where nothing was claimed, `Inconclusive` where the law cannot decide.
     pub status: CheckStatus,
-    /// What was measured, finite; its meaning is the law's.
+    /// The measured number, finite; the law defines its meaning.
     pub measured: Option<f64>,
-    /// What it was held against.
+    /// The bound it was compared with.
     pub bound: Option<f64>,
     /// Where the bound comes from.
     pub derivation: &'static str,
-    /// One plain sentence.
+    /// The result in one plain sentence.
     pub message: String,
 }
 
 impl Finding {
-    /// The same as a report's check on `subject`, the integrator's name.
+    /// Converts it to a report's check; `subject` is the integrator's name.
     pub fn check(&self, subject: &str) -> Check {
         Check {
             id: self.law.to_owned(),
@@ -35,7 +35,7 @@ impl Finding {
         }
     }
 
-    /// Without what stands on the law's row, which [`Law::check`](super::Law::check) adds.
+    /// A finding without the fields of the law's row, which [`Law::check`](super::Law::check) adds.
     pub(super) fn new(
         status: CheckStatus,
         measured: impl Into<Option<f64>>,
@@ -52,7 +52,7 @@ impl Finding {
         }
     }
 
-    /// Passes or fails.
+    /// A finding that passes if the law `holds`, else fails.
     pub(super) fn of(
         holds: bool,
         measured: impl Into<Option<f64>>,
@@ -67,8 +67,8 @@ impl Finding {
         Self::new(status, measured, bound, message)
     }
 
-    /// The one to be told: a failure before what cannot be told before what passes, and among
-    /// equals the one whose measurement is farthest `off`.
+    /// The worst finding: failed before inconclusive before passed, and among equals the one whose
+    /// measurement is farthest `off`.
     pub(super) fn worst(findings: Vec<Self>, off: impl Fn(f64) -> f64) -> Option<Self> {
         let severity = |finding: &Self| match finding.status {
             CheckStatus::Fail => 3,
@@ -80,20 +80,20 @@ impl Finding {
         (findings.into_iter()).max_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal))
     }
 
-    /// Nothing was claimed.
+    /// A finding that is skipped, since nothing was claimed.
     pub(super) fn skip(what: &str) -> Self {
         let message = format!("nothing is claimed of {what}");
         Self::new(CheckStatus::Skip, None, None, message)
     }
 
-    /// Passes below the bound or at it. NaN fails.
+    /// A finding that passes if the measurement is at most the bound. NaN fails.
     pub(super) fn at_most(measured: f64, bound: f64, what: &str) -> Self {
         let message = format!("{what}: off by {measured:.1e}");
         Self::of(measured <= bound, measured, bound, message)
     }
 
-    /// A defect that is at most `bound` for whoever has the property, and that is far larger for
-    /// whoever has not: a hundredfold. In between, a denial can be neither believed nor refuted.
+    /// A finding on a claimed or denied property. With the property the defect is at most `bound`; without
+    /// it, more than a hundred times larger. In between, a denial can be neither confirmed nor refuted.
     pub(super) fn of_property(claimed: bool, defect: f64, bound: f64, property: &str) -> Self {
         const FAR: f64 = 100.0;
         if claimed {

@@ -1,4 +1,4 @@
-//! Holds any [`Integrator`] to the facts it claims.
+//! Tests any [`Integrator`] against the facts it claims.
 //!
 //! ```
 //! use springcheck::conformance::{Claims, check};
@@ -10,20 +10,20 @@
 //! let findings = check(&build, &Claims::from(verlet));
 //! assert!(findings.iter().all(|finding| finding.status == CheckStatus::Pass));
 //!
-//! // Claimed to be of third order, it is caught.
+//! // A false claim of third order is caught.
 //! let boast = Claims { order: 3, ..Claims::from(verlet) };
 //! let caught = check(&build, &boast);
 //! assert!(caught.iter().any(|f| f.law == "order" && f.status == CheckStatus::Fail));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A law is a row of [`LAWS`], a file a row. Each builds its own small systems ([`systems`]) and
-//! compares what the integrator does with what was claimed, or with what [`Integrator`] asks of
-//! everybody. A claim of `false` is verified like any other: "not symplectic" of a method that is
-//! fails too, since whoever reads the claim would be told something untrue.
+//! Each law is a row of [`LAWS`] with a file of its own. It builds its own small systems ([`systems`]) and
+//! compares the integrator's steps with the claims, or with the contract of [`Integrator`]. A claim of
+//! `false` is verified like any other: a symplectic method that claims not to be symplectic fails, since
+//! the claim is untrue.
 //!
-//! The tolerances are for integrators of any make: an implicit step may be solved to [`SOLVED_TO`]
-//! only. `docs/conformance.md` has them law by law, with their reasons.
+//! The tolerances suit any integrator: an implicit step need be solved to [`SOLVED_TO`] only.
+//! `docs/conformance.md` lists them law by law, with their reasons.
 
 mod balance;
 mod cost;
@@ -46,34 +46,34 @@ pub use subject::{Broken, Build};
 use crate::integrators::{Integrator, Method, OscillatorFacts, PerStep, is_exact};
 use subject::Subject;
 
-/// Relative residual to which the kit expects an implicit step to be solved, and so the size of what
-/// its tolerances leave for solving. [`Settings`](crate::integrators::Settings) has the same default.
+/// The relative residual to which an implicit step is expected to be solved. The tolerances of the laws
+/// allow for it. [`Settings`](crate::integrators::Settings) has the same default.
 pub const SOLVED_TO: f64 = 1e-12;
 
-/// The facts an integrator claims. What is `None` is not claimed, and the laws on it are skipped;
-/// `false` is a claim.
+/// The facts an integrator claims. `None` claims nothing, and the laws on it are skipped; `false` is a
+/// claim.
 #[derive(Debug, Clone, Copy)]
 pub struct Claims {
     /// Order of the global error on smooth problems without damping, also where forces depend on
     /// time.
     pub order: u32,
-    /// Order with dampers or drag, of the motion and of the balance of energy.
+    /// Order with dampers or drag, of the motion and of the energy balance.
     pub order_damped: Option<u32>,
-    /// Keeps the symplectic form on undamped problems, and with it angular momentum.
+    /// Whether it preserves the symplectic form on undamped problems, and with it angular momentum.
     pub symplectic: bool,
-    /// Stepping h, flipping velocities, stepping h again returns to the start.
+    /// Whether stepping h, flipping velocities and stepping h again returns to the start.
     pub reversible: bool,
     /// Force evaluations a step costs on an undamped system, once running.
     pub evaluations: Option<PerStep>,
-    /// On x'' = -w² x, with z = h w: how far it is stable, and what becomes of the energy.
+    /// On x'' = -w² x, with z = h w: the stability limit, and the law of the energy.
     pub oscillator: Option<OscillatorFacts>,
-    /// Follows free fall without any error but rounding.
+    /// Whether it follows free fall without any error but rounding.
     pub exact: bool,
 }
 
 impl Claims {
-    /// Of this order, with the exactness that comes with it, neither symplectic nor reversible, and
-    /// nothing said of damping, cost and the oscillator: the start of `Claims { .., ..of_order(p) }`.
+    /// Claims of this order and the exactness that follows from it, of no symplecticity or reversibility,
+    /// and none on damping, cost and the oscillator: the base of `Claims { .., ..of_order(p) }`.
     pub const fn of_order(order: u32) -> Self {
         Self {
             order,
@@ -88,7 +88,7 @@ impl Claims {
 }
 
 impl From<&Method> for Claims {
-    /// Everything a row states.
+    /// All facts of the method.
     fn from(method: &Method) -> Self {
         Self {
             order: method.order,
@@ -102,10 +102,10 @@ impl From<&Method> for Claims {
     }
 }
 
-/// One thing an integrator is held to.
+/// A property that integrators are tested for.
 pub struct Law {
     pub id: &'static str,
-    /// What it asks.
+    /// What the law requires.
     pub summary: &'static str,
     /// Where its bound comes from.
     pub derivation: &'static str,
@@ -119,10 +119,10 @@ impl std::fmt::Debug for Law {
 }
 
 impl Law {
-    /// Holds what `build` makes to the part of the claims this law is about.
+    /// Tests the integrators that `build` makes against the claims this law is about.
     ///
-    /// An integrator that returns an error, leaves the finite numbers or breaks the contract of
-    /// [`Integrator::step`] on the way fails, and the message says how.
+    /// An integrator that returns an error, produces numbers that are not finite or breaks the contract of
+    /// [`Integrator::step`] fails, and the message says how.
     pub fn check(&self, build: Build, claims: &Claims) -> Finding {
         let found = (self.judge)(&Subject { build, claims });
         let found = found.unwrap_or_else(|broken| Finding::of(false, None, None, broken));
@@ -158,10 +158,10 @@ pub fn find(id: &str) -> Option<&'static Law> {
     LAWS.iter().find(|law| law.id == id)
 }
 
-/// Holds an integrator to its claims: one finding a law, in the order of [`LAWS`].
+/// Tests an integrator against its claims: one finding for each law, in the order of [`LAWS`].
 ///
-/// `build` makes a fresh integrator each time; an integrator serves one system, and every law has
-/// several. It takes about a second and gives the same bits every time if the integrator does.
+/// `build` makes a fresh integrator each time, since an integrator serves one system and a law has
+/// several. This takes about a second, and gives the same bits every time if the integrator does.
 pub fn check(build: &dyn Fn() -> Box<dyn Integrator>, claims: &Claims) -> Vec<Finding> {
     LAWS.iter().map(|law| law.check(build, claims)).collect()
 }

@@ -1,4 +1,4 @@
-//! Momentum: kept by every one-step method of sums, angular momentum by symplectic ones.
+//! Momentum: every method conserves linear momentum, and symplectic ones conserve angular momentum.
 
 use super::subject::{Broken, Subject};
 use super::systems::{built, free_triangle};
@@ -19,7 +19,7 @@ pub(super) const LAW: Law = Law {
     derivation: "200 steps solved to 1e-12 on momenta of order 1; explicit ones leave 6e-15 of \
                  rounding",
     judge: |subject| {
-        // A method that claims nothing of damping is met without.
+        // A method that claims nothing of damping is tested without it.
         let damping = subject.claims.order_damped.map_or(0.0, |_| 0.8);
         let (linear, angular) = lost(subject, damping, DampingModel::Axial)?;
         let mut worst = Finding::at_most(linear, BOUND, "momentum");
@@ -41,11 +41,11 @@ pub(super) const LAW: Law = Law {
     },
 };
 
-/// kg m²/s that isotropic dampers take within the run: every method of the registry loses 0.189 or
-/// more.
+/// The least loss of angular momentum to isotropic dampers in the run, kg m²/s. Every method of the
+/// registry loses 0.189 or more.
 const BRAKED: f64 = 0.07;
 
-/// What is lost of momentum and of angular momentum.
+/// The change of momentum and of angular momentum over the run.
 fn lost(subject: &Subject, damping: f64, model: DampingModel) -> Result<(f64, f64), Broken> {
     let scene = free_triangle(damping, model);
     let (system, start) = built(&scene);

@@ -1,4 +1,4 @@
-//! Order: halve the step, and the error falls by 2 to the order.
+//! Order: halving the step divides the error by 2 to the power of the order.
 
 use super::subject::{Broken, Subject, advance, distance, largest};
 use super::systems::{Driven, built, dragged_triangle, swinging_triangle};
@@ -56,7 +56,7 @@ pub(super) const DRIVEN: Law = Law {
     judge: |subject| {
         let truth: Vec<State> = instants().map(Driven::exact).collect();
         let scale = truth.iter().fold(0.0, |most: f64, s| most.max(largest(s)));
-        // Sines, cosines and a dozen operations.
+        // The closed form rounds sines, cosines and a dozen operations.
         let bar = 16.0 * f64::EPSILON * scale;
         let observed = refine(subject, &Driven, &Driven::start(), &truth, bar)?;
         Ok(judge(&observed, subject.claims.order))
@@ -70,35 +70,36 @@ fn on_network(subject: &Subject, scene: &Scene, stated: u32) -> Result<Finding, 
     Ok(judge(&observed, stated))
 }
 
-/// About a period of the slowest mode, s; short enough that no error saturates.
+/// The length of a run, s: about a period of the slowest mode, and short enough that no error saturates.
 pub(super) const HORIZON: f64 = 1.0;
-/// Where errors are looked at: at a single moment two of opposite sign might cancel.
+/// The number of instants at which errors are measured: at a single one, errors of opposite sign might
+/// cancel.
 pub(super) const INSTANTS: usize = 10;
 
 fn instants() -> impl Iterator<Item = f64> {
     (1..=INSTANTS).map(|at| HORIZON * at as f64 / INSTANTS as f64)
 }
 
-/// Steps of order 12 from one instant to the next: twice as many change the states by rounding only.
+/// Steps of order 12 between instants. Twice as many change the states by rounding only.
 const STEPS: usize = 8;
 
-/// States at [`instants`] by a method of high order that shares nothing with those under test, and the
-/// error bar of positions (m) and velocities (m/s).
+/// The states at [`instants`], by a method of high order that shares nothing with those under test, and
+/// their error bar, m and m/s.
 fn reference(system: &dyn System, start: &State) -> (Vec<State>, f64) {
     let [coarse, states] = [STEPS, 2 * STEPS].map(|steps| run(system, start, steps));
-    // Never better than the doubles it is told in.
+    // The bar is never below the rounding of the states themselves.
     let size = states.iter().map(largest).fold(0.0, f64::max);
     let bar = apart(&coarse, &states).max(f64::EPSILON * size);
     (states, bar)
 }
 
-/// The largest distance of states at the same instants.
+/// The largest distance between states at the same instants.
 fn apart(a: &[State], b: &[State]) -> f64 {
     let distances = a.iter().zip(b).map(|(a, b)| distance(a, b));
     distances.fold(0.0, f64::max)
 }
 
-/// So many steps of order 12 between instants.
+/// A run with this many steps of order 12 between instants.
 fn run(system: &dyn System, start: &State, steps: usize) -> Vec<State> {
     let mut stepper = Gragg::default();
     let mut precise = Precise::from(start);
@@ -116,7 +117,7 @@ fn run(system: &dyn System, start: &State, steps: usize) -> Vec<State> {
     states
 }
 
-/// The order observed of the largest error over the horizon.
+/// The observed order of the largest error over the horizon.
 fn refine(
     subject: &Subject,
     system: &dyn System,
@@ -139,14 +140,14 @@ fn refine(
     })
 }
 
-/// What rounding may have added up to after so many steps on values of this size: half a last bit in
-/// each of a few sums a step, at random.
+/// The accumulated rounding after this many steps on values of size `scale`: a random half of a last bit
+/// in each of a few sums a step.
 pub(super) fn rounding(steps: usize, scale: f64) -> f64 {
     4.0 * f64::EPSILON * scale * (steps as f64).sqrt()
 }
 
-/// Reads the order off errors and floors at ever more steps over the horizon, until there are
-/// enough and an error is at its floor, or the steps are as small as a first order needs.
+/// The order observed from errors and their floors at ever smaller steps. It ends once there are enough
+/// points and an error has reached its floor, or at the smallest step that order 1 needs.
 pub(super) fn refined(
     subject: &Subject,
     stated: u32,
@@ -164,7 +165,7 @@ pub(super) fn refined(
                     break;
                 }
             }
-            // Too coarse a step may be one too many; a smaller one is another matter.
+            // A coarse step may fail where a smaller one does not.
             Err(error) => broken = Some(error),
         }
     }
@@ -174,18 +175,18 @@ pub(super) fn refined(
     }
 }
 
-/// Above this order a few halvings lead from too coarse to rounding, and steps lie closer.
+/// Above this order a few halvings lead from too coarse to rounding, so the steps lie closer together.
 const HALVED: u32 = 4;
 
-/// How much more rounding shows in the slopes of steps 1.3 apart than in those of halved ones: an error
-/// of e in a quotient is one of e / ln 1.3 instead of e / ln 2 in a slope, and five steps span a range
-/// 5.6 times smaller, over which slopes have to agree so much better.
+/// The factor by which rounding affects the slopes of steps 1.3 apart more than those of halved steps. An
+/// error e in a quotient gives e / ln 1.3 instead of e / ln 2 in a slope, and five steps span a range 5.6
+/// times smaller, over which slopes have to agree that much better.
 fn sensitivity(order: u32) -> f64 {
     if order > HALVED { 15.0 } else { 1.0 }
 }
 
-/// Numbers of steps, multiples of [`INSTANTS`]: doubled from 50 to 12,800, or from 20 on by factors
-/// of about 1.3.
+/// The numbers of steps over the horizon, multiples of [`INSTANTS`]: doubled from 50 to 12,800, or from 20
+/// on by factors of about 1.3.
 fn refinements(order: u32) -> Vec<usize> {
     if order <= HALVED {
         return (0..9).map(|doubled| 50 << doubled).collect();
@@ -212,7 +213,7 @@ fn judge(observed: &Observed, stated: u32) -> Finding {
     Finding::of(off.abs() <= TOLERANCE, order, bound, message)
 }
 
-/// As [`judge`], where a higher order is welcome: nothing was claimed of it.
+/// As [`judge`], but a higher order passes too, since nothing was claimed of it.
 pub(super) fn judge_at_least(observed: &Observed, stated: u32) -> Finding {
     let mut finding = judge(observed, stated);
     if observed.order > Some(f64::from(stated)) {

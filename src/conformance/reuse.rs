@@ -1,4 +1,4 @@
-//! Reuse: what an integrator keeps from one step is used in the next only where it fits.
+//! Reuse: an integrator uses data from an earlier step only where they fit the present one.
 
 use super::subject::{advance, distance};
 use super::systems::Driven;
@@ -7,7 +7,8 @@ use super::{Finding, Law, SOLVED_TO};
 /// s.
 const STEP: f64 = 0.05;
 
-/// Two solutions of the same stage equations from two guesses, each to 1e-12, of order 1.
+/// Two solutions of the same stage equations from two guesses, each solved to 1e-12, with values of order
+/// 1.
 const BOUND: f64 = 2.0 * SOLVED_TO;
 
 pub(super) const LAW: Law = Law {

@@ -1,4 +1,4 @@
-//! Reversal: forward, flip the velocities, forward, flip, and back at the start.
+//! Reversal: after a run, a flip of the velocities, another run and another flip, the state is the start.
 
 use super::subject::distance;
 use super::symplecticity::LARGE_STEP;
@@ -6,7 +6,7 @@ use super::systems::{built, swinging_triangle};
 use super::{Finding, Law, SOLVED_TO};
 use crate::scene::DampingModel;
 
-/// Steps each way.
+/// Steps in each direction.
 const STEPS: usize = 10;
 
 /// Twenty steps, each solved to 1e-12, on values of order 1 that the way back stretches by up to ten.

@@ -1,5 +1,5 @@
-//! Stability: up to which z = h w the oscillator's amplitude stays bounded, along a spring and across
-//! one: motion a method's Jacobian may not know of.
+//! Stability: the z = h w up to which the oscillator's amplitude stays bounded, for motion along a spring
+//! and for motion across it, whose stiffness a method's Jacobian may leave out.
 
 use super::subject::{Broken, Build, advance};
 use super::systems::{Across, Oscillator};
@@ -32,7 +32,7 @@ pub(super) const ALONG: Law = Law {
                 Some(limit),
                 format!("stable below {limit:.6}"),
             ),
-            // However slowly it grows, at a tenth of a radian a step it shows.
+            // Growth at any rate is visible at a tenth of a radian a step.
             Stable::Never => (
                 found.is_some_and(|z| z < SMALL),
                 Some(SMALL),
@@ -77,16 +77,16 @@ pub(super) const ACROSS: Law = Law {
     },
 };
 
-/// Where stability without limit is looked for.
+/// The z up to which a method without a limit is tested.
 const FAR: f64 = 10.0;
 const SMALL: f64 = 0.1;
-/// Limits have six decimals.
+/// The tolerance of limits, which are published to six decimals.
 const PUBLISHED: f64 = 1e-6;
 
 /// rad/s.
 pub(super) const W: f64 = 7.0;
 
-/// Cells of the scan, whatever its range.
+/// The number of cells of the scan, for any range.
 const CELLS: u32 = 4_000;
 
 /// The largest z = h w up to which no oscillator of damping ratio `zeta` is unstable, to 1e-9: a
@@ -110,7 +110,7 @@ pub fn measured_limit(build: Build, zeta: f64, upto: f64) -> Result<Option<f64>,
     while high - low > 1e-9 {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
-            // Neighbours already: a limit beyond a million has no ninth decimal.
+            // The ends are neighbouring doubles: a limit beyond a million has no ninth decimal.
             break;
         }
         if unstable(build, &system, middle)? {
@@ -122,8 +122,8 @@ pub fn measured_limit(build: Build, zeta: f64, upto: f64) -> Result<Option<f64>,
     Ok(Some(low))
 }
 
-/// Whether a step of z / W is: a spectral radius above 1 by more than rounding. Beyond the limit
-/// itself it grows like the square root of how far z is beyond it, or linearly.
+/// Whether a step of z / W is unstable: its spectral radius exceeds 1 by more than rounding. Beyond the
+/// limit the excess grows like the square root of the distance to it, or linearly.
 fn unstable(build: Build, system: &dyn System, z: f64) -> Result<bool, Broken> {
     Ok(spectral_radius(one_step_matrix(build, system, z)?) > 1.0 + 1e-12)
 }

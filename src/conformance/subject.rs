@@ -1,13 +1,13 @@
-//! The integrator under test, and how laws drive it.
+//! The integrator under test, and the function by which laws step it.
 
 use super::Claims;
 use crate::integrators::{Integrator, StepError};
 use crate::physics::{State, System};
 
-/// How to make the integrator: a fresh one each time.
+/// Makes a fresh integrator each time.
 pub type Build<'a> = &'a dyn Fn() -> Box<dyn Integrator>;
 
-/// What a law looks at.
+/// The integrator that a law tests, with its claims.
 pub(super) struct Subject<'a> {
     pub build: Build<'a>,
     pub claims: &'a Claims,
@@ -30,7 +30,7 @@ impl Subject<'_> {
     }
 }
 
-/// Why an integrator could not be driven any further.
+/// The reason why an integrator could not be stepped any further.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Broken {
     #[error("a step of h = {h} could not be taken: {error}")]
@@ -43,7 +43,7 @@ pub enum Broken {
     Shape,
 }
 
-/// Takes `n` steps of `h`, and sees that each does what [`Integrator::step`] asks of it.
+/// Takes `n` steps of `h`, and checks that each fulfils the contract of [`Integrator::step`].
 pub(super) fn advance(
     integrator: &mut dyn Integrator,
     system: &dyn System,
@@ -62,7 +62,7 @@ pub(super) fn advance(
         if !state.is_finite() {
             return Err(Broken::NotFinite { h });
         }
-        // However the time was summed: a few roundings of it.
+        // The time may be summed in any way, so a few roundings are allowed.
         let left = state.t;
         let off = (left - (from + h)).abs();
         if off.is_nan() || off > 8.0 * f64::EPSILON * (from.abs() + h) {
@@ -78,7 +78,7 @@ pub(super) fn largest(state: &State) -> f64 {
     values.fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
-/// Largest difference between the positions or velocities of two states.
+/// The largest difference between the positions or velocities of two states.
 pub(super) fn distance(a: &State, b: &State) -> f64 {
     let pairs = a.x.iter().zip(&b.x).chain(a.v.iter().zip(&b.v));
     pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))

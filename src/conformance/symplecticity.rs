@@ -1,4 +1,4 @@
-//! Symplecticity: the one-step map's Jacobian S keeps the form, Sᵀ J S = J.
+//! Symplecticity: the one-step map's Jacobian S preserves the symplectic form, Sᵀ J S = J.
 
 use super::subject::{Broken, Subject};
 use super::systems::{built, swinging_triangle};
@@ -7,15 +7,15 @@ use crate::physics::{ParticleSystem, State, System};
 use crate::scene::DampingModel;
 use nalgebra::DMatrix;
 
-/// s: w h is 0.57 for the stiffest mode of the network, far from where an error of high order would look
-/// like none.
+/// The step, s. For the stiffest mode of the network w h is 0.57: large enough that a defect of high order
+/// is visible.
 pub(super) const LARGE_STEP: f64 = 0.05;
 
-/// Half the distance of a central difference, m and m/s: its truncation is of the size of its
-/// rounding, both about 5e-11 here.
+/// Half the width of a central difference, m and m/s. Truncation and rounding are then of equal size, both
+/// about 5e-11.
 const DELTA: f64 = 1e-5;
 
-/// A step solved to 1e-12 at each end of a difference of 2e-5.
+/// Steps solved to 1e-12 at both ends of a difference of width 2e-5.
 const BOUND: f64 = 2.0 * SOLVED_TO / (2.0 * DELTA);
 
 pub(super) const LAW: Law = Law {
@@ -86,7 +86,7 @@ mod tests {
         // Measured 11.4 rad/s.
         let z = LARGE_STEP * fastest;
         assert!((0.5..1.0).contains(&z), "{z}");
-        // With the masses left out of the form it is another one.
+        // Some mass is not 1, so a form without the masses would differ.
         assert!(w.iter().filter(|w| **w > 0.0).any(|w| *w != 1.0));
     }
 }

@@ -1,5 +1,5 @@
-//! The systems integrators are tested on: one coordinate in closed form (the constant force has three),
-//! and small networks without symmetries that could hide an error, as scenes built in code.
+//! The systems integrators are tested on: systems of one coordinate with a closed form (the constant force
+//! has three), and small networks without symmetries that could hide an error, as scenes built in code.
 
 use crate::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, System};
 use crate::scene::{DampingModel, Particle, Scene, SolverSpec, Spring};
@@ -47,8 +47,8 @@ impl System for Oscillator {
     }
 }
 
-/// x'' = -w² x of a spring turning: a stiffness that is no part of k n nᵀ, and that a method which
-/// keeps only that part does not know of.
+/// x'' = -w² x, as motion across a spring: its stiffness is not part of k n nᵀ, and a method that keeps
+/// only that part leaves it out.
 #[derive(Debug, Clone, Copy)]
 pub struct Across {
     /// rad/s.
@@ -134,7 +134,7 @@ impl System for Driven {
     }
 }
 
-/// Three coordinates of different masses, each under a force of its own that never changes.
+/// Three coordinates of different masses, each under a constant force of its own.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ConstantForce;
 
@@ -230,7 +230,8 @@ pub(super) fn dragged_triangle(damping: f64) -> Scene {
     scene
 }
 
-/// The swinging triangle without gravity and with nothing fixed: momentum and angular momentum are kept.
+/// The swinging triangle without gravity and with nothing fixed, which conserves momentum and angular
+/// momentum.
 pub fn free_triangle(damping: f64, model: DampingModel) -> Scene {
     let mut scene = swinging_triangle(damping, model);
     scene.particles.remove(0);

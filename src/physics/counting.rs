@@ -1,9 +1,9 @@
-//! Counts what an integrator asks of a system, from outside both.
+//! Counts an integrator's force evaluations, independently of the integrator and the system.
 
 use super::{ForceKinds, Jacobian, Linearization, Power, System};
 use std::cell::Cell;
 
-/// Passes over the forces so far.
+/// Evaluations of the forces so far.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Evaluations {
     /// Full force evaluations.
@@ -12,7 +12,7 @@ pub struct Evaluations {
     pub damping: u64,
 }
 
-/// A system that counts; otherwise transparent.
+/// A system that counts its evaluations, and otherwise does what the inner system does.
 #[derive(Debug)]
 pub struct Counting<S> {
     inner: S,
@@ -27,7 +27,7 @@ impl<S: System> Counting<S> {
         }
     }
 
-    /// The system itself; what is asked of it directly is not counted (measures use this).
+    /// The inner system. Direct calls to it are not counted; measures use this.
     pub fn inner(&self) -> &S {
         &self.inner
     }

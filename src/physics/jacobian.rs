@@ -1,15 +1,15 @@
-//! Force Jacobians as triplets, or, for those who can use them, as blocks of pairs.
+//! Force Jacobians, as triplets or as 3 x 3 blocks of pairs.
 
 use super::System;
 use nalgebra::Matrix3;
 
-/// Entries (row, column, value); repeated places add up.
+/// Entries (row, column, value); the values of repeated places are added.
 pub type Triplets = Vec<(usize, usize, f64)>;
 
 /// Derivatives of the force by position and velocity.
 ///
-/// Signs as derived: a stable spring has a *negative* definite `position` block, minus what the
-/// field calls the stiffness matrix. A system emits the same places in the same order at every
+/// Signs are those of the derivative: a stable spring has a *negative* definite `position` block, minus its
+/// stiffness matrix. A system emits the same places in the same order at every
 /// call, so solvers may keep the pattern.
 #[derive(Debug, Clone, Default)]
 pub struct Jacobian {
@@ -17,7 +17,7 @@ pub struct Jacobian {
     pub position: Triplets,
     /// ∂f/∂v, N s/m.
     pub velocity: Triplets,
-    /// Where pairs go instead, if they are kept as blocks.
+    /// The blocks of pairs, if they are stored as such and not as triplets.
     pairs: Option<[Vec<PairBlock>; 2]>,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct PairBlock {
     pub block: Matrix3<f64>,
 }
 
-/// By what the force was differentiated.
+/// The variable by which the force is differentiated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Derivative {
     Position = 0,
@@ -44,17 +44,17 @@ pub enum Linearization {
     /// Springs as k n nᵀ and c n nᵀ only: no geometric stiffness (the turning of the spring), no
     /// derivative of the damper's direction. What rapier's spring joint solves.
     Material,
-    /// What of `Exact` makes M - γ C - γ² K symmetric and positive definite whatever the state:
-    /// negative stiffness (of compressed springs across, of attraction along) and the turning of
-    /// dampers are left out. For directions to search in, not for steps.
+    /// The part of `Exact` that makes M - γ C - γ² K symmetric and positive definite at any state. It
+    /// leaves out negative stiffness (of compressed springs across, of attraction along) and the turning of
+    /// dampers. It gives search directions, not steps.
     ///
-    /// A system that does not know it may answer as for `Exact`.
+    /// A system without this part may answer as for `Exact`.
     Definite,
 }
 
 impl Jacobian {
-    /// One that keeps pairs as blocks of nine numbers, where triplets take 36 entries; its
-    /// `position` and `velocity` are then without them.
+    /// A Jacobian that stores pairs as blocks of nine numbers, where triplets take 36 entries. `position`
+    /// and `velocity` then leave pairs out.
     pub(crate) fn in_blocks() -> Self {
         Self {
             pairs: Some(Default::default()),
@@ -91,7 +91,7 @@ impl Jacobian {
         }
     }
 
-    /// out += factor * |∂f| |w|, entry by entry: how far relative changes of w may reach.
+    /// out += factor * |∂f| |w|, entry by entry: a bound for the effect of relative changes of w.
     pub(crate) fn add_magnitudes(&self, by: Derivative, factor: f64, w: &[f64], out: &mut [f64]) {
         for &(row, column, value) in self.triplets(by) {
             out[row] += factor * (value * w[column]).abs();
@@ -124,7 +124,7 @@ impl Jacobian {
 }
 
 impl PairBlock {
-    /// Every entry (row, column, value).
+    /// Visits every entry (row, column, value).
     #[inline]
     fn for_each(&self, mut entry: impl FnMut(usize, usize, f64)) {
         let [i, j] = self.ends.map(|end| 3 * end as usize);
@@ -156,7 +156,7 @@ pub(super) fn central_differences<S: System + ?Sized>(
             if inverse_mass[column] == 0.0 {
                 continue;
             }
-            // The cube root of eps balances truncation against rounding.
+            // A step of about the cube root of eps balances truncation against rounding.
             let step = 6e-6 * base[column].abs().max(1.0);
             for (sign, a) in [(-1.0, &mut low), (1.0, &mut high)] {
                 moved[column] = base[column] + sign * step;

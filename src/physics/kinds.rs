@@ -1,13 +1,13 @@
-//! What kinds of forces act: what a method has to know before it takes them.
+//! The kinds of forces, which a method has to know before it accepts a system.
 
 use std::fmt;
 use std::ops::BitOr;
 
-/// A set of kinds: those of one force, of all forces of a system, or those a method takes.
+/// A set of kinds: those of one force, of all forces of a system, or those that a method accepts.
 ///
 /// A force is linear in v where f(t, x, v) = f(t, x, 0) + D(x) v. D is then the sum of a symmetric and
-/// a skew part, each a kind of its own. The empty set is a force of time and position alone, by a
-/// potential or not.
+/// a skew part, each a kind of its own. The empty set is a force of time and position alone, with or
+/// without a potential.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ForceKinds(u8);
 
@@ -20,13 +20,13 @@ impl ForceKinds {
     pub const NEGATIVE_DAMPING: Self = Self(2);
     /// Linear in v by a skew D, which turns the velocity and does no work: a magnetic field.
     pub const GYROSCOPIC: Self = Self(4);
-    /// Depends on v in any other way: quadratic drag. Also what is not known to be any better.
+    /// Depends on v in any other way, as quadratic drag, or in a way that is not known.
     pub const NON_LINEAR: Self = Self(8);
-    /// Does work that neither a potential nor the dependence on v accounts for: wind.
+    /// Does work that neither a potential nor its dependence on v accounts for: wind.
     pub const DRIVEN: Self = Self(16);
     /// All of them.
     pub const ANY: Self = Self(31);
-    /// What needs no more of a force than that D is symmetric.
+    /// All kinds that are compatible with a symmetric D: what a method accepts that needs D symmetric.
     pub const SYMMETRIC: Self =
         Self(Self::DISSIPATIVE.0 | Self::NEGATIVE_DAMPING.0 | Self::DRIVEN.0);
 
@@ -38,7 +38,7 @@ impl ForceKinds {
         (Self::DRIVEN, "driven"),
     ];
 
-    /// Whether any of these kinds is among them.
+    /// Whether the set contains any of these kinds.
     pub const fn has(self, any_of: Self) -> bool {
         self.0 & any_of.0 != 0
     }
@@ -52,12 +52,12 @@ impl ForceKinds {
         self.has(Self(Self::ANY.0 & !Self::GYROSCOPIC.0))
     }
 
-    /// Those that are not among the others.
+    /// The kinds of this set that are not in the other.
     pub const fn without(self, others: Self) -> Self {
         Self(self.0 & !others.0)
     }
 
-    /// Of a linear damper with this coefficient, force over velocity with its sign turned.
+    /// The kind of a linear damper with this coefficient c, f = -c v.
     pub fn of_damper(coefficient: f64) -> Self {
         if coefficient > 0.0 {
             Self::DISSIPATIVE
@@ -68,7 +68,7 @@ impl ForceKinds {
         }
     }
 
-    /// Of the same force with its sign turned.
+    /// The kinds of the same force with its sign flipped.
     pub(crate) fn turned(self) -> Self {
         let swap = |from: Self, to: Self| if self.has(from) { to } else { Self::NONE };
         self.without(Self::DISSIPATIVE | Self::NEGATIVE_DAMPING)
@@ -76,7 +76,7 @@ impl ForceKinds {
             | swap(Self::NEGATIVE_DAMPING, Self::DISSIPATIVE)
     }
 
-    /// Those of several forces together.
+    /// The kinds of several forces together.
     pub(crate) fn union(kinds: impl Iterator<Item = Self>) -> Self {
         kinds.fold(Self::NONE, BitOr::bitor)
     }
@@ -98,7 +98,7 @@ impl fmt::Display for ForceKinds {
     }
 }
 
-/// Forces of a kind that a method does not take: it would step, and be wrong.
+/// The refusal of forces that a method does not accept: it would step, and be wrong.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{who} takes no force that is {kinds}{}: how it treats velocity needs forces linear in it by a \
@@ -107,11 +107,11 @@ impl fmt::Display for ForceKinds {
     list(effects)
 )]
 pub struct Refused {
-    /// The method's id, or what it calls itself.
+    /// The method's id, or another name of it.
     pub who: String,
-    /// What is refused.
+    /// The kinds that are refused.
     pub kinds: ForceKinds,
-    /// Ids of the effects it comes from, where they are known.
+    /// Ids of the effects that have these kinds, where they are known.
     pub effects: Vec<&'static str>,
 }
 

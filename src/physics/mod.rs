@@ -1,4 +1,4 @@
-//! What an integrator sees: flat vectors and a [`System`] that gives accelerations.
+//! The problem as an integrator sees it: flat vectors and a [`System`] that gives accelerations.
 //!
 //! Nothing here knows of particles or scenes except [`ParticleSystem`], which is built from one.
 
@@ -22,8 +22,8 @@ pub use state::{Power, State, Work};
 /// particle 1, ...). Fixed coordinates are part of the vectors; their inverse mass is 0, their
 /// acceleration 0.
 ///
-/// How the force depends on v is for the system to say ([`kinds`](System::kinds)): some methods treat
-/// it as linear, f(t, x, v) = f(t, x, 0) + D(x) v with D symmetric, and refuse any other.
+/// The system states how its force depends on v ([`kinds`](System::kinds)). Some methods treat the force
+/// as linear, f(t, x, v) = f(t, x, 0) + D(x) v with D symmetric, and refuse any other.
 pub trait System {
     /// 1/m of each coordinate, 1/kg; 0 for a fixed one.
     fn inverse_mass(&self) -> &[f64];
@@ -38,10 +38,10 @@ pub trait System {
     /// Not to be confused with a force: `a` is already divided by the mass.
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power;
 
-    /// Which kinds of forces act, all together.
+    /// The kinds of all forces together.
     ///
-    /// A system that does not say is taken for one that depends on velocity in any way, and is refused
-    /// by the methods for which that would be wrong. One without velocity is [`ForceKinds::NONE`].
+    /// By default the force is assumed to depend on velocity in any way, and methods for which that would
+    /// be wrong refuse it. [`ForceKinds::NONE`] is a force that does not depend on velocity.
     fn kinds(&self) -> ForceKinds {
         ForceKinds::NON_LINEAR
     }
@@ -52,8 +52,8 @@ pub trait System {
         a.fill(0.0);
     }
 
-    /// Power at velocity `v`, W, of forces that belong to no potential, other than damping; linear in
-    /// `v`, so handing in a displacement gives joules. Only called for [`ForceKinds::DRIVEN`].
+    /// Power at velocity `v`, W, of forces that have no potential, other than damping. It is linear in `v`,
+    /// so for a displacement it gives the work, J. Only called for [`ForceKinds::DRIVEN`].
     fn injected_power(&self, _t: f64, _x: &[f64], _v: &[f64]) -> f64 {
         0.0
     }

@@ -18,13 +18,13 @@ pub struct ParticleSystem {
 }
 
 impl ParticleSystem {
-    /// Builds only the effects the scene asks for.
+    /// Builds only the effects the scene calls for.
     pub fn new(scene: &Scene) -> Self {
         Self::scaled(scene, &|_| 1.0)
     }
 
-    /// The same with the forces of each effect multiplied by this factor, 0 leaving it out: what a
-    /// program computes that forgets an effect, turns its sign or applies it twice.
+    /// The same with the forces of each effect multiplied by a factor; 0 leaves the effect out. A program
+    /// that forgets an effect, flips its sign or applies it twice computes this.
     pub fn scaled(scene: &Scene, factor: &dyn Fn(&EffectRow) -> f64) -> Self {
         let inverse_mass = scene
             .particles
@@ -45,7 +45,7 @@ impl ParticleSystem {
         Self::of(inverse_mass, effects)
     }
 
-    /// Of any effects, with 1/m of each coordinate, 1/kg, 0 for a fixed one.
+    /// A system of any effects, with 1/m of each coordinate, 1/kg; 0 for a fixed one.
     pub fn of(inverse_mass: Vec<f64>, effects: Effects) -> Self {
         Self {
             kinds: ForceKinds::union(effects.iter().map(|(_, effect)| effect.kinds())),
@@ -54,10 +54,10 @@ impl ParticleSystem {
         }
     }
 
-    /// Whether a method of that name which takes these kinds takes all forces.
+    /// Checks that a method of this name, which accepts these kinds, accepts all forces.
     ///
     /// # Errors
-    /// [`Refused`], naming the effects it does not take.
+    /// [`Refused`], with the effects it does not accept.
     pub fn admits(&self, who: &str, taken: ForceKinds) -> Result<(), Refused> {
         let kinds = self.kinds.without(taken);
         if kinds == ForceKinds::NONE {
@@ -71,8 +71,7 @@ impl ParticleSystem {
         })
     }
 
-    /// The same forces taken for accelerations: what a program computes that never divides by the
-    /// mass.
+    /// The same forces with every free mass 1. A program that never divides by the mass computes this.
     pub fn undivided(&self) -> Self {
         let whole = |w: &f64| if *w > 0.0 { 1.0 } else { 0.0 };
         Self {
@@ -92,13 +91,13 @@ impl ParticleSystem {
         State::new(x, v)
     }
 
-    /// The effects in force, in registry order.
+    /// The effects that act, in registry order.
     pub fn effects(&self) -> &[(&'static EffectRow, Box<dyn Effect>)] {
         &self.effects
     }
 
-    /// Overwrites `f` with the forces, N. On fixed particles they are what effects happen to add,
-    /// such as a spring's pull; they move nothing.
+    /// Overwrites `f` with the forces, N, and returns the powers, W. Forces on fixed particles, such as a
+    /// spring's pull, are included; they move nothing.
     pub fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
         vector::clear(f);
         let mut power = Power::default();
@@ -108,7 +107,7 @@ impl ParticleSystem {
         power
     }
 
-    /// Potential energy of the springs alone, J: what the energy scale and the divergence test use.
+    /// Potential energy of the springs alone, J, for the energy scale and the divergence test.
     pub fn elastic(&self, t: f64, x: &[f64]) -> f64 {
         self.effects
             .iter()

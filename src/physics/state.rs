@@ -16,7 +16,7 @@ pub struct State {
 }
 
 impl State {
-    /// At t = 0 with no work done yet. `x` and `v` are equally long.
+    /// The state at t = 0, with no work done. `x` and `v` have the same length.
     pub fn new(x: Vec<f64>, v: Vec<f64>) -> Self {
         debug_assert_eq!(x.len(), v.len());
         Self {
@@ -27,7 +27,7 @@ impl State {
         }
     }
 
-    /// No NaN and no infinity anywhere.
+    /// Whether it has no NaN and no infinity.
     pub fn is_finite(&self) -> bool {
         self.x.iter().chain(&self.v).all(|c| c.is_finite())
             && self.work.dissipated.is_finite()
@@ -37,12 +37,12 @@ impl State {
 
 /// Energy that has left or entered the system since the start, joules.
 ///
-/// The balance B = E + dissipated - injected is what a correct run keeps.
+/// A correct run conserves the balance B = E + dissipated - injected.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Work {
-    /// By dampers and drag; grows.
+    /// Energy taken out by dampers and drag; grows.
     pub dissipated: f64,
-    /// By external forces without a potential; either sign.
+    /// Energy put in by external forces without a potential; of either sign.
     pub injected: f64,
 }
 

@@ -1,5 +1,5 @@
-//! Forces along the line between two particles, by their distance alone: the cubic part of springs that
-//! stiffen as they stretch, and Newtonian attraction.
+//! Forces along the line between two particles that depend on their distance alone: the cubic part of
+//! springs that stiffen as they stretch, and Newtonian attraction.
 
 use super::springs::{SHORTEST, difference, dot};
 use super::{Effect, EffectRow, boxed};
@@ -25,17 +25,17 @@ pub(super) const GRAVITATIONAL: EffectRow = EffectRow {
     build: |scene| Central::gravitational(scene).map(boxed),
 };
 
-/// Closer than this, m, masses have no direction and no force.
+/// Attracting particles closer than this, m, have no direction and so no force.
 const COINCIDENT: f64 = 1e-100;
 
-/// Pairs of particles and how each pulls.
+/// Pairs of particles, each with its law of force.
 pub struct Central {
     pairs: Vec<([usize; 2], Law)>,
 }
 
 enum Law {
-    /// What a spring with `cubic` q > 0 adds to its linear pull: q s³, s = l - L. The linear part and the
-    /// damper of the same spring are [`Springs`](super::Springs)'.
+    /// The cubic part of a spring's pull: q s³, s = l - L. [`Springs`](super::Springs) adds the linear part
+    /// and the damper of the same spring.
     Cubic {
         /// q, N/m³.
         cubic: f64,
@@ -50,7 +50,7 @@ enum Law {
 }
 
 impl Law {
-    /// At a distance in m: the pull over the distance, N/m. None at coincidence, where there is no
+    /// The pull divided by the distance, N/m, at a distance in m. None at coincidence, where there is no
     /// direction and no force.
     fn pull(&self, length: f64) -> Option<f64> {
         match *self {
@@ -58,7 +58,7 @@ impl Law {
                 let stretch = length - rest_length;
                 Some(cubic * stretch * stretch * stretch / length)
             }
-            // Divided one by one: r³ may leave the range of a double.
+            // Three divisions, since r³ may leave the range of a double.
             Self::Gravitational { strength } if length >= COINCIDENT => {
                 Some(strength / length / length / length)
             }
@@ -66,7 +66,7 @@ impl Law {
         }
     }
 
-    /// At a distance in m, J.
+    /// The potential energy at a distance in m, J.
     fn potential(&self, length: f64) -> f64 {
         match *self {
             Self::Cubic { cubic, rest_length } => {
@@ -95,7 +95,7 @@ impl Law {
                 };
                 axial * (3.0 * (cubic * stretch * stretch)) + (identity - axial) * across
             }
-            // Attraction falls with distance: its stiffness along the pair is negative.
+            // Attraction falls with distance, so its stiffness along the pair is negative.
             Self::Gravitational { .. } => {
                 let along = if kept == Linearization::Definite {
                     1.0
@@ -109,8 +109,8 @@ impl Law {
 }
 
 impl Central {
-    /// None when no spring that can move anything is cubic. A negative coefficient, which no scene
-    /// file can state, softens.
+    /// None when no spring with a free end is cubic. A negative coefficient, which no scene file can state,
+    /// softens the spring.
     fn cubic(scene: &Scene) -> Option<Self> {
         let cubic = scene.springs.iter().filter(|s| s.cubic != 0.0);
         let law = |s: &crate::scene::Spring| Law::Cubic {
@@ -132,7 +132,7 @@ impl Central {
         Self::between(scene, pairs.map(|pair| (pair.ends, law(pair))))
     }
 
-    /// Of those that can move anything, if there are any.
+    /// The pairs with a free end; None if there are none.
     fn between(scene: &Scene, pairs: impl Iterator<Item = ([usize; 2], Law)>) -> Option<Self> {
         let moves =
             |(ends, _): &([usize; 2], Law)| !ends.iter().all(|&end| scene.particles[end].fixed);
@@ -140,7 +140,7 @@ impl Central {
         (!pairs.is_empty()).then_some(Self { pairs })
     }
 
-    /// Each pair with the offsets of its ends and what is between them.
+    /// Each law with the offsets of its pair's ends and the vector between them.
     fn separations(&self, x: &[f64]) -> impl Iterator<Item = (&Law, [usize; 2], [f64; 3])> {
         self.pairs.iter().map(|(ends, law)| {
             let [i, j] = ends.map(|end| 3 * end);

@@ -22,8 +22,8 @@ pub struct Drag {
 }
 
 impl Drag {
-    /// None when no free particle has drag. A negative coefficient, which no scene file can state,
-    /// drives.
+    /// None when no free particle has drag. A negative coefficient, which no scene file can state, adds
+    /// energy.
     pub fn new(scene: &Scene) -> Option<Self> {
         let coefficients: Vec<_> = scene
             .particles

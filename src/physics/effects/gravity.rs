@@ -17,7 +17,7 @@ pub(super) const ROW: EffectRow = EffectRow {
 ///
 /// Not to be confused with `gravitational`, the attraction between two particles.
 pub struct Gravity {
-    /// Coordinate index 3 i + axis and the force there, N.
+    /// Coordinate index 3 i + axis, and the force on it, N.
     weights: Vec<(usize, f64)>,
 }
 

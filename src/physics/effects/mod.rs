@@ -1,10 +1,9 @@
-//! What acts on particles: one file an effect, one row in [`REGISTRY`].
+//! The forces on particles. Each effect has a file and a row in [`REGISTRY`].
 //!
-//! An effect is built only when the scene calls for it; an absent effect is not in the list and
-//! costs nothing. Contact, rods and strain limits act between or inside steps and are not
-//! forces: they will be a second kind of row, called by
-//! [`IntegratorEngine`](crate::solvers::IntegratorEngine) after its integrator, not members of this
-//! trait.
+//! An effect is built only when the scene calls for it; an absent effect is not in the list and costs
+//! nothing. Contact, rods and strain limits act between or inside steps and are not forces: they will be a
+//! second kind of row, which [`IntegratorEngine`](crate::solvers::IntegratorEngine) calls after its
+//! integrator, and will not implement this trait.
 
 mod central;
 mod drag;
@@ -23,21 +22,21 @@ pub use wind::WindForce;
 use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;
 
-/// A force on particles: a batch over all its members, in flat vectors of length 3n.
+/// A force on particles. It is computed for all its members at once, in flat vectors of length 3n.
 ///
 /// `kinds`, `potential`, `add_damping` and `add_jacobian` must agree with `add_force`; one test checks
 /// them by finite differences over the whole registry.
 pub trait Effect: Send + Sync {
-    /// Springs, particles or pairs it acts on.
+    /// The number of springs, particles or pairs it acts on.
     fn members(&self) -> usize;
 
-    /// How its force depends on velocity, and whether it does work that no potential accounts for.
+    /// The kinds of its force: how it depends on velocity, and whether it does work without a potential.
     fn kinds(&self) -> ForceKinds;
 
     /// *Adds* its force, N, to `f`; returns its powers at this point, W.
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power;
 
-    /// Potential energy, J; 0 for what has none.
+    /// Potential energy, J; 0 for a force without a potential.
     fn potential(&self, _t: f64, _x: &[f64]) -> f64 {
         0.0
     }
@@ -45,12 +44,12 @@ pub trait Effect: Send + Sync {
     /// *Adds* the velocity-dependent part of its force at velocity `w`, N, to `f`.
     fn add_damping(&self, _x: &[f64], _w: &[f64], _f: &mut [f64]) {}
 
-    /// What a [driven](ForceKinds::DRIVEN) force does per second at velocity `v`, W.
+    /// The power of a [driven](ForceKinds::DRIVEN) force at velocity `v`, W.
     fn injected_power(&self, _t: f64, _v: &[f64]) -> f64 {
         0.0
     }
 
-    /// *Adds* ∂f/∂x and ∂f/∂v; the same places in the same order at every call.
+    /// *Adds* ∂f/∂x and ∂f/∂v, with the same places in the same order at every call.
     fn add_jacobian(
         &self,
         _t: f64,
@@ -61,12 +60,12 @@ pub trait Effect: Send + Sync {
     ) {
     }
 
-    /// Total momentum stays as it is under this effect (nothing fixed).
+    /// Whether this effect conserves total momentum (with nothing fixed).
     fn keeps_momentum(&self) -> bool {
         false
     }
 
-    /// Total angular momentum stays as it is under this effect (nothing fixed).
+    /// Whether this effect conserves total angular momentum (with nothing fixed).
     fn keeps_angular_momentum(&self) -> bool {
         false
     }
@@ -77,13 +76,13 @@ pub struct EffectRow {
     /// The id scenes, reports and the command line use.
     pub id: &'static str,
     pub summary: &'static str,
-    /// Formula and where it is stated.
+    /// The formula and its source.
     pub source: &'static str,
-    /// Its potential counts as U_elastic in the energy scale.
+    /// Whether its potential counts as U_elastic in the energy scale.
     pub elastic: bool,
-    /// Its force depends on neither position nor velocity.
+    /// Whether its force depends on neither position nor velocity.
     pub constant: bool,
-    /// None when the scene does not ask for it.
+    /// Builds the effect; None when the scene does not call for it.
     pub build: fn(&Scene) -> Option<Box<dyn Effect>>,
 }
 

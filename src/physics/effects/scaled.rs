@@ -1,11 +1,11 @@
-//! An effect with all its forces multiplied: physics that is wrong on purpose.
+//! An effect with all its forces multiplied by a factor: physics that is wrong on purpose.
 
 use super::Effect;
 use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
 
-/// `factor` times another effect: -1 turns its sign, 2 applies it twice.
+/// `factor` times another effect: -1 flips its sign, 2 applies it twice.
 ///
-/// Not an effect a scene can ask for: what a replay compares a faulty program with.
+/// No scene can ask for it. A replay compares a faulty program with it.
 pub struct Scaled {
     effect: Box<dyn Effect>,
     factor: f64,
@@ -16,7 +16,7 @@ impl Scaled {
         Self { effect, factor }
     }
 
-    /// Adds `factor` times what `add` adds.
+    /// Calls `add`, and adds `factor` times the force it computes.
     fn scaled<T>(&self, f: &mut [f64], add: impl FnOnce(&mut [f64]) -> T) -> T {
         let mut own = vec![0.0; f.len()];
         let result = add(&mut own);

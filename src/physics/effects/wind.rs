@@ -13,7 +13,7 @@ pub(super) const ROW: EffectRow = EffectRow {
     build: |scene| WindForce::new(scene).map(boxed),
 };
 
-/// The same force on every free particle whatever its mass.
+/// The same force on every free particle, independent of its mass.
 ///
 /// Not to be confused with moving air, which drags in proportion to the relative velocity.
 pub struct WindForce {

@@ -1,21 +1,21 @@
-//! The force loop: springs in blocks, gathered, computed, scattered, and the parts of a network shared
-//! among threads.
+//! The force loop. It gathers, computes and scatters springs in blocks, and distributes the parts of a
+//! network over threads.
 //!
-//! Nothing but plain sums, products, quotients and roots, each rounded once and in one order: scalar
-//! and vector instructions of any width give the same bits.
+//! It uses only sums, products, quotients and roots, each rounded once and in a fixed order, so scalar and
+//! vector instructions of any width give the same bits.
 
 use super::network::{Part, Table};
 use super::{AXIAL, ISOTROPIC, NONE, SHORTEST, dot};
 use pulp::{Arch, Simd, WithSimd};
 
-/// Springs computed side by side: enough for the compiler to take vectors, few enough to stay in
-/// the nearest cache.
+/// Springs in a block: enough for the compiler to use vector instructions, few enough to stay in the
+/// nearest cache.
 const BLOCK: usize = 16;
 
 /// A flat vector of length 3n, particle by particle.
 type Vectors = [[f64; 3]];
 
-/// Where the forces are taken.
+/// The positions and velocities at which forces are evaluated.
 #[derive(Clone, Copy)]
 pub(super) struct Motion<'a> {
     /// Positions, m.
@@ -25,7 +25,7 @@ pub(super) struct Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    /// Of flat vectors of length 3n.
+    /// From flat vectors of length 3n.
     pub fn new(x: &'a [f64], v: &'a [f64]) -> Self {
         Self {
             x: x.as_chunks().0,
@@ -34,11 +34,11 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// Adds all forces, N, to `f` of length 3n; returns the dissipated power, W. Without `ELASTIC` those
-/// of the dampers alone.
+/// Adds all forces, N, to `f` of length 3n; returns the dissipated power, W. Without `ELASTIC` it adds the
+/// forces of the dampers alone.
 ///
-/// Parts go to whatever threads are free. Each adds to its own particles, and the powers are summed
-/// along the same tree whatever the number of threads, one included.
+/// Free threads take the parts. Each part adds to its own particles, and the powers are summed along the
+/// same tree for any number of threads.
 #[inline(always)]
 pub(super) fn add<const MODEL: u8, const ELASTIC: bool>(
     arch: Arch,
@@ -53,7 +53,7 @@ pub(super) fn add<const MODEL: u8, const ELASTIC: bool>(
     add_parts::<MODEL, ELASTIC>(arch, parts, at, f, rayon::current_num_threads() > 1)
 }
 
-/// `f` begins with the first part's first particle.
+/// Adds the forces of several parts; `f` begins with the first part's first particle.
 fn add_parts<const MODEL: u8, const ELASTIC: bool>(
     arch: Arch,
     parts: &[Part],
@@ -78,10 +78,10 @@ fn add_parts<const MODEL: u8, const ELASTIC: bool>(
     left + right
 }
 
-/// Adds the springs' forces, N, to `f`, which begins with particle `first`: to their ends there, and
-/// to no others. Without `ELASTIC` those of the dampers alone.
+/// Adds the springs' forces, N, to those ends that lie in `f`, which begins with particle `first`. Without
+/// `ELASTIC` it adds the forces of the dampers alone.
 ///
-/// Returns the power dissipated, W, by springs whose first end is there.
+/// Returns the power dissipated, W, by springs whose first end lies in `f`.
 #[inline(always)]
 fn add_part<const MODEL: u8, const ELASTIC: bool>(
     arch: Arch,
@@ -96,10 +96,10 @@ fn add_part<const MODEL: u8, const ELASTIC: bool>(
     many::<MODEL, ELASTIC>(arch, springs, at, f, first)
 }
 
-/// One after the other: what [`blocks`] does of one spring at a time.
+/// Computes the springs one after the other, with the operations of [`blocks`].
 ///
-/// Axis by axis to one end and the other, which keeps the compiler from taking two coordinates in one
-/// instruction: across the boundary of what was just stored, such a load waits for the memory.
+/// Each axis is stored to one end and then to the other, which keeps the compiler from loading two
+/// coordinates in one instruction: a load that spans two recent stores has to wait for them.
 #[inline(always)]
 fn few<const MODEL: u8, const ELASTIC: bool>(
     springs: &Table,
@@ -144,7 +144,7 @@ fn few<const MODEL: u8, const ELASTIC: bool>(
     dissipated
 }
 
-/// Out of line: a few springs should not carry its frame.
+/// Computes the springs in blocks. It is kept out of line, so that a few springs need no large stack frame.
 #[inline(never)]
 fn many<const MODEL: u8, const ELASTIC: bool>(
     arch: Arch,
@@ -161,8 +161,8 @@ fn many<const MODEL: u8, const ELASTIC: bool>(
     })
 }
 
-/// What is compiled once for each set of vector instructions. (A closure would not be: its body may
-/// become a function of its own, compiled for the least of machines.)
+/// The loop that is compiled once for each set of vector instructions. (A closure would not do: its body
+/// may become a separate function, compiled for the baseline machine.)
 struct Forces<'a, const MODEL: u8, const ELASTIC: bool> {
     springs: &'a Table,
     at: Motion<'a>,
@@ -182,8 +182,8 @@ impl<const MODEL: u8, const ELASTIC: bool> WithSimd for Forces<'_, MODEL, ELASTI
     }
 }
 
-/// Springs from number `from` on in blocks of `N`; what is left over is not done. The power is
-/// summed on from `dissipated`, spring by spring.
+/// Computes springs from index `from` on in whole blocks of `N`, and leaves out the remainder. The power is
+/// added to `dissipated`, spring by spring.
 #[inline(always)]
 fn blocks<const N: usize, const MODEL: u8, const ELASTIC: bool>(
     springs: &Table,
@@ -226,7 +226,7 @@ fn compute<const N: usize, const MODEL: u8, const ELASTIC: bool>(
     damping: &[f64; N],
     at: Motion,
 ) -> ([[f64; N]; 3], [f64; N]) {
-    // As long as each other: one check of an index serves both.
+    // Both slices have the same length, so one bounds check serves both.
     let (x, v) = (at.x, &at.v[..at.x.len()]);
     let (mut d, mut dv, mut closing) = ([[0.0; N]; 3], [[0.0; N]; 3], [0.0; N]);
     for s in 0..N {
@@ -269,10 +269,9 @@ fn scatter<const N: usize>(
     f: &mut Vectors,
     first: usize,
 ) {
-    // Springs that share their first end follow each other in most scenes: its sum waits for no
-    // memory.
+    // In most scenes springs that share their first end follow each other, so its sum stays in a register.
     let (mut current, mut sum) = (usize::MAX, [0.0; 3]);
-    // An index outside `f` is another part's particle: the check that indexing costs anyway decides.
+    // An index outside `f` is a particle of another part. The bounds check, needed anyway, skips it.
     for s in 0..N {
         let [i, j] = ends[s].map(|end| (end as usize).wrapping_sub(first));
         if i != current {
@@ -296,14 +295,14 @@ fn scatter<const N: usize>(
     }
 }
 
-/// From the first end to the second.
+/// The vector from the first end to the second.
 #[inline(always)]
 fn between(x: &Vectors, ends: [u32; 2]) -> [f64; 3] {
     let [from, to] = ends.map(|end| &x[end as usize]);
     [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
 }
 
-/// The same, a checked coordinate at a time: see [`few`].
+/// The same vector, loaded coordinate by coordinate: see [`few`].
 #[inline(always)]
 fn apart(x: &Vectors, ends: [u32; 2]) -> [f64; 3] {
     let x = x.as_flattened();
@@ -317,13 +316,13 @@ fn apart(x: &Vectors, ends: [u32; 2]) -> [f64; 3] {
     between
 }
 
-/// What a spring knows of its ends.
+/// The relative position and velocity of a spring's ends.
 struct Pair {
     /// From the first end to the second, m.
     between: [f64; 3],
-    /// Relative velocity times `between`, m²/s; with axial dampers.
+    /// Dot product of relative velocity and `between`, m²/s; used with axial dampers.
     closing: f64,
-    /// Relative velocity, m/s; with isotropic dampers.
+    /// Relative velocity, m/s; used with isotropic dampers.
     relative: [f64; 3],
 }
 
@@ -340,7 +339,7 @@ fn one<const MODEL: u8, const ELASTIC: bool>(
         relative,
     } = pair;
     let length = dot(between, between).sqrt();
-    // As f64::max: of NaN and a number the number.
+    // Like f64::max, this gives the number where one of the two is NaN.
     let length = if length > SHORTEST { length } else { SHORTEST };
     let mut pull = 0.0;
     if ELASTIC {
@@ -348,7 +347,7 @@ fn one<const MODEL: u8, const ELASTIC: bool>(
     }
     let mut loss = 0.0;
     let along = if MODEL == AXIAL {
-        // One division for two: a division costs as much as all the rest.
+        // One division serves both: a division costs as much as all the rest.
         let inverse = 1.0 / length;
         let rate = closing * inverse;
         let resistance = damping * rate;

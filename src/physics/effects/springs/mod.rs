@@ -20,15 +20,15 @@ pub(super) const ROW: EffectRow = EffectRow {
     build: |scene| Springs::new(scene).map(boxed),
 };
 
-/// Lengths are not taken below this, m: at coincidence the direction d / l is then 0 and so is the
-/// force, with no branch and no NaN. A rest length of 0 stays exactly linear through the point.
+/// The least length that is used, m. At coincidence the direction d / l is then 0 and so is the force,
+/// with no branch and no NaN. A spring of rest length 0 stays exactly linear through the point.
 pub(super) const SHORTEST: f64 = 1e-150;
 
-/// All springs of a scene: their linear part, and their dampers. What `cubic` adds is
-/// [`Central`](super::Central)'s.
+/// All springs of a scene: their linear part and their dampers. [`Central`](super::Central) adds the
+/// cubic part.
 ///
-/// Coincident ends: no force from a spring or an axial damper, since neither has a direction there;
-/// an isotropic damper still acts.
+/// At coincident ends springs and axial dampers exert no force, since they have no direction there; an
+/// isotropic damper still acts.
 ///
 /// Forces have the same bits on every machine and every number of threads: each particle sums its
 /// forces in the order of the scene's springs.
@@ -36,11 +36,11 @@ pub struct Springs {
     network: Network,
     damping: Damping,
     kinds: ForceKinds,
-    /// The machine's vector instructions, asked for once.
+    /// The machine's vector instructions, detected once.
     arch: Arch,
 }
 
-/// Which loop runs; chosen once, so no spring pays for a branch.
+/// The kind of damping, which selects the loop. It is chosen once, so that no spring needs a branch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Damping {
     None,
@@ -60,7 +60,7 @@ impl Springs {
             .iter()
             // Between two fixed particles a spring moves nothing, and what is fixed has no energy.
             .filter(|s| !s.ends.iter().all(|&end| scene.particles[end].fixed))
-            // All that such a spring does is `cubic_springs`'.
+            // A purely cubic spring belongs to `cubic_springs` alone.
             .filter(|s| s.stiffness != 0.0 || s.damping != 0.0 || s.cubic == 0.0)
             .collect();
         let damping = match scene.damping_model {
@@ -76,13 +76,13 @@ impl Springs {
         })
     }
 
-    /// How many tasks the force can be shared among: 1 for a small network, and for one whose
-    /// neighbours are numbered far apart.
+    /// The number of tasks that can compute the force in parallel: 1 for a small network, and for one
+    /// whose neighbours are numbered far apart.
     pub fn parts(&self) -> usize {
         self.network.parts.len()
     }
 
-    /// Without `ELASTIC` the forces of the dampers alone.
+    /// Adds the forces; without `ELASTIC` those of the dampers alone.
     #[inline(always)]
     fn add<const ELASTIC: bool>(&self, x: &[f64], v: &[f64], f: &mut [f64]) -> f64 {
         let (arch, parts, at) = (self.arch, &self.network.parts, Motion::new(x, v));
@@ -114,7 +114,7 @@ impl Effect for Springs {
 
     fn potential(&self, _t: f64, x: &[f64]) -> f64 {
         let mut energy = 0.0;
-        // Parts within parts: an inner iteration is a plain loop.
+        // `for_each` runs a plain inner loop over each part, which a `for` over nested iterators does not.
         self.network.springs().for_each(|spring| {
             let [i, j] = spring.ends.map(|end| 3 * end);
             let d = difference(x, i, j);
@@ -201,7 +201,7 @@ fn blocks(
     (position, velocity)
 }
 
-/// From particle at offset `i` to the one at offset `j`.
+/// The vector from the particle at offset `i` to the one at offset `j`.
 #[inline(always)]
 pub(super) fn difference(x: &[f64], i: usize, j: usize) -> [f64; 3] {
     let (from, to) = (&x[i..i + 3], &x[j..j + 3]);

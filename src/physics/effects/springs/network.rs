@@ -1,16 +1,17 @@
-//! Springs laid out for the kernel: one array a quantity, cut at particles so that threads share
-//! nothing.
+//! Springs laid out for the kernel: one array for each quantity, partitioned by particles so that threads
+//! share nothing.
 
 use crate::scene::Spring;
 use std::ops::Range;
 
-/// A network this large is cut, if its numbering allows. Smaller ones are faster on one thread.
+/// Networks of at least this many springs are partitioned, if their numbering allows. Smaller ones are
+/// faster on one thread.
 const CUT_FROM: usize = 1 << 14;
 
-/// How many parts are tried, most first: several a thread even out their loads.
+/// The numbers of parts that are tried, the largest first. Several parts a thread balance the load.
 const PARTS: [usize; 4] = [32, 16, 8, 4];
 
-/// A cut that more than one spring in so many crosses is not worth its copies.
+/// A partition is rejected if more than one spring in this many lies in two parts, and so is copied.
 const CROSSING: usize = 16;
 
 /// Springs as parallel arrays: 24 bytes a spring, 32 with dampers.
@@ -26,13 +27,13 @@ pub(super) struct Table {
     pub damping: Vec<f64>,
 }
 
-/// What one task computes: the forces on some neighbouring particles.
+/// The work of one task: the forces on a range of particles.
 #[derive(Debug)]
 pub(super) struct Part {
-    /// Whose forces these are.
+    /// The particles whose forces are computed.
     pub particles: Range<usize>,
-    /// All springs with an end there, in the order of the scene. One that leads to another part is
-    /// in both, and each adds to its own end.
+    /// All springs with an end there, in the order of the scene. A spring between two parts is in both,
+    /// and each part adds the force on its own end.
     pub table: Table,
 }
 
@@ -40,14 +41,14 @@ pub(super) struct Part {
 /// order of the scene's springs.
 #[derive(Debug)]
 pub(super) struct Network {
-    /// Ordered; they cover all particles.
+    /// The parts in order; together they cover all particles.
     pub parts: Vec<Part>,
-    /// Springs, each counted once.
+    /// The number of springs, each counted once.
     pub members: usize,
 }
 
 impl Table {
-    /// With room for so many springs and no more.
+    /// An empty table with room for exactly this many springs.
     fn with_capacity(springs: usize, damped: bool) -> Self {
         Self {
             ends: Vec::with_capacity(springs),
@@ -82,7 +83,8 @@ impl Table {
 }
 
 impl Network {
-    /// Of these springs between so many particles; `damped` when any has a damper.
+    /// The network of these springs; `particles` is the number of particles, and `damped` says whether any
+    /// spring has a damper.
     pub fn new(springs: &[&Spring], particles: usize, damped: bool) -> Self {
         let cuts = cuts(springs, particles);
         let part_of = |end: usize| cuts.partition_point(|&cut| cut <= end) - 1;
@@ -105,8 +107,8 @@ impl Network {
         }
     }
 
-    /// Each spring once, its linear part alone, in an order that depends on the network alone: that of the scene, unless
-    /// the network is cut.
+    /// Each spring once, without its cubic part. The order depends on the network alone: it is that of the
+    /// scene, unless the network is partitioned.
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
         self.parts.iter().flat_map(|part| {
             let own = |spring: &Spring| part.particles.contains(&spring.ends[0]);
@@ -115,7 +117,7 @@ impl Network {
     }
 }
 
-/// Hands every spring to the one or two parts of its ends.
+/// Passes every spring to the one or two parts that its ends belong to.
 fn each_part<'a>(
     springs: &[&'a Spring],
     part_of: impl Fn(usize) -> usize,
@@ -130,8 +132,8 @@ fn each_part<'a>(
     }
 }
 
-/// Where each part begins, 0 first: about as many spring ends in each. Depends on the network
-/// alone, never on the number of threads.
+/// The first particle of each part, beginning with 0. Each part has about as many spring ends. The result
+/// depends on the network alone, never on the number of threads.
 fn cuts(springs: &[&Spring], particles: usize) -> Vec<usize> {
     let whole = vec![0];
     if springs.len() < CUT_FROM {
