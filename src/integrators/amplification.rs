@@ -1,4 +1,4 @@
-//! What a method's coefficients say of linear systems: how far one step carries a mode.
+//! The amplification of a mode by one step on linear systems, from a method's coefficients.
 
 use super::{DampingTreatment, Stable, Stage, Tableau};
 use nalgebra::Complex;
@@ -6,14 +6,14 @@ use nalgebra::Complex;
 /// The one-step map on x'' = -K x - C v.
 #[derive(Debug, Clone, Copy)]
 pub enum Amplification {
-    /// A step multiplies each eigenvector of the first-order system by R(hλ). So for all Runge-Kutta
-    /// methods (Hairer, Wanner, Solving ODEs II, IV.2-3).
+    /// A step multiplies each eigenvector of the first-order system by R(hλ). This holds for all
+    /// Runge-Kutta methods (Hairer, Wanner, Solving ODEs II, IV.2-3).
     Rational(Rational),
-    /// A product of drifts and kicks: more than the eigenvalues decides, since kicks see the damping
-    /// and drifts do not.
+    /// A product of drifts and kicks. The eigenvalues alone do not decide, since damping acts in kicks and
+    /// not in drifts.
     Composition(&'static [Stage], DampingTreatment),
-    /// (I + h C + h² K') v1 = v0 - h K x0, x1 = x0 + h v1: linearly implicit Euler whose matrix holds
-    /// the stiffness along springs, K', only
+    /// (I + h C + h² K') v1 = v0 - h K x0, x1 = x0 + h v1: linearly implicit Euler whose matrix has only
+    /// the stiffness along springs, K'
     /// ([`Linearization::Material`](crate::physics::Linearization)).
     MaterialImplicit,
 }
@@ -27,15 +27,15 @@ pub struct Rational {
     pub denominator: &'static [f64],
 }
 
-/// Rays of a right angle that sample the arc of a half disc.
+/// The number of rays in a right angle that sample the arc of a half disc.
 const RAYS: u32 = 100;
 
 impl Rational {
-    /// Of a tableau that is explicit or has its implicit coefficients on the diagonal:
-    /// R = 1 + z bᵀ (1 - z A)⁻¹ 1. `order` is the method's.
+    /// The stability function R = 1 + z bᵀ (1 - z A)⁻¹ 1 of a tableau that is explicit or has its implicit
+    /// coefficients on the diagonal. `order` is the method's.
     pub(super) fn of(tableau: &Tableau, order: u32) -> Self {
         let stages = tableau.b.len();
-        // R as a series: its coefficients are bᵀ Aᵏ⁻¹ 1, and 1/k! up to the order.
+        // The coefficients of R as a series are bᵀ Aᵏ⁻¹ 1, which are 1/k! up to the order.
         let mut series = vec![1.0];
         let mut slopes = vec![1.0; stages];
         let mut factorial = 1.0;
@@ -48,7 +48,7 @@ impl Rational {
             });
             slopes = tableau.through(&slopes);
         }
-        // Q is the product of all 1 - a z, and P what it makes of the series.
+        // Q is the product of all 1 - a z, and P is Q times the series.
         let diagonal = tableau.a.iter().enumerate();
         let factors = diagonal.map(|(stage, row)| [1.0, -row.get(stage).unwrap_or(&0.0)]);
         let denominator = factors.fold(vec![1.0], |q, factor| product(&q, &factor));
@@ -67,18 +67,18 @@ impl Rational {
         }
     }
 
-    /// For which u = h |λ| |R| <= 1, and for all smaller ones, on the ray of λ, which is not 0.
+    /// The u = h |λ| up to which |R| <= 1 on the ray of λ, which is not 0.
     ///
-    /// With hλ = u e^(iθ), E(u) = |Q|² - |P|² is a polynomial in u whose lowest coefficients cancel
-    /// exactly where a method is exact to that order: no scan could see that midpoint's 1 + z⁴/4 exceeds
-    /// 1 at z = 1e-4, its coefficient shows it.
+    /// With hλ = u e^(iθ), E(u) = |Q|² - |P|² is a polynomial in u, whose lowest coefficients cancel
+    /// exactly where a method is exact to that order. No scan could see that midpoint's 1 + z⁴/4 exceeds 1
+    /// at z = 1e-4, but the coefficient shows it.
     pub fn reach(&self, root: Complex<f64>) -> Stable {
         stable(&self.excess(root))
     }
 
     /// ln |R(hλ)|, without cancellation near 1.
     pub(crate) fn log_modulus(&self, root: Complex<f64>, h: f64) -> f64 {
-        // |R| = 0 has no logarithm: as small as doubles go.
+        // |R| = 0 has no logarithm, so it is replaced by the smallest value that has one.
         0.5 * self
             .gain(root, h * root.norm())
             .max(-1.0 + f64::MIN_POSITIVE.sqrt())
@@ -103,12 +103,12 @@ impl Rational {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The largest ρ such that the left half of the disc of radius ρ is stable: on the half plane's
-    /// rays, the least reach. Infinite for A-stable methods, 0 for those unstable on the imaginary
+    /// The largest ρ for which the left half of the disc of radius ρ is stable: the least reach over the
+    /// rays of the left half plane. Infinite for A-stable methods, 0 for those unstable on the imaginary
     /// axis.
     pub(crate) fn half_disc(&self) -> f64 {
-        // |R| is largest on the boundary, so the imaginary axis and the arc decide; rays of a
-        // hundredth of a right angle sample the arc.
+        // |R| is largest on the boundary, so the imaginary axis and the arc decide; rays a hundredth of a
+        // right angle apart sample the arc.
         (0..=RAYS)
             .map(|ray| {
                 let angle = std::f64::consts::FRAC_PI_2 * f64::from(ray) / f64::from(RAYS);
@@ -126,7 +126,7 @@ impl Rational {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Coefficients of E(u); what is only rounding is 0.
+    /// The coefficients of E(u). Those that consist of rounding only are 0.
     fn excess(&self, root: Complex<f64>) -> Vec<f64> {
         let (q, q_size) = modulus(self.denominator, root);
         let (p, p_size) = modulus(self.numerator, root);
@@ -136,7 +136,7 @@ impl Rational {
                 let difference = at(&q, i) - at(&p, i);
                 let rounding = 4.0 * f64::EPSILON * (at(&q_size, i) + at(&p_size, i));
                 if i == 1 {
-                    // 2 Re λ / |λ| times a number: as small as the damping is.
+                    // 2 Re λ / |λ| times a number, which is small where the damping is small.
                     difference
                 } else if difference.abs() <= rounding {
                     0.0
@@ -148,14 +148,15 @@ impl Rational {
     }
 }
 
-/// Coefficients without leading zeros. A method is made once and its facts live as long as the program.
+/// The coefficients without leading zeros. They are leaked: a method is made once, and its facts live as
+/// long as the program.
 fn kept(mut coefficients: Vec<f64>) -> &'static [f64] {
     let degree = coefficients.iter().rposition(|c| *c != 0.0).unwrap_or(0);
     coefficients.truncate(degree + 1);
     coefficients.leak()
 }
 
-/// Of two polynomials.
+/// The product of two polynomials.
 fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut product = vec![0.0; a.len() + b.len() - 1];
     for (i, a) in a.iter().enumerate() {
@@ -166,7 +167,7 @@ fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
     product
 }
 
-/// Coefficients in u of |Σ c_j (u e^(iθ))^j|², and of the same sum of magnitudes.
+/// The coefficients in u of |Σ c_j (u e^(iθ))^j|², and those of the same sum of magnitudes.
 fn modulus(coefficients: &[f64], root: Complex<f64>) -> (Vec<f64>, Vec<f64>) {
     let direction = root / root.norm();
     let mut cosines = vec![1.0];
@@ -186,7 +187,7 @@ fn modulus(coefficients: &[f64], root: Complex<f64>) -> (Vec<f64>, Vec<f64>) {
     (sum, size)
 }
 
-/// Up to where a polynomial is not negative.
+/// The u up to which a polynomial is not negative.
 fn stable(excess: &[f64]) -> Stable {
     let Some(lowest) = excess.iter().position(|e| *e != 0.0) else {
         return Stable::Always;
@@ -197,7 +198,7 @@ fn stable(excess: &[f64]) -> Stable {
     first_negative(&excess[lowest..]).map_or(Stable::Always, Stable::Below)
 }
 
-/// Horner.
+/// The value of a polynomial, by Horner's rule.
 fn value(coefficients: &[f64], u: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * u + c)
 }
@@ -209,8 +210,8 @@ fn first_negative(coefficients: &[f64]) -> Option<f64> {
         .find_map(|(u, falls)| falls.then_some(u))
 }
 
-/// All u > 0 where a polynomial changes its sign, ascending, and whether it becomes negative there.
-/// Between two turns of its derivative it is monotone.
+/// All u > 0 at which a polynomial changes its sign, ascending, and whether it becomes negative there.
+/// Between two sign changes of its derivative a polynomial is monotone.
 fn turns(coefficients: &[f64]) -> Vec<(f64, bool)> {
     let degree = coefficients.iter().rposition(|c| *c != 0.0).unwrap_or(0);
     let coefficients = &coefficients[..=degree.min(coefficients.len().saturating_sub(1))];
@@ -223,7 +224,7 @@ fn turns(coefficients: &[f64]) -> Vec<(f64, bool)> {
         .skip(1)
         .map(|(power, c)| power as f64 * c)
         .collect();
-    // Cauchy: no root is farther out.
+    // Cauchy's bound: no root is larger.
     let leading = coefficients[degree].abs();
     let others = coefficients[..degree].iter();
     let bound = 1.0 + others.fold(0.0, |m: f64, c| m.max(c.abs())) / leading;
@@ -242,8 +243,8 @@ fn turns(coefficients: &[f64]) -> Vec<(f64, bool)> {
     found
 }
 
-/// The largest u found at which something holds that does so at `low` and not at `high`: to `width` of
-/// itself, or to the last bit.
+/// The largest u found at which a condition holds that holds at `low` and not at `high`, to a relative
+/// `width` or to the last bit.
 pub(crate) fn bisect(
     mut low: f64,
     mut high: f64,
@@ -270,8 +271,8 @@ pub(crate) fn phi1(z: f64) -> f64 {
 }
 
 impl DampingTreatment {
-    /// A kick over `step` under damping c multiplies the velocity by the first and the acceleration
-    /// by the second before it adds them.
+    /// The two factors of a kick over `step` under damping c: it multiplies the velocity by the first and
+    /// the acceleration by the second, and adds the two.
     pub(crate) fn kick(self, step: f64, c: f64) -> (f64, f64) {
         match self {
             Self::Explicit => (1.0 - step * c, step),
@@ -280,7 +281,7 @@ impl DampingTreatment {
     }
 }
 
-/// The map of a composition's step on (x, v) of x'' = -k x - c x', row-major.
+/// The matrix of a composition's step on (x, v) of x'' = -k x - c x', row-major.
 pub(crate) fn map(
     stages: &[Stage],
     damping: DampingTreatment,
@@ -301,8 +302,8 @@ pub(crate) fn map(
         })
 }
 
-/// Up to which z = h w a composition is stable on the undamped oscillator: while its trace, a polynomial
-/// in z, stays within 2, since its determinant is 1.
+/// The z = h w up to which a composition is stable on the undamped oscillator. Its determinant is 1, so it
+/// is stable while its trace, a polynomial in z, stays within 2.
 pub(super) fn oscillator_limit(stages: &[Stage]) -> Stable {
     let unit = |first: f64| {
         let mut constant = vec![0.0; stages.len() + 1];
@@ -327,14 +328,14 @@ pub(super) fn oscillator_limit(stages: &[Stage]) -> Stable {
     let mut room: Vec<f64> = product(&trace, &trace).iter().map(|c| -c).collect();
     room[0] += 4.0;
     match stable(&room) {
-        // Bisection ends below a root that is a double itself.
+        // Bisection ends just below a root that is itself a double.
         Stable::Below(z) if value(&room, z.next_up()) == 0.0 => Stable::Below(z.next_up()),
         stable => stable,
     }
 }
 
-/// Within which multiples of its start the oscillator's energy stays for ever, from rest, at z inside the
-/// limit: its orbit is the conic that the map leaves invariant, x² - 2 s x v + t v² = 1.
+/// The multiples of its initial value between which the oscillator's energy stays for ever, from rest, at z
+/// below the limit. The orbit is the conic that the map leaves invariant, x² - 2 s x v + t v² = 1.
 pub(super) fn band(stages: &[Stage], z: f64) -> (f64, f64) {
     let [a, b, c, d] = map(stages, DampingTreatment::Explicit, [1.0, 0.0], z);
     let (s, t) = (0.5 * (a - d) / c, -b / c);

@@ -9,7 +9,7 @@ use super::{
 use crate::physics::Linearization;
 use nalgebra::Complex;
 
-/// What a method's author writes. Everything else follows: [`Method::new`].
+/// The part of a method that its author writes. [`Method::new`] derives the rest.
 ///
 /// ```
 /// use springcheck::conformance::{Claims, check};
@@ -34,7 +34,7 @@ use nalgebra::Complex;
 /// };
 /// assert!((z - 3_f64.sqrt()).abs() < 1e-15);
 ///
-/// // What the coefficients say is what its steps do.
+/// // Its steps agree with the facts derived from its coefficients.
 /// let build = || kutta3.build(&Settings::default());
 /// let findings = check(&build, &Claims::from(&kutta3));
 /// assert!(findings.iter().all(|finding| finding.status != CheckStatus::Fail));
@@ -45,9 +45,8 @@ pub struct MethodRow {
     pub id: &'static str,
     pub name: &'static str,
     pub coefficients: Coefficients,
-    /// What becomes of the oscillator's energy, for people, in z = h w: a factor, or a band in brackets.
-    /// Without one, a factor is shown as |R(iz)|², and of a composition it is only said that the energy is
-    /// bounded.
+    /// A formula in z = h w for the oscillator's energy, for readers: a factor, or a band in brackets.
+    /// Without one, a factor is shown as |R(iz)|², and a composition's energy only as bounded.
     pub energy: Option<&'static str>,
     /// Paper or textbook.
     pub source: &'static str,
@@ -56,7 +55,7 @@ pub struct MethodRow {
 }
 
 impl Method {
-    /// Works all facts out. To be done once for a method: they live as long as the program.
+    /// Derives all facts. Call it once for a method: the facts live as long as the program.
     pub fn new(row: MethodRow) -> Self {
         match row.coefficients {
             Coefficients::Tableau(tableau) | Coefficients::Pair(Pair { tableau, .. }) => {
@@ -69,16 +68,17 @@ impl Method {
     }
 }
 
-/// Conditions are met by sums of up to twelve terms, up to 44 in size, with factors of many roundings:
-/// measured 1.4e-14 at most where they hold, and 1.3e-6 and more where they do not.
+/// The residual below which an order condition holds. Its sums have up to twelve terms, up to 44 in size,
+/// with factors of many roundings: the measured residuals are at most 1.4e-14 where a condition holds, and
+/// at least 1.3e-6 where it does not.
 const ROUNDING: f64 = 4e-14;
 
 fn is_zero(value: f64) -> bool {
     value.abs() < ROUNDING
 }
 
-/// Whether a method of this order meets free fall. Its errors are derivatives of the force, and vanish under
-/// a constant one, but for the first order's own h² a / 2.
+/// Whether a method of this order is exact in free fall. Its errors are derivatives of the force, which
+/// vanish for a constant one, except for the term h² a / 2 that order 1 lacks.
 pub(crate) const fn is_exact(order: u32) -> bool {
     order > 1
 }
@@ -112,7 +112,7 @@ fn of_tableau(row: MethodRow, tableau: &Tableau, evaluations: PerStep) -> Method
 
 fn of_scheme(row: MethodRow, scheme: ImplicitScheme) -> Method {
     let tableau = scheme.tableau();
-    // What does not iterate: each stage once, to see that it has converged or because it is explicit.
+    // Besides the iterations, each stage takes one evaluation: an implicit one to see that it has converged.
     let iterated = PerStep::PerIteration {
         plus: tableau.b.len() as u32,
     };
@@ -121,7 +121,7 @@ fn of_scheme(row: MethodRow, scheme: ImplicitScheme) -> Method {
         method.evaluations = PerStep::Exactly(1);
         if linearization == Linearization::Material {
             method.amplification = Amplification::MaterialImplicit;
-            // Without the stiffness across, it kicks with the force at the start and then drifts.
+            // Without the stiffness across, a step kicks with the force at the start and then drifts.
             if let Stable::Below(across) = oscillator_limit(Stage::SYMPLECTIC_EULER) {
                 method.oscillator.stable = Stable::AlwaysAlong { across };
             }
@@ -137,7 +137,7 @@ fn of_composition(row: MethodRow, stages: &'static [Stage], damping: DampingTrea
         name: row.name,
         order,
         order_damped: match damping {
-            // 1 - h b c for exp(-h b c), times one another: of order 2 only if all b² added up to 0.
+            // Each kick has 1 - h b c for exp(-h b c). The product has order 2 only if the sum of all b² is 0.
             DampingTreatment::Explicit => order.min(1),
             DampingTreatment::ExactFlow => order_of_flows(stages, order),
         },
@@ -161,8 +161,8 @@ fn of_composition(row: MethodRow, stages: &'static [Stage], damping: DampingTrea
     }
 }
 
-/// Forces at rest that a step evaluates: one a kick, but for a first kick that takes the force of the
-/// last one of the step before. An explicit kick depends on the velocity and takes none.
+/// The force evaluations of a step: one for each kick, except for a first kick that reuses the force of the
+/// last kick of the step before. An explicit kick depends on the velocity, so it reuses none.
 fn evaluations(stages: &[Stage], damping: DampingTreatment) -> u32 {
     let kicks = stages
         .iter()
@@ -178,7 +178,7 @@ impl Tableau {
         row.and_then(|row| row.get(column)).copied().unwrap_or(0.0)
     }
 
-    /// A w.
+    /// The product A w.
     pub(super) fn through(&self, weights: &[f64]) -> Vec<f64> {
         let sum = |row: &&[f64]| row.iter().zip(weights).map(|(a, w)| a * w).sum();
         self.a.iter().map(sum).collect()
@@ -215,8 +215,8 @@ impl Tableau {
     }
 }
 
-/// The order of a composition where accelerations depend on positions alone: as a Nyström method, one
-/// stage a kick (Hairer, Nørsett, Wanner, Solving ODEs I, II.14).
+/// The order of a composition where accelerations depend on positions alone. It is then a Nyström method
+/// with a stage for each kick (Hairer, Nørsett, Wanner, Solving ODEs I, II.14).
 fn order_of_kicks(stages: &[Stage]) -> u32 {
     let (mut weights, mut nodes) = (Vec::new(), Vec::new());
     let mut drifted = 0.0;
@@ -247,10 +247,10 @@ fn order_of_kicks(stages: &[Stage]) -> u32 {
     })
 }
 
-/// Beyond no order is looked for.
+/// The highest order that is tested.
 const HIGHEST: u32 = 10;
 
-/// A rooted tree, or one as a branch of a larger one.
+/// A rooted tree, alone or as a branch of a larger one.
 struct Tree {
     vertices: u32,
     /// Its elementary weight at each stage.
@@ -258,9 +258,9 @@ struct Tree {
     density: f64,
 }
 
-/// The order of the formula Σ b k: up to where Σ b w = 1/density holds for every tree, a root and any
-/// multiset of branches (Butcher 1963; Hairer, Nørsett, Wanner, Solving ODEs I, II.2). `branches` are those
-/// there are at first, and `turned` makes one of a tree.
+/// The order of the formula Σ b k: the number of vertices up to which Σ b w = 1/density holds for every tree,
+/// a root with any multiset of branches (Butcher 1963; Hairer, Nørsett, Wanner, Solving ODEs I, II.2).
+/// `branches` are the initial ones, and `turned` makes a branch from a tree.
 fn highest_order(b: &[f64], mut branches: Vec<Tree>, turned: &dyn Fn(&Tree) -> Tree) -> u32 {
     for vertices in 1..=HIGHEST {
         let mut trees = Vec::new();
@@ -282,7 +282,7 @@ fn highest_order(b: &[f64], mut branches: Vec<Tree>, turned: &dyn Fn(&Tree) -> T
     HIGHEST
 }
 
-/// Gives a tree so many more vertices by branches, in every way, each multiset of them once.
+/// Adds this many vertices to a tree by branches, in every way, each multiset of branches once.
 fn grow(tree: Tree, left: u32, branches: &[Tree], grown: &mut Vec<Tree>) {
     if left == 0 {
         grown.push(tree);
@@ -301,11 +301,11 @@ fn grow(tree: Tree, left: u32, branches: &[Tree], grown: &mut Vec<Tree>) {
     }
 }
 
-/// The order of a composition of exact flows of any two vector fields: up to where the product of their
-/// exponentials has, at each word of the two letters, the coefficient of exp(A + B), one over the
-/// factorial of its length. At most `order`, which it has where the second field depends on positions alone.
+/// The order of a composition of exact flows of any two vector fields: the length up to which the product of
+/// their exponentials has, for each word of the two letters, the coefficient of exp(A + B), one over the
+/// factorial of its length. It is at most `order`, the order where the second field depends on positions alone.
 fn order_of_flows(stages: &[Stage], order: u32) -> u32 {
-    // By length, then by the word as a binary number.
+    // Coefficients by length, then by the word as a binary number.
     let mut words: Vec<Vec<f64>> = (0..=order).map(|l| vec![0.0; 1 << l]).collect();
     words[0][0] = 1.0;
     for stage in stages {
@@ -313,7 +313,7 @@ fn order_of_flows(stages: &[Stage], order: u32) -> u32 {
             Stage::Drift(part) => (0, part),
             Stage::Kick(part) => (1, part),
         };
-        // The longest first: shorter ones are still those of the stages before.
+        // The longest words come first, since they need the shorter ones of the stages before.
         for length in (1..words.len()).rev() {
             for word in 0..1 << length {
                 let (mut coefficient, mut power) = (words[length][word], 1.0);

@@ -1,29 +1,29 @@
-//! Implicit methods: stage equations M (u - b) = γ f(t + τ, y + γ u, u), solved by one Newton
-//! iteration. The methods differ in b, y, γ and in what they make of the stage velocity u.
+//! Implicit methods. One Newton iteration solves their stage equations M (u - b) = γ f(t + τ, y + γ u, u).
+//! The methods differ in b, y, γ and in how the step follows from the stage velocity u.
 
 use super::newton::Newton;
 use super::{Coefficients, Integrator, MethodRow, Settings, StepError, Tableau, axpy, fit, refuse};
 use crate::physics::{ForceKinds, Linearization, Power, State, System};
 use std::f64::consts::SQRT_2;
 
-/// Which member of the family a stepper is.
+/// The implicit methods that one stepper runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImplicitScheme {
-    /// Backward Euler, solved to the end.
+    /// Backward Euler, solved to the tolerance.
     Euler,
-    /// One Newton step of backward Euler from (x, v), with that much of the Jacobian.
+    /// One Newton step of backward Euler from (x, v), with this linearization of the force.
     LinearizedEuler(Linearization),
     Midpoint,
     Trapezoidal,
-    /// Over [t, t + g h] the trapezoidal rule, then the second-order backward difference through start
-    /// and stage to t + h. L-stable: what is fast against h dies out, what is slow keeps its energy to
-    /// z⁴ a step. g = 2 - √2 gives both stages the same γ = g h/2.
+    /// The trapezoidal rule over [t, t + g h], then the second-order backward difference through start and
+    /// stage to t + h. It is L-stable: modes that are fast against h die out, and slow ones keep their energy
+    /// to z⁴ a step. With g = 2 - √2 both stages have the same γ = g h/2.
     TrBdf2,
 }
 
 impl ImplicitScheme {
-    /// One Newton step is of first order whatever the force. The line search of Newton's iteration takes
-    /// D to be symmetric.
+    /// The kinds of forces it accepts. One Newton step is of first order for any force. The line search of
+    /// Newton's iteration needs a symmetric D.
     pub(super) const fn takes(self) -> ForceKinds {
         match self {
             Self::LinearizedEuler(_) => ForceKinds::ANY,
@@ -31,7 +31,7 @@ impl ImplicitScheme {
         }
     }
 
-    /// The Runge-Kutta method it is, the linearised ones on linear forces.
+    /// The Runge-Kutta method it is equal to; the linearised ones are so for linear forces.
     pub(super) fn tableau(self) -> Tableau {
         match self {
             Self::Euler | Self::LinearizedEuler(_) => Tableau {
@@ -58,7 +58,7 @@ impl ImplicitScheme {
     }
 }
 
-// TR-BDF2, in steps.
+// Coefficients of TR-BDF2, in units of the step.
 
 /// Where the trapezoidal stage ends: g = 2 - √2.
 const STAGE: f64 = 2.0 - SQRT_2;
@@ -66,7 +66,7 @@ const STAGE: f64 = 2.0 - SQRT_2;
 const IMPLICIT: f64 = 0.5 * STAGE;
 /// How far the difference formula goes beyond the stage: 1/(g (2 - g)) = (1 + √2)/2.
 const BEYOND: f64 = 0.5 * (1.0 + SQRT_2);
-/// What start and stage weigh in the step as a whole: √2/4.
+/// The weight of the start and of the stage in the whole step: √2/4.
 const WEIGHT: f64 = 0.25 * SQRT_2;
 pub(super) const IMPLICIT_EULER: MethodRow = MethodRow {
     id: "implicit_euler",
@@ -123,7 +123,7 @@ pub(super) const TR_BDF2: MethodRow = MethodRow {
     not: "trapezoidal, which lets stiff modes ring; BDF2, which needs two steps of the past",
 };
 
-/// The stepper all implicit methods share.
+/// The stepper that all implicit methods share.
 pub struct Implicit {
     scheme: ImplicitScheme,
     newton: Newton,
@@ -131,7 +131,7 @@ pub struct Implicit {
     u: Vec<f64>,
     /// The velocity u departs from.
     b: Vec<f64>,
-    /// The position γ u is added to; the stage's position once it is solved.
+    /// The position to which γ u is added; once the stage is solved, its position.
     y: Vec<f64>,
     a: Vec<f64>,
 }
@@ -157,7 +157,7 @@ impl Implicit {
         Ok(power)
     }
 
-    /// The trapezoidal rule over 2 γ from the state on; returns the powers at its start and its end.
+    /// Applies the trapezoidal rule over 2 γ from the state; returns the powers at its start and its end.
     fn trapezoid(
         &mut self,
         system: &dyn System,
@@ -198,7 +198,7 @@ impl Integrator for Implicit {
                 work.advance(power, h);
                 self.y.copy_from_slice(&state.x);
                 axpy(&mut self.y, h, &self.u);
-                // v1 = v0 + 2 (u - v0), so that what does not accelerate keeps its bits.
+                // v1 = v0 + 2 (u - v0), so that a velocity without acceleration keeps its bits.
                 for (u, v) in self.u.iter_mut().zip(&state.v) {
                     *u = v + 2.0 * (*u - v);
                 }
@@ -213,7 +213,7 @@ impl Integrator for Implicit {
                 for power in self.trapezoid(system, gamma, t + STAGE * h, state)? {
                     work.advance(power, WEIGHT * h);
                 }
-                // Differences from the start, so that what does not accelerate keeps its bits.
+                // Differences are taken from the start, so that a velocity without acceleration keeps its bits.
                 for (y, x) in self.y.iter_mut().zip(&state.x) {
                     *y = x + BEYOND * (*y - x);
                 }

@@ -1,4 +1,4 @@
-//! Time-stepping methods: one file a family, each method a row of facts in [`REGISTRY`].
+//! Time-stepping methods: a file for each family, and for each method a row of facts in [`REGISTRY`].
 
 pub mod adaptive;
 mod amplification;
@@ -25,19 +25,19 @@ use std::sync::LazyLock;
 
 /// Advances a state by one step.
 ///
-/// An integrator keeps scratch memory and may keep the last force evaluation; it serves one system.
-/// Handing it any state is allowed at any time: what it kept is used only if it still fits.
+/// An integrator keeps scratch memory and may keep the last force evaluation. It serves one system, and
+/// accepts any state at any time: it uses a kept evaluation only if that fits the state.
 pub trait Integrator: Send {
     /// Advances `state` from t to t + h: positions, velocities and work. On an error the state is
     /// left as it was.
     ///
     /// # Errors
     /// [`StepError`] when an implicit step cannot be solved, or when the integrator does not
-    /// [take](Self::takes) the system's forces.
+    /// [accept](Self::takes) the system's forces.
     fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError>;
 
-    /// The kinds of forces it is right for, to its order. What it does not take is refused before a
-    /// run starts ([`ParticleSystem::admits`](crate::physics::ParticleSystem::admits)).
+    /// The kinds of forces it accepts: those it integrates to its order. Others are refused before a run
+    /// starts ([`ParticleSystem::admits`](crate::physics::ParticleSystem::admits)).
     fn takes(&self) -> ForceKinds {
         ForceKinds::ANY
     }
@@ -68,7 +68,7 @@ pub enum StepError {
         iterations: u32,
         residual: f64,
         tolerance: f64,
-        /// With the largest residual.
+        /// The particle with the largest residual.
         particle: usize,
     },
     #[error(
@@ -76,7 +76,7 @@ pub enum StepError {
          with the largest residual at particle {particle}"
     )]
     Singular {
-        /// With the largest residual.
+        /// The particle with the largest residual.
         particle: usize,
     },
     #[error(
@@ -84,7 +84,7 @@ pub enum StepError {
          smaller timestep helps"
     )]
     DampingTooStiff {
-        /// With the largest acceleration.
+        /// The particle with the largest acceleration.
         particle: usize,
     },
     #[error(
@@ -92,20 +92,20 @@ pub enum StepError {
          {particle}: the forces are not smooth there, or the motion explodes"
     )]
     TooShort {
-        /// Where the step would start, s.
+        /// The time at which the step would start, s.
         t: f64,
-        /// With the largest error as estimated.
+        /// The particle with the largest estimated error.
         particle: usize,
     },
     #[error("the step left the range of finite numbers at particle {particle}")]
     NotFinite {
-        /// The first with a number that is not finite.
+        /// The first particle with a number that is not finite.
         particle: usize,
     },
 }
 
-/// One method's facts. Everything a report says of a method, and every law it is tested by,
-/// stands here. [`Method::new`] works them out from the coefficients.
+/// The facts of a method, which reports state and laws test. [`Method::new`] derives them from the
+/// coefficients.
 #[derive(Clone, Copy)]
 pub struct Method {
     /// The id scenes, reports and the command line use.
@@ -115,18 +115,18 @@ pub struct Method {
     pub order: u32,
     /// Order with dampers or drag.
     pub order_damped: u32,
-    /// Keeps the symplectic form on undamped problems.
+    /// Whether it preserves the symplectic form on undamped problems.
     pub symplectic: bool,
-    /// Stepping h, flipping velocities, stepping h again returns to the start.
+    /// Whether stepping h, flipping velocities and stepping h again returns to the start.
     pub reversible: bool,
     pub evaluations: PerStep,
-    /// On x'' = -w² x, with z = h w.
+    /// Stability and energy on x'' = -w² x, with z = h w.
     pub oscillator: OscillatorFacts,
-    /// What it computes with.
+    /// The coefficients it steps with.
     pub coefficients: Coefficients,
-    /// On any linear system; `oscillator` is its summary.
+    /// The one-step map on any linear system; `oscillator` summarises it.
     pub amplification: Amplification,
-    /// Follows free fall without any error but rounding, at every step size: a parabola stays one.
+    /// Whether it follows free fall without any error but rounding, at every step size.
     pub exact: bool,
     /// Paper or textbook.
     pub source: &'static str,
@@ -134,12 +134,12 @@ pub struct Method {
     pub not: &'static str,
 }
 
-/// What a method computes with, and by that which stepper runs it.
+/// The coefficients of a method, which also decide its stepper.
 #[derive(Debug, Clone, Copy)]
 pub enum Coefficients {
     /// An explicit Runge-Kutta method.
     Tableau(Tableau),
-    /// A product of kicks and drifts, the first one first.
+    /// A product of kicks and drifts, in the order they are applied.
     Composition(&'static [Stage], DampingTreatment),
     /// A scheme of implicit stage equations.
     Implicit(ImplicitScheme),
@@ -148,7 +148,7 @@ pub enum Coefficients {
 }
 
 impl Method {
-    /// The kinds of forces it takes: as [`Integrator::takes`].
+    /// The kinds of forces it accepts, as [`Integrator::takes`].
     pub const fn takes(&self) -> ForceKinds {
         match self.coefficients {
             Coefficients::Tableau(_) | Coefficients::Pair(_) => ForceKinds::ANY,
@@ -157,7 +157,7 @@ impl Method {
         }
     }
 
-    /// What chooses its own steps, where it does; None of a method of fixed steps.
+    /// The adaptive pair; None for a method of fixed steps.
     pub const fn pair(&self) -> Option<&Pair> {
         match &self.coefficients {
             Coefficients::Pair(pair) => Some(pair),
@@ -165,8 +165,8 @@ impl Method {
         }
     }
 
-    /// A fresh integrator of fixed steps; of a pair the formula that it advances
-    /// ([`Adaptive`](adaptive::Adaptive) chooses the steps).
+    /// A fresh integrator of fixed steps; for a pair, its advancing formula
+    /// ([`Adaptive`](adaptive::Adaptive) is the stepper that chooses its steps).
     pub fn build(&self, settings: &Settings) -> Box<dyn Integrator> {
         match self.coefficients {
             Coefficients::Pair(pair) => Box::new(RungeKutta::new(pair.tableau)),
@@ -183,32 +183,33 @@ impl std::fmt::Debug for Method {
     }
 }
 
-/// Force evaluations a step costs on an undamped system, once running.
+/// The force evaluations a step takes on an undamped system, after the first step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PerStep {
     Exactly(u32),
-    /// One for each Newton iteration, and `plus` that do not iterate: one to see that the last
-    /// iteration of each stage has converged, and the explicit part of a method that has one.
+    /// One for each Newton iteration, and `plus` more: one to see that each stage has converged, and those
+    /// of the explicit part of a method that has one.
     PerIteration {
         plus: u32,
     },
 }
 
-/// What a method does to the undamped linear oscillator.
+/// Stability and energy of a method on the undamped linear oscillator. Not to be confused with
+/// [`systems::Oscillator`](crate::conformance::systems::Oscillator), which is one.
 #[derive(Debug, Clone, Copy)]
 pub struct OscillatorFacts {
     pub stable: Stable,
     pub energy: EnergyLaw,
 }
 
-/// For which z = h w the oscillator's amplitude stays bounded.
+/// The z = h w for which the oscillator's amplitude stays bounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stable {
     Never,
     Below(f64),
-    /// For linear forces; non-linear ones can still break it.
+    /// Stable at every step for linear forces; non-linear ones can still break it.
     Always,
-    /// As `Always` for motion along springs; motion across them, whose stiffness the method leaves
+    /// Motion along springs is stable at every step. Motion across them, whose stiffness the method leaves
     /// out, is stable below `across` only.
     AlwaysAlong {
         across: f64,
@@ -218,20 +219,20 @@ pub enum Stable {
 /// A function of z = h w.
 pub type OfZ<T> = &'static (dyn Fn(f64) -> T + Send + Sync);
 
-/// What happens to the oscillator's energy, as a function of z = h w. Formulas are for people.
+/// The law of the oscillator's energy, as a function of z = h w. The formulas are for readers.
 #[derive(Clone, Copy)]
 pub enum EnergyLaw {
-    /// Multiplied by this factor every step.
+    /// Every step multiplies the energy by this factor.
     Factor {
         factor: OfZ<f64>,
         formula: &'static str,
     },
-    /// From rest, stays within these multiples of its initial value for ever.
+    /// From rest, the energy stays between these multiples of its initial value for ever.
     Band {
         band: OfZ<(f64, f64)>,
         formula: &'static str,
     },
-    /// Bounded for ever; the band has no short formula.
+    /// The energy is bounded for ever; the band has no short formula.
     Bounded,
 }
 
@@ -244,7 +245,8 @@ impl std::fmt::Debug for EnergyLaw {
     }
 }
 
-/// What a build may be told.
+/// Settings of a fresh integrator. Not to be confused with those of rapier,
+/// [`RapierSettings`](crate::solvers::rapier::RapierSettings).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Relative residual at which Newton's iteration stops.
@@ -252,7 +254,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// With the tolerance a scene states, if it states one.
+    /// The settings with the tolerance that a scene states, if it states one.
     pub fn stated(tolerance: Option<f64>) -> Self {
         tolerance.map_or_else(Self::default, |tolerance| Self { tolerance })
     }
@@ -264,7 +266,7 @@ impl Default for Settings {
     }
 }
 
-/// Every method, in the order reports list them: those of [fixed](fixed) steps, then [`pairs`].
+/// Every method, in the order reports list them: first those of [fixed](fixed) steps, then [`pairs`].
 pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
     let rows = [
         runge_kutta::EXPLICIT_EULER,
@@ -295,12 +297,12 @@ pub fn find(id: &str) -> Option<&'static Method> {
     REGISTRY.iter().find(|method| method.id == id)
 }
 
-/// Those that take the step they are given: maps of a state, which can be replayed and have a limit in h.
+/// The methods of fixed steps. They are maps of a state, so they can be replayed and have a stability limit.
 pub fn fixed() -> &'static [Method] {
     halves().0
 }
 
-/// Those that choose their steps from a tolerance.
+/// The adaptive pairs, which choose their steps from a tolerance.
 pub fn pairs() -> &'static [Method] {
     halves().1
 }
@@ -310,12 +312,12 @@ fn halves() -> (&'static [Method], &'static [Method]) {
     REGISTRY.split_at(fixed)
 }
 
-/// Their ids.
+/// The ids of these methods.
 pub fn ids(methods: &[Method]) -> Vec<&'static str> {
     methods.iter().map(|method| method.id).collect()
 }
 
-/// Refuses forces that an integrator would silently get wrong.
+/// Refuses forces that the integrator does not accept, and would silently get wrong.
 fn refuse(integrator: &dyn Integrator, system: &dyn System) -> Result<(), Refused> {
     let kinds = system.kinds().without(integrator.takes());
     if kinds == ForceKinds::NONE {
@@ -335,13 +337,13 @@ fn fit(buffer: &mut Vec<f64>, n: usize) {
     }
 }
 
-/// The largest magnitude; 0 of nothing.
+/// The largest magnitude; 0 for no values.
 fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     let magnitudes = values.into_iter().map(|c| c.abs());
     magnitudes.fold(0.0, f64::max)
 }
 
-/// The particle with the largest component in these coordinates, or the first not finite.
+/// The particle with the largest component in these coordinates, or the first that is not finite.
 fn worst_particle(values: &[f64]) -> usize {
     if let Some(at) = values.iter().position(|c| !c.is_finite()) {
         return at / 3;

@@ -1,4 +1,4 @@
-//! Explicit tableaux in Nyström form, for those who step with many stages.
+//! Explicit tableaux in Nyström form, for steppers with many stages.
 //!
 //! As (x, v)' = (v, a), stage velocities are sums of stage accelerations, so positions are
 //! x + c h v + h² Σ ā a with ā = a a, and only accelerations are kept. Where forces depend on
@@ -6,18 +6,19 @@
 
 use super::Tableau;
 
-/// Coordinates handled at once, so that sums over stages stay in registers.
+/// The number of coordinates processed at once, so that sums over stages stay in registers.
 pub(crate) const LANES: usize = 8;
 
-/// Where forces are evaluated.
+/// The node and weights of a stage.
 pub(crate) struct NystromStage {
     /// c.
     pub node: f64,
-    /// Of the stages before it.
+    /// The weights of the stages before it.
     pub row: Vec<Weight>,
 }
 
-/// What one stage's acceleration adds to a position (times h²) and to a velocity (times h).
+/// The weights with which one stage's acceleration is added to a position (times h²) and to a velocity
+/// (times h).
 pub(crate) struct Weight {
     pub stage: usize,
     pub position: f64,
@@ -34,7 +35,7 @@ pub(crate) fn stages(tableau: &Tableau) -> Vec<NystromStage> {
     .collect()
 }
 
-/// A combination of stage slopes as weights of stage accelerations, those of no weight left out.
+/// A combination of stage slopes as weights of stage accelerations, without those that are 0.
 pub(crate) fn weights(tableau: &Tableau, row: &[f64]) -> Vec<Weight> {
     let through = |at: usize| -> f64 {
         let slopes = row.iter().zip(tableau.a);
@@ -49,8 +50,8 @@ pub(crate) fn weights(tableau: &Tableau, row: &[f64]) -> Vec<Weight> {
         .collect()
 }
 
-/// Weighted sums of accelerations over the coordinates from `start`: for positions and for
-/// velocities. Accelerations are padded to whole lanes.
+/// The weighted sums of accelerations, for positions and for velocities, at the `LANES` coordinates from
+/// `start` on. Accelerations are padded to a multiple of `LANES`.
 #[inline(always)]
 pub(crate) fn sums(
     accelerations: &[Vec<f64>],

@@ -1,4 +1,4 @@
-//! Explicit Runge-Kutta methods: one stepper, a tableau a method.
+//! Explicit Runge-Kutta methods: one stepper, and a tableau for each method.
 
 use super::{Coefficients, Integrator, MethodRow, StepError, axpy, fit};
 use crate::physics::{Power, State, System};
@@ -7,7 +7,7 @@ use crate::vector;
 /// A tableau for the first-order system (x, v)' = (v, a), s stages.
 #[derive(Debug, Clone, Copy)]
 pub struct Tableau {
-    /// Row i holds a_i0 .. a_i,i-1; s rows, the first empty. Of an implicit scheme a_ii too.
+    /// s rows, the first empty: row i holds a_i0 .. a_i,i-1, and for an implicit method a_ii too.
     pub a: &'static [&'static [f64]],
     /// s weights, summing to 1.
     pub b: &'static [f64],
@@ -80,7 +80,7 @@ pub(super) const RK4: MethodRow = MethodRow {
     not: "the 3/8 rule",
 };
 
-/// The stepper all explicit tableaux share.
+/// The stepper that all explicit tableaux share.
 #[derive(Debug, Clone)]
 pub struct RungeKutta {
     tableau: Tableau,

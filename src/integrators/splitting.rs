@@ -1,4 +1,4 @@
-//! Splitting methods: one stepper, a list of kicks and drifts a method.
+//! Splitting methods: one stepper, and a list of kicks and drifts for each method.
 
 use super::velocity_flow::{HALVINGS, VelocityFlow};
 use super::{Coefficients, Integrator, MethodRow, StepError, axpy, fit, refuse};
@@ -10,7 +10,7 @@ use crate::vector;
 pub enum Stage {
     /// x += c h v.
     Drift(f64),
-    /// The velocity under frozen positions for c h.
+    /// Advances the velocity over c h at frozen positions.
     Kick(f64),
 }
 use Stage::{Drift, Kick};
@@ -20,7 +20,7 @@ const W1: f64 = 1.351_207_191_959_657_8;
 /// 1 - 2 W1.
 const W0: f64 = -1.702_414_383_919_315_3;
 
-// Omelyan, Mryglod, Folk 2002, their position-extended Forest-Ruth-like solution.
+// The position-extended Forest-Ruth-like solution of Omelyan, Mryglod, Folk 2002.
 const XI: f64 = 0.178_617_895_844_809_1;
 const LAMBDA: f64 = -0.212_341_831_062_605_4;
 const CHI: f64 = -0.066_264_582_669_818_5;
@@ -63,7 +63,7 @@ impl Stage {
     ];
 }
 
-/// How a kick treats forces that depend on velocity.
+/// The way a kick treats forces that depend on velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DampingTreatment {
     /// v += c h a(x, v): the textbook kick, first order in the damping.
@@ -73,8 +73,8 @@ pub enum DampingTreatment {
 }
 
 impl DampingTreatment {
-    /// An explicit kick is of first order whatever the force. The exact flow takes the force at rest and
-    /// D apart, and D to be symmetric.
+    /// The kinds of forces it accepts. An explicit kick is of first order for any force. The exact flow
+    /// splits the force into that at rest and D v, and needs a symmetric D.
     pub(super) const fn takes(self) -> ForceKinds {
         match self {
             Self::Explicit => ForceKinds::ANY,
@@ -141,7 +141,7 @@ pub(super) const PEFRL: MethodRow = MethodRow {
     not: "Forest-Ruth (yoshida4): one evaluation more, an error constant far smaller",
 };
 
-/// The stepper all compositions of kicks and drifts share.
+/// The stepper that all compositions of kicks and drifts share.
 #[derive(Debug, Clone)]
 pub struct Splitting {
     stages: &'static [Stage],
@@ -149,11 +149,11 @@ pub struct Splitting {
     flow: VelocityFlow,
     kept: Kept,
     zero: Vec<f64>,
-    /// Where the step started, if a flow in it may fail.
+    /// The state at the step's start, kept where a flow in the step may fail.
     saved: Option<State>,
 }
 
-/// The last acceleration at rest, reused by a kick at the same place: first-same-as-last.
+/// The last acceleration at rest. A kick at the same time and positions reuses it (first same as last).
 #[derive(Debug, Clone, Default)]
 struct Kept {
     valid: bool,
@@ -175,7 +175,7 @@ impl Splitting {
         }
     }
 
-    /// v += h a(x, v), the work with it; then, if there is a drift, x += drift v.
+    /// v += h a(x, v), and the work; then, if there is a drift, x += drift v.
     fn kick_explicitly(
         &mut self,
         system: &dyn System,
@@ -187,7 +187,7 @@ impl Splitting {
         fit(&mut self.kept.a, state.x.len());
         let power = system.acceleration(t, &state.x, &state.v, &mut self.kept.a);
         match drift {
-            // Memory is what both wait for.
+            // One pass does both, since memory bandwidth limits them.
             Some(drift) => {
                 vector::kick_and_drift(&mut state.x, &mut state.v, &self.kept.a, h, drift);
             }
@@ -196,7 +196,7 @@ impl Splitting {
         state.work.advance(power, h);
     }
 
-    /// The flow of v' = a(x, v) at frozen x over h, the work with it.
+    /// Applies the flow of v' = a(x, v) at frozen x over h, and advances the work.
     fn kick_exactly(
         &mut self,
         system: &dyn System,
@@ -207,7 +207,7 @@ impl Splitting {
         let n = state.x.len();
         fit(&mut self.zero, n);
         fit(&mut self.kept.a, n);
-        // Bits decide whether the kept force is the force here. Times are sums of the same parts in
+        // The kept force is reused only at bitwise equal positions. Times are sums of the same parts in
         // another order, so they may differ in their last bits.
         let last_bits = 1e-9 * h.abs() + 4.0 * f64::EPSILON * t.abs();
         let same_time = (self.kept.t - t).abs() <= last_bits;
@@ -239,7 +239,7 @@ impl Integrator for Splitting {
         if self.damping == DampingTreatment::Explicit || !system.kinds().depends_on_velocity() {
             return self.compose(system, h, state);
         }
-        // Only a damping flow can fail, half way through.
+        // Only a damping flow can fail, after part of the step is done.
         let mut saved = self.saved.take().unwrap_or_else(|| state.clone());
         saved.clone_from(state);
         let done = self.compose(system, h, state);
@@ -267,7 +267,7 @@ impl Splitting {
                     axpy(&mut state.x, c * h, &state.v);
                     drifted += c;
                 }
-                // A kick's time is where the drifts have come to.
+                // The time of a kick follows from the drifts so far.
                 Kick(c) => {
                     let t = start + drifted * h;
                     match self.damping {

@@ -1,46 +1,46 @@
 //! The exact flow of v' = a0 + G v at frozen positions, where G = M⁻¹ D(x) is the damping.
 //!
-//! v(h) = v + h φ1(hG) r with r = a0 + G v, and the displacement the velocity would cover is
-//! ∫ v = h v + h² φ2(hG) r. Both actions come from one Krylov space: by Taylor where h G is small,
+//! v(h) = v + h φ1(hG) r with r = a0 + G v, and the integral of the velocity is
+//! ∫ v = h v + h² φ2(hG) r. Both actions come from one Krylov space: by Taylor series where h G is small,
 //! else by Lanczos in the mass metric, in which damping is self-adjoint. (Hochbruck & Lubich 1997,
 //! SIAM J. Numer. Anal. 34; φ functions as in Niesen & Wright 2012, ACM TOMS 38; the stopping rule is
 //! that of Saad 1992, SIAM J. Numer. Anal. 29.)
 //!
-//! Where nothing but damping acts, a0 = 0, and h G is large, v(h) = e^(hG) v is taken as it stands: the
-//! sum v + h φ1 r knows it to the last bit of v only, which a substep backward would blow up again.
+//! Where only damping acts, a0 = 0, and h G is large, v(h) = e^(hG) v is computed directly. The sum
+//! v + h φ1 r has an error of a last bit of v, which a later substep backward would amplify.
 
 use super::{StepError, axpy, fit, largest, phi1, worst_particle};
 use crate::krylov::Space;
 use crate::physics::{ForceKinds, State, System};
 use nalgebra::{DMatrix, Dyn, SymmetricEigen};
 
-/// Taylor terms before Lanczos takes over.
+/// The number of Taylor terms before Lanczos takes over.
 const TAYLOR_TERMS: usize = 12;
-/// Largest Krylov space; a flow that needs more is taken in two halves.
+/// The largest dimension of the Krylov space. A flow that needs more is taken in two halves.
 const KRYLOV: usize = 60;
-/// Its size is tried every so many vectors: an eigenproblem each time.
+/// Convergence is tested after every this many vectors, since each test solves an eigenproblem.
 const TRIED: usize = 6;
-/// Halvings before the damping counts as too stiff: 4,096 pieces.
+/// The number of halvings, 4,096 pieces, after which the damping counts as too stiff.
 pub(super) const HALVINGS: u32 = 12;
 
-/// Scratch of the flow.
+/// Scratch memory of the flow.
 #[derive(Debug, Clone, Default)]
 pub(super) struct VelocityFlow {
     r: Vec<f64>,
     term: Vec<f64>,
     next: Vec<f64>,
-    /// φ1(hG) r and φ2(hG) r; of damping alone e^(hG) v and φ1(hG) v.
+    /// φ1(hG) r and φ2(hG) r; for damping alone e^(hG) v and φ1(hG) v.
     phi1: Vec<f64>,
     phi2: Vec<f64>,
 }
 
 impl VelocityFlow {
     /// Advances `state.v` and the work over `h` at frozen `state.x`; `a0` is the acceleration at
-    /// rest, length n. What needs too large a Krylov space is taken in two halves, `halvings` times.
+    /// rest, length n. A flow that needs too large a Krylov space is halved, up to `halvings` times.
     ///
     /// # Errors
-    /// [`StepError::DampingTooStiff`] when even the smallest pieces need too large a space; the state is
-    /// then half way.
+    /// [`StepError::DampingTooStiff`] when even the smallest pieces need too large a space. The state is
+    /// then somewhere within the step.
     pub(super) fn advance(
         &mut self,
         system: &dyn System,
@@ -74,8 +74,8 @@ impl VelocityFlow {
             self.advance(system, t, 0.5 * h, a0, state, halvings)?;
             return self.advance(system, t, 0.5 * h, a0, state, halvings);
         }
-        // The displacement ∫ v, then the work of a0 along it; what it exceeds the gain in kinetic
-        // energy by was dissipated.
+        // First the displacement ∫ v, then the work of a0 along it. The dissipated energy is this work less
+        // the gain in kinetic energy.
         let displacement = &mut self.term;
         for ((d, v), phi) in displacement.iter_mut().zip(&state.v).zip(&self.phi2) {
             *d = if alone { h * phi } else { h * (v + h * phi) };
@@ -100,8 +100,8 @@ impl VelocityFlow {
         Ok(())
     }
 
-    /// Sums (hG)^k r / (k+1)! and / (k+2)! until a term is below the last bit of what it is added
-    /// to, velocities of size `speed`; false if that takes long.
+    /// Sums (hG)^k r / (k+1)! and / (k+2)! until a term is below the last bit of the sum, or of velocities of
+    /// size `speed`, to which the sum is added; false if that takes too many terms.
     fn taylor(&mut self, system: &dyn System, t: f64, h: f64, x: &[f64], speed: f64) -> bool {
         self.term.copy_from_slice(&self.r);
         self.phi1.copy_from_slice(&self.r);
@@ -131,9 +131,8 @@ impl VelocityFlow {
         false
     }
 
-    /// Lanczos with full reorthogonalisation in the inner product <u, w> = uᵀ M w; false if the
-    /// space would have to be larger than it may. `speed` is the size of what h φ1 r is added to, or of
-    /// v itself.
+    /// Lanczos with full reorthogonalisation in the inner product <u, w> = uᵀ M w; false if it would need
+    /// too large a space. `speed` is the size of the velocities to which h φ1 r is added, or of v itself.
     fn lanczos(
         &mut self,
         system: &dyn System,
@@ -148,7 +147,7 @@ impl VelocityFlow {
         self.phi1.fill(0.0);
         self.phi2.fill(0.0);
         if scale == 0.0 || !scale.is_finite() {
-            // Nothing moves, or the state has already left the finite range and says so itself.
+            // r is 0, or the state is no longer finite, which the caller finds in the result.
             self.phi1.copy_from_slice(&self.r);
             return true;
         }
@@ -156,7 +155,7 @@ impl VelocityFlow {
         let mut space = Space::new(start, |u, w| weighted_dot(u, w, inverse_mass));
         for k in 0..KRYLOV {
             let beta = space.multiply(|q, image| system.damping(t, x, q, image));
-            // What is left after orthogonalising is rounding: the space is closed.
+            // Only rounding is left after orthogonalising: the space is invariant.
             let closed = beta <= 1e-13 * space.image || beta == 0.0;
             if closed || (k + 1) % TRIED == 0 {
                 let projected = DMatrix::from_fn(k + 1, k + 1, |i, j| h * space.tridiagonal(i, j));
@@ -167,7 +166,7 @@ impl VelocityFlow {
                     return false;
                 }
                 let [c1, c2] = [actions.first, actions.second].map(|phi| act(&small, phi));
-                // What the next vector would add, by the last component (Saad 1992, eq. 28).
+                // The contribution of the next vector, estimated by the last component (Saad 1992, eq. 28).
                 let missing = (h * beta).abs() * c1[k].abs();
                 let per_step = if actions.whole { 1.0 } else { h.abs() };
                 let beside = speed / (per_step * scale) * mass_root(inverse_mass);
@@ -188,32 +187,32 @@ impl VelocityFlow {
     }
 }
 
-/// The two functions of h G whose actions are wanted.
+/// The two functions of h G whose actions are computed.
 #[derive(Clone, Copy)]
 struct Actions {
     first: fn(f64) -> f64,
     second: fn(f64) -> f64,
-    /// The first is the velocity itself, not what h times it is added to.
+    /// Whether the first is the new velocity itself, and not its change over h.
     whole: bool,
 }
 
-/// On r.
+/// The functions applied to r.
 const CHANGE: Actions = Actions {
     first: phi1,
     second: phi2,
     whole: false,
 };
-/// On v, where nothing but damping acts.
+/// The functions applied to v, where only damping acts.
 const VELOCITY: Actions = Actions {
     first: f64::exp,
     second: phi1,
     whole: true,
 };
-/// Exponents beyond have no double; of half a step they may.
+/// The largest exponent: e to a larger one may overflow. Half a step has half the exponent.
 const EXPONENT: f64 = 700.0;
 
-/// Eigenvalues and vectors of the projected problem, a symmetric tridiagonal matrix h T. None of what is
-/// not finite, on which an eigensolver might not end.
+/// The eigenvalues and eigenvectors of the projected matrix h T, symmetric and tridiagonal. None if an entry
+/// is not finite, since the eigensolver might then not end.
 fn solved(tridiagonal: DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
     let finite = tridiagonal.iter().all(|c| c.is_finite());
     let sweeps = 100 * tridiagonal.nrows();
@@ -222,7 +221,7 @@ fn solved(tridiagonal: DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
         .flatten()
 }
 
-/// A function of h T on e1.
+/// The action of a function of h T on e1.
 fn act(small: &SymmetricEigen<f64, Dyn>, phi: fn(f64) -> f64) -> Vec<f64> {
     let (values, vectors) = (&small.eigenvalues, &small.eigenvectors);
     let row = |row: usize| {
@@ -234,7 +233,7 @@ fn act(small: &SymmetricEigen<f64, Dyn>, phi: fn(f64) -> f64) -> Vec<f64> {
     (0..values.len()).map(row).collect()
 }
 
-/// Root of the least free mass: turns a speed into the mass metric, from below.
+/// The square root of the least free mass: a speed times this bounds its norm in the mass metric from below.
 fn mass_root(inverse_mass: &[f64]) -> f64 {
     let lightest = inverse_mass.iter().fold(0.0, |m: f64, w| m.max(*w));
     if lightest > 0.0 {
@@ -255,7 +254,7 @@ fn phi2(z: f64) -> f64 {
         .fold(0.0, |sum, k| (sum * z + 1.0) / f64::from(k))
 }
 
-/// Of u in the mass metric, also where its square has no double.
+/// The norm of u in the mass metric, also where its square would overflow or underflow.
 fn length(u: &[f64], inverse_mass: &[f64]) -> f64 {
     let plain = weighted_dot(u, u, inverse_mass).sqrt();
     let size = largest(u);
@@ -266,7 +265,7 @@ fn length(u: &[f64], inverse_mass: &[f64]) -> f64 {
     size * weighted_dot(&scaled, &scaled, inverse_mass).sqrt()
 }
 
-/// Sum of u w m over the free coordinates.
+/// The sum of u w m over the free coordinates.
 fn weighted_dot(u: &[f64], w: &[f64], inverse_mass: &[f64]) -> f64 {
     u.iter()
         .zip(w)

@@ -1,4 +1,4 @@
-//! DOP853. The converged truth takes its coefficients at fixed steps, too.
+//! DOP853. The converged reference uses its coefficients at fixed steps, too.
 
 use super::{ErrorEstimate, Pair};
 use crate::integrators::{Coefficients, MethodRow, Tableau};
@@ -159,7 +159,7 @@ const ORDER_3: [(usize, f64); 3] = [
     (11, 0.022_058_823_529_411_766),
 ];
 
-/// Σ e k estimates the error of order 3: b less those weights.
+/// Σ e k estimates the error of order 3: b less the weights of order 3.
 pub const ERROR_3: [f64; 12] = {
     let mut weights = [0.0; 12];
     let mut at = 0;
@@ -175,7 +175,7 @@ pub const ERROR_3: [f64; 12] = {
     weights
 };
 
-/// DOP853's mixture of the two estimates, of order 8 in h together: e5² / sqrt(e5² + e3² / 100).
+/// DOP853's combination of the two estimates, of order 8 in h: e5² / sqrt(e5² + e3² / 100).
 pub fn mixed(five: f64, three: f64) -> f64 {
     let both = five.hypot(0.1 * three);
     if both == 0.0 {

@@ -1,8 +1,8 @@
-//! Explicit embedded Runge-Kutta pairs that choose their own steps from a tolerance: a file a pair, one
-//! stepper.
+//! Explicit embedded Runge-Kutta pairs that choose their own steps from a tolerance: a file for each pair,
+//! and one stepper.
 //!
-//! At a given step a pair is the formula it advances, a method like any other. With a tolerance in place
-//! of a step it stands beside the others only where accuracy is held against cost.
+//! At a given step a pair is its advancing formula, a method like any other. With a tolerance in place of a
+//! step it is compared with other methods only where accuracy is compared with cost.
 
 mod dop853;
 mod dormand_prince54;
@@ -16,23 +16,23 @@ pub(super) use {dop853::DOP853, dormand_prince54::DORMAND_PRINCE_54};
 
 use super::Tableau;
 
-/// What a pair computes with.
+/// The coefficients of a pair.
 #[derive(Debug, Clone, Copy)]
 pub struct Pair {
-    /// Its stages, and the weights of the formula that is advanced.
+    /// The stages, and the weights of the advancing formula.
     pub tableau: Tableau,
     pub estimate: ErrorEstimate,
-    /// The last stage is evaluated at the step's end, with these weights as its row, and is the first
-    /// of the next step.
+    /// Whether the last stage is evaluated at the step's end, with the weights as its row, and so is the
+    /// first stage of the next step.
     pub first_same_as_last: bool,
 }
 
-/// How a step's error is estimated from its stages, by sums Σ e k.
+/// The error estimate of a step, by sums Σ e k over its stages.
 #[derive(Debug, Clone, Copy)]
 pub enum ErrorEstimate {
-    /// The distance from a formula of this order.
+    /// The difference from an embedded formula of this order.
     Embedded { order: u32, weights: &'static [f64] },
-    /// DOP853's mixture of distances from formulas of order 5 and 3.
+    /// DOP853's combination of the differences from formulas of order 5 and 3.
     Mixed53 {
         fifth: &'static [f64],
         third: &'static [f64],
@@ -40,11 +40,11 @@ pub enum ErrorEstimate {
 }
 
 impl ErrorEstimate {
-    /// The power of h it falls with.
+    /// The power of h that the estimate is proportional to.
     pub fn order(&self) -> u32 {
         match self {
             Self::Embedded { order, .. } => order + 1,
-            // 2 * 6 - 4.
+            // The estimate is e5² / e3 for small h: 2 * 6 - 4.
             Self::Mixed53 { .. } => 8,
         }
     }
@@ -55,9 +55,8 @@ impl Pair {
         self.tableau.b.len() as u32
     }
 
-    /// Force evaluations of a step that is accepted, and of one that is not. A run costs one more for
-    /// the length of its first step, and one for its first stage where others have theirs from the
-    /// step before.
+    /// The force evaluations of an accepted and of a rejected step. A run takes one more to choose its first
+    /// step, and with first same as last another one for its first stage.
     pub fn evaluations(&self) -> [u32; 2] {
         let again = self.stages().saturating_sub(1);
         [self.stages() - u32::from(self.first_same_as_last), again]

@@ -1,34 +1,34 @@
-//! The stepper all pairs share: try, judge, accept or try a shorter step.
+//! The stepper that all pairs share: it tries a step, and accepts it or tries a shorter one.
 
 use super::Pair;
 use super::trial::{Scale, Trial};
 use crate::integrators::StepError;
 use crate::physics::{State, System};
 
-/// What rounding leaves of a tolerance.
+/// The tightest tolerance, given rounding.
 const TIGHTEST: f64 = 4.0 * f64::EPSILON;
-/// Steps shorter than this share of the time they start at are refused.
+/// Steps shorter than this fraction of the time they start at are refused.
 const SPACING: f64 = 10.0 * f64::EPSILON;
 
-/// Errors aim at somewhat less than allowed.
+/// The controller aims at an error somewhat below the tolerance.
 const SAFETY: f64 = 0.9;
-/// By what a step may change at once.
+/// The smallest and largest factor by which the step may change at once.
 const CHANGE: [f64; 2] = [0.2, 10.0];
-/// Errors below this are no reason for more.
+/// The least error the controller remembers, as in DOPRI5.
 const LEAST: f64 = 1e-4;
-/// The proportional part, as in DOPRI5. DOP853 comes without by default, but has fewer steps rejected
-/// and smaller errors for its evaluations with it.
+/// The exponent of the proportional part, as in DOPRI5. DOP853 has none by default, but with it fewer steps
+/// are rejected and errors are smaller for the same evaluations.
 const BETA: f64 = 0.04;
 
 /// Gustafsson's PI controller as in DOPRI5 (Gustafsson 1991, ACM TOMS 17; Hairer, Nørsett, Wanner,
 /// Solving ODEs II, IV.2, and I, II.4): h times 0.9 e^-(1/k - 3 β / 4) e'^β, with e' the error of the
-/// step before; errors are in units of what is allowed.
+/// step before. Errors are in units of the tolerance.
 #[derive(Debug, Clone)]
 struct Controller {
     alpha: f64,
-    /// Of the last accepted step.
+    /// The error of the last accepted step.
     before: f64,
-    /// The last attempt failed.
+    /// Whether the last attempt was rejected.
     failed: bool,
 }
 
@@ -42,17 +42,17 @@ impl Controller {
         }
     }
 
-    /// The step after one of `h` that was accepted with this error.
+    /// The next step after one of `h` that was accepted with this error.
     fn accepted(&mut self, h: f64, error: f64) -> f64 {
         let factor = SAFETY * error.powf(-self.alpha) * self.before.powf(BETA);
         self.before = error.max(LEAST);
-        // What has just failed is not tried again.
+        // A length that was just rejected is not tried again.
         let most = if self.failed { 1.0 } else { CHANGE[1] };
         self.failed = false;
         h * factor.max(CHANGE[0]).min(most)
     }
 
-    /// What to try after `h` was rejected with this error, which may be NaN.
+    /// The step to try after `h` was rejected with this error, which may be NaN.
     fn rejected(&mut self, h: f64, error: f64) -> f64 {
         self.failed = true;
         let factor = SAFETY * error.powf(-self.alpha);
@@ -61,29 +61,29 @@ impl Controller {
     }
 }
 
-/// A pair with a tolerance.
+/// The adaptive stepper: a pair with a tolerance.
 ///
-/// The tolerance is the largest error a step may add to any coordinate, as the pair estimates it: of a
-/// position in units of the scene's size L, of a velocity in units of V, the largest of the speeds so
-/// far, sqrt(L a) with the largest acceleration at the start, and L over the duration. What is left at
-/// the end is proportional to it, and not equal: errors of many steps add up, grow with the motion, and
-/// are overestimated. Work integrals have no part in it.
+/// The tolerance bounds the error that a step adds to any coordinate, as the pair estimates it. Positions
+/// are in units of the scene's size L, and velocities in units of V, the largest of: the speeds so far,
+/// sqrt(L a) with the largest acceleration a at the start, and L over the duration. The error at the end of
+/// a run is proportional to the tolerance, not equal to it: errors of many steps add up, grow with the
+/// motion, and are overestimated. Work integrals are not controlled.
 ///
-/// It serves one system and remembers no more than the last step's end: handing it any state is allowed.
+/// It serves one system, remembers only the last step's end, and accepts any state.
 pub struct Adaptive {
     trial: Trial,
     controller: Controller,
     tolerance: f64,
     size: f64,
-    /// From the first step on: what errors are relative to, and the step to try next, s.
+    /// The scale of errors and the step to try next, s; set from the first step on.
     started: Option<(Scale, f64)>,
     k: u32,
     rejected: u64,
 }
 
 impl Adaptive {
-    /// `size` is the scene's in metres, 0 where it has none; `tolerance` is taken as 4 eps or 1 if it
-    /// is outside these, and as 4 eps if it is no number.
+    /// `size` is the scene's in metres, 0 where it has none. `tolerance` is clamped to [4 eps, 1]; NaN
+    /// becomes 4 eps.
     pub fn new(pair: &Pair, tolerance: f64, size: f64) -> Self {
         let k = pair.estimate.order();
         let tolerance = if tolerance.is_nan() {
@@ -102,13 +102,13 @@ impl Adaptive {
         }
     }
 
-    /// Attempts so far whose error was too large.
+    /// The number of rejected attempts so far.
     pub fn rejected(&self) -> u64 {
         self.rejected
     }
 
-    /// Advances a state by one step of the stepper's own choice, and to `until` exactly at the end;
-    /// nothing if it is already there. On an error the state is left as it was.
+    /// Advances a state by one step that the stepper chooses. The last step ends exactly at `until`; a state
+    /// that is already there stays as it is. On an error the state is left as it was.
     ///
     /// # Errors
     /// [`StepError::TooShort`] where no step is short enough for the tolerance,
@@ -120,7 +120,7 @@ impl Adaptive {
         state: &mut State,
     ) -> Result<(), StepError> {
         let left = until - state.t;
-        // NaN is no time to go to.
+        // A NaN in either time leaves nothing to do.
         if !(left > 0.0 && left.is_finite()) {
             return Ok(());
         }
@@ -131,11 +131,11 @@ impl Adaptive {
             if h >= left / 1.01 {
                 h = left;
             } else if h > 0.5 * left {
-                // Two equal steps, instead of a long one and a short one.
+                // Two equal steps are better than a long one and a short one.
                 h = 0.5 * left;
             }
             let end = if h == left { until } else { state.t + h };
-            // The length between the two times, so that steps add up to the time.
+            // h is the difference of the two times, so that steps add up to the time.
             h = end - state.t;
             if h <= SPACING * state.t || h <= 0.0 {
                 return Err(self.too_short(state.t));
@@ -146,7 +146,7 @@ impl Adaptive {
                     return Err(self.not_finite());
                 };
                 let next = self.controller.accepted(h, error);
-                // A step cut short by the end says nothing against a longer one.
+                // A step that was shortened to meet the end does not shorten the next one.
                 let next = if h < unlimited {
                     next.max(unlimited)
                 } else {
@@ -161,10 +161,11 @@ impl Adaptive {
         }
     }
 
-    /// Scale and step; at the first call from the state begun with, `left` seconds before the end.
+    /// The scale and the step to try. At the first call they follow from the state, `left` seconds before
+    /// the end.
     ///
-    /// The first step is (tolerance / 100)^(1/k) / rate: Hairer's rule (Solving ODEs I, II.4) with a
-    /// rate made of the first and second derivative, which does not depend on the unit of time.
+    /// The first step is (tolerance / 100)^(1/k) / rate. This is Hairer's rule (Solving ODEs I, II.4) with a
+    /// rate from the first and second derivative, so it does not depend on the unit of time.
     fn started(
         &mut self,
         system: &dyn System,

@@ -1,12 +1,12 @@
-//! One step of a pair, tried: its stages, its error, and its end.
+//! One attempted step of a pair: its stages, its error, and its end.
 
 use super::{ErrorEstimate, Pair, mixed};
 use crate::integrators::nystrom::{LANES, NystromStage, Weight, stages, sums, weights};
 use crate::integrators::{axpy, largest, worst_particle};
 use crate::physics::{Power, State, System};
 
-/// What a tolerance is relative to: a length for errors in position and a speed for errors in velocity. Both scale with the units, so
-/// that a tolerance means the same in any.
+/// The scale of a tolerance: a length for errors in position, and a speed for errors in velocity. Both
+/// scale with the units, so that a tolerance means the same in any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Scale {
     /// m.
@@ -16,12 +16,11 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// At the start of a run of `time` seconds with these velocities and accelerations, in a scene of
-    /// `size` metres; where it has no size, the way a free particle would go.
+    /// The scale at the start of a run of `time` seconds with these velocities and accelerations. The length
+    /// is the scene's `size` in metres; where that is 0, the distance a free particle would cover.
     ///
-    /// The speed is the largest of: the speeds; what the largest acceleration gives over the length,
-    /// sqrt(L a), which for an oscillator from rest is its top speed; and L / time, slower than which
-    /// nothing gets anywhere.
+    /// The speed is the largest of: the speeds; sqrt(L a) with the largest acceleration a, which is the top
+    /// speed of an oscillator from rest; and L / time, below which nothing moves by L.
     pub fn new(size: f64, time: f64, v: &[f64], a: &[f64]) -> Self {
         let (speed, acceleration) = (largest(v), largest(a));
         let flight = speed * time + 0.5 * acceleration * time * time;
@@ -38,25 +37,25 @@ impl Scale {
     }
 }
 
-/// Stages of the step at hand. Vectors are padded with zeros to whole lanes.
+/// The stages of the present step. Vectors are padded with zeros to a multiple of `LANES`.
 pub(super) struct Trial {
     stages: Vec<NystromStage>,
     end: Vec<Weight>,
-    /// Of the estimate, and of DOP853's second.
+    /// The weights of the error estimate, and of the second one that DOP853 has.
     errors: Vec<Vec<Weight>>,
     b: &'static [f64],
     first_same_as_last: bool,
     accelerations: Vec<Vec<f64>>,
     powers: Vec<Power>,
-    /// Coordinates.
+    /// The number of coordinates.
     dim: usize,
     /// The step's start.
     from_x: Vec<f64>,
     from_v: Vec<f64>,
-    /// The stage's position and velocity, then the end's.
+    /// The position and velocity of the stage, and at last of the end.
     x: Vec<f64>,
     v: Vec<f64>,
-    /// The first stage is known for the start, at this time.
+    /// The time of the start for which the first stage is known.
     known: Option<f64>,
 }
 
@@ -85,8 +84,8 @@ impl Trial {
         }
     }
 
-    /// Makes a state the start. Its forces are evaluated unless it is the end of the last step and
-    /// they are known from there.
+    /// Sets the start. The forces there are evaluated, unless they are known because it is the end of the last
+    /// step.
     pub fn begin(&mut self, system: &dyn System, state: &State) {
         let dim = state.x.len();
         let known = self.known == Some(state.t) && self.dim == dim;
@@ -107,18 +106,18 @@ impl Trial {
         self.known = Some(state.t);
     }
 
-    /// Whether the first stage is.
+    /// Whether the first stage is finite.
     pub fn is_finite(&self) -> bool {
         self.accelerations[0].iter().all(|a| a.is_finite())
     }
 
-    /// What errors are relative to, with the start taken for a run's, `time` seconds long.
+    /// The scale of errors, for a run of `time` seconds from this start.
     pub fn scale(&self, size: f64, time: f64) -> Scale {
         Scale::new(size, time, &self.from_v, &self.accelerations[0])
     }
 
-    /// How fast the start changes, 1/s: at first and, by one short Euler step, from there on. The
-    /// larger of both is what the first step is chosen by.
+    /// The rate of change at the start, 1/s, from which the first step is chosen: the larger of the rate by
+    /// the first derivative and that by the second, which takes one short Euler step.
     pub fn rate(&mut self, system: &dyn System, t: f64, most: f64, scale: &Scale) -> f64 {
         let dim = self.dim;
         let [a, beside, ..] = &mut self.accelerations[..] else {
@@ -139,14 +138,14 @@ impl Trial {
         let changes = a.iter().zip(beside.iter()).map(|(a, b)| (b - a).abs());
         let jerk = changes.fold(0.0, f64::max) / h;
         let second = (largest(&*a) / scale.length).max(jerk / scale.speed);
-        // An infinite force beside the start is found by the attempt.
+        // If the force beside the start is not finite, the attempt will find that.
         Some(second.sqrt())
             .filter(|second| second.is_finite())
             .map_or(first, |second| first.max(second))
     }
 
-    /// Evaluates the stages after the first over `h`, and gives the largest error over the
-    /// coordinates, position or velocity, in units of the scale. NaN if anything is not finite.
+    /// Evaluates the stages after the first over `h`. Returns the largest error over all coordinates, in
+    /// position or velocity, in units of the scale; NaN if anything is not finite.
     pub fn attempt(&mut self, system: &dyn System, t: f64, h: f64, scale: &Scale) -> f64 {
         let dim = self.dim;
         for stage in 1..self.stages.len() {
@@ -169,7 +168,7 @@ impl Trial {
         }
     }
 
-    /// Of one estimate, with the sums for positions and velocities multiplied by these sizes.
+    /// The largest error by one estimate, whose sums for positions and velocities are multiplied by `sizes`.
     fn largest_error(&self, weights: &[Weight], sizes: [f64; 2]) -> f64 {
         let mut most = [0.0_f64; LANES];
         let mut all = [0.0_f64; LANES];
@@ -183,7 +182,7 @@ impl Trial {
                 } else {
                     most[lane]
                 };
-                // Comparisons pass NaN by; sums do not.
+                // Comparisons ignore NaN, but sums keep it.
                 all[lane] += x + v;
             }
         }
@@ -194,8 +193,8 @@ impl Trial {
         }
     }
 
-    /// Moves a state to the end of the step tried, and to time `t`; gives the largest speed there.
-    /// None, and nothing moved, if the end is not finite.
+    /// Moves a state to the end of the attempted step, at time `t`. Returns the largest speed there; None, with
+    /// the state unchanged, if the end is not finite.
     pub fn accept(&mut self, h: f64, t: f64, state: &mut State) -> Option<f64> {
         let dim = self.dim;
         if !self.first_same_as_last {
@@ -233,14 +232,14 @@ impl Trial {
         Some(fastest)
     }
 
-    /// The first particle that something of the last attempt is not finite at.
+    /// The first particle at which a value of the last attempt is not finite.
     pub fn not_finite(&self) -> Option<usize> {
         let mut values = self.accelerations.iter().chain([&self.x, &self.v]);
         let bad = values.find_map(|values| values.iter().position(|c| !c.is_finite()));
         bad.map(|at| at / 3)
     }
 
-    /// The particle with the largest error in velocity.
+    /// The particle with the largest estimated error in velocity.
     pub fn worst(&self) -> usize {
         let mut errors = vec![0.0; self.from_x.len()];
         for weight in self.errors.first().into_iter().flatten() {
@@ -254,8 +253,8 @@ impl Trial {
     }
 }
 
-/// Places a stage: its position and velocity are the start's, drifted by the first of two times, plus a
-/// row's sums of accelerations over the second, the step.
+/// Computes a stage's position and velocity: the start, drifted over the time `drift`, plus the row's sums of
+/// accelerations over the step `h`.
 #[inline(always)]
 fn place(
     [from_x, from_v]: [&[f64]; 2],
