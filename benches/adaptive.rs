@@ -50,7 +50,7 @@ fn oscillator() -> Scene {
 
 fn finished(solver: &Solver, scene: &Scene, system: &ParticleSystem, setting: Setting) -> Run {
     let mut run = solver.start(scene, system, &setting).expect("a run");
-    let limits = Limits::new(system.clone(), None).now_and_then();
+    let limits = Limits::new(system.clone(), None).coarse();
     run.finish(&limits, &mut Unwatched, &|_| {});
     run
 }
@@ -60,7 +60,7 @@ fn by_pair(scene: &Scene, system: &ParticleSystem, pair: &'static Method, tolera
         tolerance,
         duration: scene.duration,
         steps: 1,
-        most: u64::MAX,
+        max_steps: u64::MAX,
     };
     finished(&Solver::method(pair), scene, system, setting)
 }

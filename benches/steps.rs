@@ -65,8 +65,7 @@ fn recording(c: &mut Criterion) {
     let scene = chain();
     let system = ParticleSystem::new(&scene);
     let scale = measure::energy_scale(&scene, &system, None);
-    let limits =
-        Limits::new(system.clone(), measure::divergence_limit(&scene, scale)).now_and_then();
+    let limits = Limits::new(system.clone(), measure::divergence_limit(&scene, scale)).coarse();
     let steps = scene.steps(scene.solver.timestep);
     let mut group = c.benchmark_group("chain of 20, 1,000,000 steps");
     group.sample_size(10);

@@ -21,13 +21,13 @@ pub(super) const LAW: Law = Law {
     judge: |subject| {
         // A method that claims nothing of damping is tested without it.
         let damping = subject.claims.order_damped.map_or(0.0, |_| 0.8);
-        let (linear, angular) = lost(subject, damping, DampingModel::Axial)?;
+        let (linear, angular) = change(subject, damping, DampingModel::Axial)?;
         let mut worst = Finding::at_most(linear, BOUND, "momentum");
         if subject.claims.symplectic && angular > linear {
             worst = Finding::at_most(angular, BOUND, "angular momentum");
         }
         if damping > 0.0 {
-            let (linear, angular) = lost(subject, damping, DampingModel::Isotropic)?;
+            let (linear, angular) = change(subject, damping, DampingModel::Isotropic)?;
             let finding = Finding::at_most(linear, BOUND, "momentum under isotropic dampers");
             if finding.measured > worst.measured {
                 worst = finding;
@@ -46,7 +46,7 @@ pub(super) const LAW: Law = Law {
 const BRAKED: f64 = 0.07;
 
 /// The change of momentum and of angular momentum over the run.
-fn lost(subject: &Subject, damping: f64, model: DampingModel) -> Result<(f64, f64), Broken> {
+fn change(subject: &Subject, damping: f64, model: DampingModel) -> Result<(f64, f64), Broken> {
     let scene = free_triangle(damping, model);
     let (system, start) = built(&scene);
     let mut state = start.clone();

@@ -26,7 +26,7 @@ pub(super) const LAW: Law = Law {
         }
         let mut other_time = first;
         other_time.t += 1.0;
-        let (mut off, mut where_) = (0.0, "another state");
+        let (mut off, mut case) = (0.0, "another state");
         for (what, state) in [
             ("the start once more", &start),
             ("another place", &other_place),
@@ -39,10 +39,10 @@ pub(super) const LAW: Law = Law {
             subject.advance(&Driven, STEP, 1, &mut by_fresh)?;
             let found = distance(&by_used, &by_fresh);
             if found > off {
-                (off, where_) = (found, what);
+                (off, case) = (found, what);
             }
         }
-        let what = format!("used before, then handed {where_}");
+        let what = format!("used before, then handed {case}");
         Ok(Finding::at_most(off, BOUND, &what))
     },
 };

@@ -62,8 +62,8 @@ impl Rational {
             }
         }
         Self {
-            numerator: kept(numerator),
-            denominator: kept(denominator),
+            numerator: trimmed(numerator),
+            denominator: trimmed(denominator),
         }
     }
 
@@ -150,7 +150,7 @@ impl Rational {
 
 /// The coefficients without leading zeros. They are leaked: a method is made once, and its facts live as
 /// long as the program.
-fn kept(mut coefficients: Vec<f64>) -> &'static [f64] {
+fn trimmed(mut coefficients: Vec<f64>) -> &'static [f64] {
     let degree = coefficients.iter().rposition(|c| *c != 0.0).unwrap_or(0);
     coefficients.truncate(degree + 1);
     coefficients.leak()
@@ -205,14 +205,14 @@ fn value(coefficients: &[f64], u: f64) -> f64 {
 
 /// The smallest u > 0 at which a polynomial, positive at 0, becomes negative.
 fn first_negative(coefficients: &[f64]) -> Option<f64> {
-    turns(coefficients)
+    sign_changes(coefficients)
         .into_iter()
         .find_map(|(u, falls)| falls.then_some(u))
 }
 
 /// All u > 0 at which a polynomial changes its sign, ascending, and whether it becomes negative there.
 /// Between two sign changes of its derivative a polynomial is monotone.
-fn turns(coefficients: &[f64]) -> Vec<(f64, bool)> {
+fn sign_changes(coefficients: &[f64]) -> Vec<(f64, bool)> {
     let degree = coefficients.iter().rposition(|c| *c != 0.0).unwrap_or(0);
     let coefficients = &coefficients[..=degree.min(coefficients.len().saturating_sub(1))];
     if degree == 0 {
@@ -228,7 +228,10 @@ fn turns(coefficients: &[f64]) -> Vec<(f64, bool)> {
     let leading = coefficients[degree].abs();
     let others = coefficients[..degree].iter();
     let bound = 1.0 + others.fold(0.0, |m: f64, c| m.max(c.abs())) / leading;
-    let mut ends: Vec<f64> = turns(&derivative).into_iter().map(|(u, _)| u).collect();
+    let mut ends: Vec<f64> = sign_changes(&derivative)
+        .into_iter()
+        .map(|(u, _)| u)
+        .collect();
     ends.push(bound);
     let mut from = 0.0;
     let mut found = Vec::new();

@@ -248,7 +248,7 @@ fn order_of_kicks(stages: &[Stage]) -> u32 {
 }
 
 /// The highest order that is tested.
-const HIGHEST: u32 = 10;
+const HIGHEST_ORDER: u32 = 10;
 
 /// A rooted tree, alone or as a branch of a larger one.
 struct Tree {
@@ -262,7 +262,7 @@ struct Tree {
 /// a root with any multiset of branches (Butcher 1963; Hairer, Nørsett, Wanner, Solving ODEs I, II.2).
 /// `branches` are the initial ones, and `turned` makes a branch from a tree.
 fn highest_order(b: &[f64], mut branches: Vec<Tree>, turned: &dyn Fn(&Tree) -> Tree) -> u32 {
-    for vertices in 1..=HIGHEST {
+    for vertices in 1..=HIGHEST_ORDER {
         let mut trees = Vec::new();
         let root = Tree {
             vertices,
@@ -279,7 +279,7 @@ fn highest_order(b: &[f64], mut branches: Vec<Tree>, turned: &dyn Fn(&Tree) -> T
         }
         branches.extend(trees.iter().map(turned));
     }
-    HIGHEST
+    HIGHEST_ORDER
 }
 
 /// Adds this many vertices to a tree by branches, in every way, each multiset of branches once.

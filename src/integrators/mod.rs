@@ -324,7 +324,7 @@ fn refuse(integrator: &dyn Integrator, system: &dyn System) -> Result<(), Refuse
         return Ok(());
     }
     Err(Refused {
-        who: "this integrator".to_owned(),
+        method: "this integrator".to_owned(),
         kinds,
         effects: Vec::new(),
     })

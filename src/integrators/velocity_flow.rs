@@ -19,7 +19,7 @@ const TAYLOR_TERMS: usize = 12;
 /// The largest dimension of the Krylov space. A flow that needs more is taken in two halves.
 const KRYLOV: usize = 60;
 /// Convergence is tested after every this many vectors, since each test solves an eigenproblem.
-const TRIED: usize = 6;
+const TESTED_EVERY: usize = 6;
 /// The number of halvings, 4,096 pieces, after which the damping counts as too stiff.
 pub(super) const HALVINGS: u32 = 12;
 
@@ -157,9 +157,9 @@ impl VelocityFlow {
             let beta = space.multiply(|q, image| system.damping(t, x, q, image));
             // Only rounding is left after orthogonalising: the space is invariant.
             let closed = beta <= 1e-13 * space.image || beta == 0.0;
-            if closed || (k + 1) % TRIED == 0 {
+            if closed || (k + 1) % TESTED_EVERY == 0 {
                 let projected = DMatrix::from_fn(k + 1, k + 1, |i, j| h * space.tridiagonal(i, j));
-                let Some(small) = solved(projected) else {
+                let Some(small) = eigen(projected) else {
                     return false;
                 };
                 if actions.whole && small.eigenvalues.iter().any(|z| *z > EXPONENT) {
@@ -213,7 +213,7 @@ const EXPONENT: f64 = 700.0;
 
 /// The eigenvalues and eigenvectors of the projected matrix h T, symmetric and tridiagonal. None if an entry
 /// is not finite, since the eigensolver might then not end.
-fn solved(tridiagonal: DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
+fn eigen(tridiagonal: DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
     let finite = tridiagonal.iter().all(|c| c.is_finite());
     let sweeps = 100 * tridiagonal.nrows();
     finite

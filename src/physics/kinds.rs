@@ -69,7 +69,7 @@ impl ForceKinds {
     }
 
     /// The kinds of the same force with its sign flipped.
-    pub(crate) fn turned(self) -> Self {
+    pub(crate) fn negated(self) -> Self {
         let swap = |from: Self, to: Self| if self.has(from) { to } else { Self::NONE };
         self.without(Self::DISSIPATIVE | Self::NEGATIVE_DAMPING)
             | swap(Self::DISSIPATIVE, Self::NEGATIVE_DAMPING)
@@ -101,14 +101,14 @@ impl fmt::Display for ForceKinds {
 /// The refusal of forces that a method does not accept: it would step, and be wrong.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{who} takes no force that is {kinds}{}: how it treats velocity needs forces linear in it by a \
+    "{method} takes no force that is {kinds}{}: how it treats velocity needs forces linear in it by a \
      symmetric matrix, as dampers and drag are; explicit Runge-Kutta methods (rk4), adaptive pairs and \
      symplectic_euler take any",
     list(effects)
 )]
 pub struct Refused {
     /// The method's id, or another name of it.
-    pub who: String,
+    pub method: String,
     /// The kinds that are refused.
     pub kinds: ForceKinds,
     /// Ids of the effects that have these kinds, where they are known.

@@ -58,21 +58,21 @@ impl ParticleSystem {
     ///
     /// # Errors
     /// [`Refused`], with the effects it does not accept.
-    pub fn admits(&self, who: &str, taken: ForceKinds) -> Result<(), Refused> {
+    pub fn admits(&self, method: &str, taken: ForceKinds) -> Result<(), Refused> {
         let kinds = self.kinds.without(taken);
         if kinds == ForceKinds::NONE {
             return Ok(());
         }
         let refused = self.effects.iter().filter(|(_, e)| e.kinds().has(kinds));
         Err(Refused {
-            who: who.to_owned(),
+            method: method.to_owned(),
             kinds,
             effects: refused.map(|(row, _)| row.id).collect(),
         })
     }
 
     /// The same forces with every free mass 1. A program that never divides by the mass computes this.
-    pub fn undivided(&self) -> Self {
+    pub fn with_unit_masses(&self) -> Self {
         let whole = |w: &f64| if *w > 0.0 { 1.0 } else { 0.0 };
         Self {
             inverse_mass: self.inverse_mass.iter().map(whole).collect(),

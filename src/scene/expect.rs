@@ -5,7 +5,7 @@ use super::error::{Refusal, refuse};
 use super::expectation::{ALL, Expectation, KeyKind, Names, REST, Scope, Wanted};
 use super::limits::{BOUND, EXPECTED, WORD_BYTES, known};
 use super::place::Problem;
-use super::values::{Any, Key, Maybe, index_of, no_merge, number, text, twice, unknown};
+use super::values::{Any, Key, Maybe, index_of, no_merge, number, repeated, text, unknown};
 use super::words::{did_you_mean, shorten};
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use std::fmt;
@@ -43,7 +43,7 @@ impl<'de> Visitor<'de> for Engines<'_> {
 fn fresh(key: &str, before: &mut Vec<String>) -> Result<(), Refusal> {
     short(key)?;
     if before.iter().any(|before| before == key) {
-        return Err(twice(key));
+        return Err(repeated(key));
     }
     if before.len() >= EXPECTED {
         return Refusal::because(format!("expected at most {EXPECTED} keys"), "");

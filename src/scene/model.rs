@@ -39,7 +39,7 @@ pub struct Part {
     /// What is expected there, as messages say it.
     pub(super) expected: &'static str,
     /// Keys that the format reserves, but this version does not read.
-    pub(super) later: &'static [&'static str],
+    pub(super) reserved: &'static [&'static str],
     pub rows: &'static [Row],
     /// How many members the scene has; 0 or 1 where the part is not a list.
     pub count: fn(&Scene) -> usize,
@@ -121,7 +121,7 @@ use Absent::{Derived, Required, Usual};
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    later ["air", "bending", "colliders", "driven", "magnetic", "objects", "rods", "strain_limit"];
+    reserved ["air", "bending", "colliders", "driven", "magnetic", "objects", "rods", "strain_limit"];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
@@ -161,7 +161,7 @@ declare! {
 declare! {
     /// The block `solver`. Not to be confused with [`solvers::Solver`](crate::solvers::Solver), which runs
     /// a scene.
-    SOLVER: SolverSpec, one solver, "a mapping with `type` and `timestep`", later [];
+    SOLVER: SolverSpec, one solver, "a mapping with `type` and `timestep`", reserved [];
 
     /// An integrator's id.
     method: String = "symplectic_euler".into(), "type" => ValueKind::Text(limits::method),
@@ -179,7 +179,7 @@ declare! {
 
 declare! {
     /// The curve the report shows first.
-    PLOT: Plot, maybe plot, "a mapping with `particle_id` and `dof`", later [];
+    PLOT: Plot, maybe plot, "a mapping with `particle_id` and `dof`", reserved [];
 
     /// The particle whose curve is shown.
     particle: usize = 0,
@@ -194,7 +194,7 @@ declare! {
 
 declare! {
     /// A mass point.
-    PARTICLES: Particle, list particles, "a particle: a mapping with `pos` and `mass`", later [];
+    PARTICLES: Particle, list particles, "a particle: a mapping with `pos` and `mass`", reserved [];
 
     /// Metres, at the start.
     position: [f64; 3] = [0.0; 3], "pos" => ValueKind::Numbers(3, limits::POSITION),
@@ -217,7 +217,7 @@ declare! {
 declare! {
     /// A spring and the damper beside it.
     SPRINGS: Spring, list springs, "a spring: a mapping with `particle_ids` and `stiffness`",
-    later [];
+    reserved [];
 
     /// Two different particles.
     ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids,
@@ -240,7 +240,7 @@ declare! {
     /// Attraction G m1 m2 / r² between two particles.
     GRAVITATIONAL: GravitationalPair, list gravitational,
     "a pair: a mapping with `particle_ids` and `G`",
-    later [];
+    reserved [];
 
     /// Two different particles.
     ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids,
@@ -253,7 +253,7 @@ declare! {
 declare! {
     /// A constant force on every free particle, whatever its mass. Not to be confused with moving air.
     WIND: Wind, maybe wind, "a mapping with `direction` and `strength`",
-    later ["velocity", "density", "profile"];
+    reserved ["velocity", "density", "profile"];
 
     /// Unit vector; in the file of any length but 0.
     direction: [f64; 3] = [1.0, 0.0, 0.0],

@@ -105,7 +105,7 @@ impl<'de> Visitor<'de> for Mapping<'_, '_> {
 
 /// The index of the row of a key, which must not be repeated.
 fn row_of(part: &Part, key: &str, seen: &mut u32) -> Result<usize, Refusal> {
-    if part.later.contains(&key) {
+    if part.reserved.contains(&key) {
         let help = "remove the key to run the rest of the scene";
         return Err(Refusal::new("not supported yet", help).of(key));
     }

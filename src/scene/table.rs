@@ -125,7 +125,7 @@ macro_rules! members {
 macro_rules! declare {
     (
         $(#[$about:meta])*
-        $name:ident: $type:ident, $how:ident $place:ident, $expected:literal, later $later:expr;
+        $name:ident: $type:ident, $how:ident $place:ident, $expected:literal, reserved $reserved:expr;
         $([$(#[$note:meta])* $unlisted:ident: $kept:ty = $empty:expr])?
         $(
             $(#[doc = $summary:literal])*
@@ -151,7 +151,7 @@ macro_rules! declare {
             key: stringify!($place),
             list: matches!(stringify!($how).as_bytes(), b"list"),
             expected: $expected,
-            later: &$later,
+            reserved: &$reserved,
             rows: &[$(Row {
                 key: $key,
                 summary: concat!($($summary),*),

@@ -74,7 +74,7 @@ impl<'de, T, F: FnMut(&str) -> Result<T, Refusal>> DeserializeSeed<'de> for Key<
 }
 
 /// The refusal of a repeated key.
-pub(super) fn twice(key: &str) -> Refusal {
+pub(super) fn repeated(key: &str) -> Refusal {
     Refusal::new("this key is given twice", "keep one of them").of(key)
 }
 
@@ -92,7 +92,7 @@ pub(super) fn index_of<'k>(
     let before = *seen;
     *seen |= 1 << index;
     if *seen == before {
-        return Err(twice(key));
+        return Err(repeated(key));
     }
     Ok(index)
 }

@@ -1,4 +1,4 @@
-//! The engines that run integrators of this program, and the one function that takes their steps.
+//! The engines that run the integrators of this program, and the function that takes their steps.
 
 use super::{Counts, Engine};
 use crate::integrators::adaptive::{Adaptive, Pair};
@@ -8,9 +8,8 @@ use crate::scene::Scene;
 
 /// Advances a state by a step of `h` seconds, from `state.t` to `state.t + h`.
 ///
-/// Every step of an integrator outside of [`conformance`](crate::conformance) is taken here. What acts
-/// within a step (an event) or after it (a correction, which adds what it takes out to `state.work`)
-/// belongs here.
+/// Every step of an integrator outside of [`conformance`](crate::conformance) is taken here. Events within a
+/// step belong here, and so do corrections after it, which add the energy they take out to `state.work`.
 ///
 /// # Errors
 /// [`StepError`] as the integrator's; the state is then as it was.
@@ -33,7 +32,7 @@ pub struct IntegratorEngine {
 }
 
 impl IntegratorEngine {
-    /// From a method's row. `timestep` in seconds, positive.
+    /// An engine for a method. `timestep` in seconds, positive.
     pub fn new(
         scene: &Scene,
         system: ParticleSystem,
@@ -44,7 +43,7 @@ impl IntegratorEngine {
         Self::with(scene, system, method.build(settings), timestep)
     }
 
-    /// With an integrator of the caller's own.
+    /// An engine for an integrator of the caller's own.
     pub fn with(
         scene: &Scene,
         system: ParticleSystem,
@@ -91,7 +90,7 @@ impl Engine for IntegratorEngine {
 
 /// An adaptive pair on a scene's particle system, from t = 0 to a given time, in steps of its own.
 ///
-/// Its state's time is what its steps add up to, and at the end it is `until` to the last bit.
+/// Its state's time is the sum of its steps, and at the end exactly `until`.
 pub struct AdaptiveEngine {
     system: Counting<ParticleSystem>,
     stepper: Adaptive,
@@ -100,8 +99,8 @@ pub struct AdaptiveEngine {
 }
 
 impl AdaptiveEngine {
-    /// `tolerance` is relative to the scene's size, as [`Adaptive`] has it; `until` in seconds. Unless
-    /// that is positive and finite there is nothing to do.
+    /// `tolerance` is relative to the scene's size, as in [`Adaptive`]; `until` is in seconds. Unless `until` is
+    /// positive and finite the engine takes no step.
     pub fn new(
         scene: &Scene,
         system: ParticleSystem,
@@ -119,8 +118,7 @@ impl AdaptiveEngine {
 }
 
 impl Engine for AdaptiveEngine {
-    /// One accepted step of its own length; the last ends exactly at `until`, and beyond it nothing
-    /// happens.
+    /// Takes one accepted step. The last one ends exactly at `until`; further calls do nothing.
     fn step(&mut self) -> Result<(), StepError> {
         if self.done() {
             return Ok(());
@@ -149,7 +147,7 @@ impl Engine for AdaptiveEngine {
     }
 }
 
-/// What a counted system was asked for.
+/// The evaluations that a system counted.
 fn evaluated(system: &Counting<ParticleSystem>) -> Counts {
     let evaluations = system.evaluations();
     Counts {

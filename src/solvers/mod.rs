@@ -1,4 +1,4 @@
-//! Whatever can run a scene: the [`catalogue`] of solvers, and the [`Run`] that takes their steps.
+//! Everything that can run a scene: the [`catalogue`] of solvers, and the [`Run`] that takes their steps.
 
 pub mod external;
 mod integrator;
@@ -26,27 +26,27 @@ pub trait Engine: Send {
     /// tolerance; the state is then the last good one.
     fn step(&mut self) -> Result<(), StepError>;
 
-    /// The state now: all particles, fixed ones included, and the time.
+    /// The present state: all particles, fixed ones included, and the time.
     fn state(&self) -> &State;
 
-    /// What has been computed so far.
+    /// The work counted so far.
     fn counts(&self) -> Counts;
 
-    /// Whether it has come to an end of its own, as an adaptive pair does.
+    /// Whether it has reached its own end, as an adaptive pair does.
     fn done(&self) -> bool {
         false
     }
 
-    /// Steps it tried in vain; what they cost is counted with the others.
+    /// The number of rejected steps. Their evaluations are counted with the others.
     fn rejected(&self) -> u64 {
         0
     }
 }
 
-/// Work that can be counted; None where an engine does not tell.
+/// Work that is counted; None where an engine does not report it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Full evaluations of all forces.
+    /// Evaluations of all forces.
     pub force_evaluations: Option<u64>,
     /// Evaluations of the velocity-dependent effects alone (inside exact damping flows).
     pub damping_evaluations: Option<u64>,
@@ -55,19 +55,19 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// What a run's forces cost: full evaluations and passes over damping alone, which cost about
-    /// as much where there is damping at all.
+    /// All force evaluations of a run: full ones and those of damping alone, which cost about as much where
+    /// there is damping.
     pub fn all_force_passes(&self) -> Option<u64> {
         self.force_evaluations
             .map(|full| full + self.damping_evaluations.unwrap_or(0))
     }
 }
 
-/// Why an engine cannot run a scene. An answer, not a fault.
+/// The reason why an engine cannot run a scene. This is a valid outcome, not a fault.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{reason}")]
 pub struct Unsupported {
-    /// What the scene has that the engine cannot mirror.
+    /// The part of the scene that the engine cannot mirror.
     pub reason: String,
 }
 

@@ -1,4 +1,4 @@
-//! A run: advances a solver, hands its states to an observer, and stops what diverges.
+//! A run advances a solver, passes its states to an observer, and stops when it diverges.
 
 use super::setting::Setting;
 use super::{Counts, Engine};
@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+/// The status of an outcome, as reports state it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
@@ -18,15 +19,16 @@ pub enum Status {
     Unsupported,
 }
 
-/// When a run counts as diverged: non-finite, or K + U_elastic beyond a limit.
+/// The limits beyond which a run counts as diverged: a state that is not finite, or K + U_elastic above a
+/// limit.
 #[derive(Clone)]
 pub struct Limits {
     system: ParticleSystem,
-    /// Joules.
+    /// The largest K + U_elastic, J.
     limit: Option<f64>,
-    /// Largest mass, kg.
+    /// The largest mass, kg.
     heaviest: f64,
-    /// Steps from one look to the next.
+    /// The number of steps from one test to the next.
     every: u64,
 }
 
@@ -34,27 +36,27 @@ pub struct Limits {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ended {
     Completed,
-    /// At the end of this step; the cause in words.
+    /// Diverged at the end of this step, with the reason in words.
     Diverged {
         step: u64,
         reason: String,
     },
-    /// In this step, which could not be taken.
+    /// Failed in this step, which could not be taken.
     Failed {
         step: u64,
         error: StepError,
     },
-    /// An adaptive pair that is not there after as many steps as its setting allows.
+    /// An adaptive pair has not reached the end within the steps that its setting allows.
     Exhausted,
 }
 
-/// The elastic energy is looked at only when the kinetic energy has passed this share of the limit:
-/// in an exploding run it passes first unless one step alone grows the energy a millionfold.
+/// The elastic energy is computed only when the kinetic energy exceeds this fraction of the limit. In a
+/// diverging run this happens first, unless one step alone multiplies the energy by a million.
 const SUSPECT: f64 = 1e-6;
 
 impl Limits {
-    /// `limit` in joules, as [`divergence_limit`](crate::measure::divergence_limit) gives it; None
-    /// leaves only the finiteness test.
+    /// `limit` in joules, as [`divergence_limit`](crate::measure::divergence_limit) gives it; with None only
+    /// the state's finiteness is tested.
     pub fn new(system: ParticleSystem, limit: Option<f64>) -> Self {
         let inverse = system.inverse_mass().iter().filter(|w| **w > 0.0);
         let heaviest = inverse.fold(0.0, |m: f64, w| m.max(1.0 / w));
@@ -66,16 +68,16 @@ impl Limits {
         }
     }
 
-    /// The same, looked at only now and then, which costs a run next to nothing. A run that ends
-    /// early under these ended *about* there: run it again under the exact limits to know where.
-    pub fn now_and_then(&self) -> Self {
+    /// The same limits, tested every 16 steps only, at almost no cost. A run that diverges under these diverged
+    /// at most 16 steps earlier: run it again under the exact limits to find the step.
+    pub fn coarse(&self) -> Self {
         Self {
             every: 16,
             ..self.clone()
         }
     }
 
-    /// Why this state counts as diverged, if it does.
+    /// The reason why this state counts as diverged; None if it does not.
     pub(crate) fn exceeded(&self, state: &State) -> Option<String> {
         // The squared speeds bound K from above at half its cost.
         let kinetic = 0.5 * self.heaviest * sum_of_squares(&state.v);
@@ -87,7 +89,7 @@ impl Limits {
         if calm { None } else { self.examine(state) }
     }
 
-    /// The definition in full.
+    /// Tests the full definition.
     fn examine(&self, state: &State) -> Option<String> {
         let bad = |values: &[f64]| values.iter().position(|c| !c.is_finite());
         if let Some(at) = bad(&state.x).or_else(|| bad(&state.v)) {
@@ -108,7 +110,7 @@ impl Limits {
     }
 }
 
-/// Sum of v², in eight running sums: one long chain of additions would cost more than a spring.
+/// The sum of v², in eight running sums: one long chain of additions would cost more than a spring force.
 fn sum_of_squares(v: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let blocks = v.chunks_exact(8);
@@ -135,7 +137,7 @@ fn fastest(v: &[f64]) -> usize {
         .0
 }
 
-/// What several runs evaluated together; each adds its own when it is dropped.
+/// The evaluations of several runs together. Each run adds its own when it is dropped.
 #[derive(Debug, Default)]
 pub struct Tally {
     forces: AtomicU64,
@@ -143,13 +145,13 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Full evaluations, passes over damping alone.
+    /// Full evaluations, and evaluations of damping alone.
     pub fn evaluations(&self) -> [u64; 2] {
         [&self.forces, &self.damping].map(|count| count.load(Ordering::Relaxed))
     }
 }
 
-/// A solver on a scene, at its start or on its way: the only place that takes steps.
+/// A solver on a scene, at the start or part of the way. Only a run steps an engine.
 pub struct Run {
     engine: Box<dyn Engine>,
     setting: Setting,
@@ -167,29 +169,29 @@ impl Run {
         }
     }
 
-    /// The same, adding to `tally` what it evaluated once it is dropped.
+    /// The same run, which adds its evaluations to `tally` when it is dropped.
     #[must_use]
     pub fn tallied(mut self, tally: &Arc<Tally>) -> Self {
         self.tally = Some(Arc::clone(tally));
         self
     }
 
-    /// The state now.
+    /// The present state.
     pub fn state(&self) -> &State {
         self.engine.state()
     }
 
-    /// What has been computed so far.
+    /// The work counted so far.
     pub fn counts(&self) -> Counts {
         self.engine.counts()
     }
 
-    /// Steps taken; of an adaptive pair those accepted.
+    /// The number of steps taken; for an adaptive pair, of accepted steps.
     pub fn taken(&self) -> u64 {
         self.taken
     }
 
-    /// Takes some steps that nobody watches, wherever the setting ends.
+    /// Takes this many steps without an observer, regardless of the setting's end.
     ///
     /// # Errors
     /// The first step that could not be taken; the state is then the last good one.
@@ -206,10 +208,10 @@ impl Run {
         Ok(())
     }
 
-    /// Goes to the end of the setting, or until the run diverges, fails or is exhausted; observes step 0
-    /// first. For a run at its start.
+    /// Runs to the end of the setting, or until the run diverges, fails or is exhausted. It observes step 0
+    /// first, so the run has to be at its start.
     ///
-    /// `tick` is called now and then with the steps taken since the last call.
+    /// `tick` is called every 1024 steps, and at the end, with the steps taken since the last call.
     pub fn finish(
         &mut self,
         limits: &Limits,
@@ -249,13 +251,13 @@ impl Run {
         }
     }
 
-    /// Whether it is over.
+    /// How the run ends at the present step; None if it goes on.
     fn end(&self) -> Option<Ended> {
         match self.setting {
             Setting::Steps { steps, .. } => (self.taken >= steps).then_some(Ended::Completed),
             Setting::Tolerance { .. } if self.engine.done() => Some(Ended::Completed),
-            Setting::Tolerance { most, .. } => {
-                (self.taken + self.engine.rejected() >= most).then_some(Ended::Exhausted)
+            Setting::Tolerance { max_steps, .. } => {
+                (self.taken + self.engine.rejected() >= max_steps).then_some(Ended::Exhausted)
             }
         }
     }

@@ -1,6 +1,6 @@
-//! What a solver runs at: a step or a tolerance.
+//! The setting of a solver: a step or a tolerance.
 
-/// What a solver runs at.
+/// The setting at which a solver runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Setting {
     /// A number of equal steps of this size, s.
@@ -8,17 +8,17 @@ pub enum Setting {
     /// The tolerance of an adaptive pair, relative to the scene's size.
     Tolerance {
         tolerance: f64,
-        /// When the run ends, s.
+        /// The time at which the run ends, s.
         duration: f64,
-        /// About how many steps it takes.
+        /// The approximate number of steps.
         steps: u64,
-        /// It is stopped after so many, accepted or not.
-        most: u64,
+        /// The number of steps, accepted or rejected, after which the run is stopped.
+        max_steps: u64,
     },
 }
 
 impl Setting {
-    /// A fixed step, s, for as long as the caller goes on.
+    /// A fixed step, s, for any number of steps.
     pub fn step(timestep: f64) -> Self {
         Self::Steps {
             timestep,
@@ -34,7 +34,7 @@ impl Setting {
         }
     }
 
-    /// The step, s; of a pair about the mean one.
+    /// The step, s; for a pair, about the mean step.
     pub fn timestep(&self) -> f64 {
         match self {
             Self::Steps { timestep, .. } => *timestep,
@@ -44,14 +44,14 @@ impl Setting {
         }
     }
 
-    /// Steps to the end; of a pair about so many.
+    /// The number of steps to the end; approximate for a pair.
     pub fn steps(&self) -> u64 {
         match self {
             Self::Steps { steps, .. } | Self::Tolerance { steps, .. } => *steps,
         }
     }
 
-    /// Of a pair; None for a fixed step.
+    /// The tolerance of a pair; None for a fixed step.
     pub fn tolerance(&self) -> Option<f64> {
         match self {
             Self::Steps { .. } => None,
@@ -59,7 +59,7 @@ impl Setting {
         }
     }
 
-    /// Whether it is as coarse as another setting of the same solver, or coarser.
+    /// Whether it is at least as coarse as another setting of the same solver.
     pub fn is_no_finer(&self, other: &Self) -> bool {
         match (self.tolerance(), other.tolerance()) {
             (Some(own), Some(other)) => own >= other,

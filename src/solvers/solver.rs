@@ -1,4 +1,4 @@
-//! The catalogue: whatever can run a scene, with its facts, and how to make a fresh one.
+//! The catalogue of solvers: everything that can run a scene, with its facts and a way to start a fresh run.
 
 use super::external::Program;
 use super::integrator::{AdaptiveEngine, IntegratorEngine};
@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::Arc;
 
+/// The kind of a solver, as reports state it. An adaptive pair is an integrator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SolverKind {
@@ -24,30 +25,30 @@ pub enum SolverKind {
 /// Something that can run a scene: an integrator, an adaptive pair, a rapier world, another program.
 #[derive(Clone)]
 pub struct Solver {
-    /// What reports and the command line call it.
+    /// The id that reports and the command line use.
     pub id: Cow<'static, str>,
     pub kind: SolverKind,
-    /// A line for lists.
+    /// One line for lists.
     pub summary: &'static str,
-    /// The method whose step each of its substeps is; None where it is none, or nobody knows.
+    /// The method that each of its substeps follows; None where it follows none, or where that is unknown.
     pub follows: Option<&'static Method>,
-    /// Steps of that method, or solves, inside one timestep: rapier's iterations, else 1.
+    /// The number of steps of that method, or of solves, in one timestep: rapier's iterations, else 1.
     pub substeps: u32,
-    /// Others report their distance from it.
+    /// Whether other solvers report their distance from it.
     pub reference: bool,
-    /// The timestep it takes whatever others take, s.
+    /// Its own timestep, s; None where it takes the common one.
     pub timestep: Option<f64>,
-    /// Why it loses energy by design, `{n}` standing for its substeps.
+    /// The reason why it loses energy by design; `{n}` stands for its substeps.
     dissipates: Option<&'static str>,
     source: Source,
 }
 
-/// Where a solver's trajectory comes from.
+/// The source of a solver's trajectory.
 #[derive(Clone)]
 enum Source {
     Method(&'static Method),
     Own(Arc<BuildIntegrator>),
-    /// rapier's world in its own terms.
+    /// A rapier world with rapier's own joints and gravity.
     Joints(rapier::RapierSettings),
     /// rapier's bodies under forces computed here.
     Forces,
@@ -58,7 +59,7 @@ enum Source {
 pub type BuildIntegrator = dyn Fn() -> Box<dyn Integrator> + Send + Sync;
 
 impl Solver {
-    /// A method of the registry; a pair chooses its own steps.
+    /// A solver for a method of the registry; a pair chooses its own steps.
     pub fn method(method: &'static Method) -> Self {
         Self {
             follows: method.pair().is_none().then_some(method),
@@ -66,8 +67,8 @@ impl Solver {
         }
     }
 
-    /// An integrator of the caller's own, under a name no other solver has. Nothing is claimed of it:
-    /// [`conformance::check`](crate::conformance::check) is for that.
+    /// A solver for an integrator of the caller's own, under a name that no other solver has. It makes no
+    /// claims; [`conformance::check`](crate::conformance::check) tests those.
     pub fn own(
         name: &str,
         build: impl Fn() -> Box<dyn Integrator> + Send + Sync + 'static,
@@ -76,7 +77,7 @@ impl Solver {
         Self::integrator(name.to_owned().into(), "an integrator of your own", source)
     }
 
-    /// Another program, under a name no other solver has. It gives whole trajectories.
+    /// A solver for another program, under a name that no other solver has. It gives whole trajectories.
     pub fn program(name: &str, program: Arc<dyn Program>) -> Self {
         Self {
             kind: SolverKind::External,
@@ -88,8 +89,7 @@ impl Solver {
         }
     }
 
-    /// rapier's spring joints with settings of the caller's own, named after those that are not rapier's
-    /// defaults.
+    /// rapier's spring joints with the caller's settings. Its id lists those that differ from the defaults.
     pub fn rapier(settings: rapier::RapierSettings) -> Self {
         Self {
             id: format!("rapier({})", settings.changes()).into(),
@@ -112,12 +112,12 @@ impl Solver {
         }
     }
 
-    /// Its row, for a method of fixed steps.
+    /// The method, if the solver is one of fixed steps.
     pub fn as_method(&self) -> Option<&'static Method> {
         self.row().filter(|method| method.pair().is_none())
     }
 
-    /// Its row, for an adaptive pair.
+    /// The method, if the solver is an adaptive pair.
     pub fn as_pair(&self) -> Option<&'static Method> {
         self.row().filter(|method| method.pair().is_some())
     }
@@ -129,7 +129,7 @@ impl Solver {
         }
     }
 
-    /// What gives its trajectory, for another program.
+    /// The program, if the solver is another program.
     pub fn as_program(&self) -> Option<&dyn Program> {
         match &self.source {
             Source::Program(program) => Some(program.as_ref()),
@@ -137,13 +137,13 @@ impl Solver {
         }
     }
 
-    /// The order its row states for a scene with or without damping; None where nothing is stated.
+    /// The order of its method for a scene with or without damping; None where it has no method.
     pub fn order(&self, damped: bool) -> Option<u32> {
         let of = |row: &Method| if damped { row.order_damped } else { row.order };
         self.row().map(of)
     }
 
-    /// Why a run loses energy by this solver's design; None where it should not.
+    /// The reason why the solver loses energy by design; None where it should not.
     pub fn dissipates(&self) -> Option<String> {
         let why = self.dissipates?;
         Some(why.replace("{n}", &self.substeps.to_string()))
@@ -152,8 +152,8 @@ impl Solver {
     /// A fresh run at the scene's start.
     ///
     /// # Errors
-    /// [`Unsupported`] where the solver has no honest counterpart of something in the scene, and for
-    /// another program, which takes no single steps.
+    /// [`Unsupported`] where the solver has no true counterpart of something in the scene, and for another
+    /// program, which takes no single steps.
     pub fn start(
         &self,
         scene: &Scene,
@@ -163,7 +163,7 @@ impl Solver {
         Ok(Run::new(self.engine(scene, system, setting)?, *setting))
     }
 
-    /// What a [`Run`] takes the steps of, bare: to hold an engine itself against a law.
+    /// The bare engine that a [`Run`] steps, so that laws can test it.
     ///
     /// # Errors
     /// As [`start`](Self::start).
@@ -231,7 +231,7 @@ fn worlds() -> [Solver; 3] {
     [joints(rapier::RapierSettings::DEFAULT), forces, converged]
 }
 
-/// rapier's spring joints under these settings; only at the defaults is it what people ship.
+/// rapier's spring joints with these settings; its texts describe the defaults.
 fn joints(settings: rapier::RapierSettings) -> Solver {
     Solver {
         kind: SolverKind::Rapier,
@@ -260,7 +260,7 @@ pub fn find(id: &str) -> Option<Solver> {
     catalogue().find(|solver| solver.id == id)
 }
 
-/// These methods after the integrator of the id `own`, which a scene names.
+/// The integrator of the id `own`, which a scene names, and then the other methods.
 pub fn own_first(own: &str, methods: impl Iterator<Item = Solver>) -> Vec<Solver> {
     let first = integrators::fixed().iter().find(|method| method.id == own);
     (first.map(Solver::method).into_iter())
@@ -268,7 +268,7 @@ pub fn own_first(own: &str, methods: impl Iterator<Item = Solver>) -> Vec<Solver
         .collect()
 }
 
-/// Every method of fixed steps, the one with the id `own` first.
+/// Every method of fixed steps, first the one with the id `own`.
 pub fn methods(own: &str) -> Vec<Solver> {
     own_first(own, integrators::fixed().iter().map(Solver::method))
 }

@@ -180,8 +180,8 @@ impl Adaptive {
         }
         let scale = self.trial.scale(self.size, left);
         let rate = self.trial.rate(system, t, left, &scale);
-        let share = (0.01 * self.tolerance).powf(1.0 / f64::from(self.k));
-        let h = share / rate;
+        let fraction = (0.01 * self.tolerance).powf(1.0 / f64::from(self.k));
+        let h = fraction / rate;
         let h = if h < left { h } else { left };
         self.started = Some((scale, h));
         Ok((scale, h))

@@ -1,4 +1,4 @@
-//! Factors: dense ones for a few unknowns, sparse ones with kept patterns for many.
+//! Factors of the matrix: dense for few unknowns, sparse with a kept pattern for many.
 
 use super::StepError;
 use super::matrix::Matrix;
@@ -17,17 +17,17 @@ use faer::sparse::{
 use faer::{Conj, Side};
 use nalgebra::{Cholesky, DMatrix, DVectorViewMut, Dyn};
 
-/// L Lᵀ of the symmetric part.
+/// The dense Cholesky factor L Lᵀ of the symmetric part.
 #[derive(Default)]
 pub(super) struct Dense {
     factor: Option<Cholesky<f64, Dyn>>,
 }
 
 impl Dense {
-    /// False where the symmetric part is not positive definite.
+    /// Factorises; false where the symmetric part is not positive definite.
     pub(super) fn factorise(&mut self, matrix: &Matrix) -> bool {
         let n = matrix.size();
-        // The memory of the last factor.
+        // The memory of the last factor is reused.
         let mut entries = match self.factor.take() {
             Some(factor) => factor.unpack_dirty(),
             None => DMatrix::zeros(n, n),
@@ -65,7 +65,7 @@ impl Dense {
 pub(super) fn solve_dense_lu(matrix: &Matrix, z: &mut [f64]) -> bool {
     let n = matrix.size();
     if n == 0 {
-        // All fixed: nalgebra's LU does not take it.
+        // nalgebra's LU does not accept a matrix without rows.
         return true;
     }
     let mut entries = DMatrix::zeros(n, n);
@@ -75,7 +75,7 @@ pub(super) fn solve_dense_lu(matrix: &Matrix, z: &mut [f64]) -> bool {
         .solve_mut(&mut DVectorViewMut::from_slice(z, n))
 }
 
-/// L Lᵀ of the symmetric part. Made for one pattern; every factor after the first costs no
+/// The sparse Cholesky factor L Lᵀ of the symmetric part, for one pattern. Factors after the first need no
 /// allocation.
 pub(super) struct Sparse {
     symbolic: SymbolicCholesky<usize>,
@@ -101,8 +101,8 @@ impl Sparse {
         }
         let places = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
         let ordering = SymmetricOrdering::Amd;
-        // Blocks of three make supernodes worth while at any size: on cloths of 186 and 582 unknowns
-        // they take a half and a third of the time of single columns.
+        // With blocks of three supernodes pay at any size: on cloths of 186 and 582 unknowns they take a half
+        // and a third of the time of single columns.
         let blocked = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..Default::default()
@@ -122,12 +122,12 @@ impl Sparse {
         })
     }
 
-    /// Numbers in the factor.
+    /// The number of entries of the factor.
     pub(super) fn fill(&self) -> usize {
         self.symbolic.len_val()
     }
 
-    /// False where the symmetric part is not positive definite.
+    /// Factorises; false where the symmetric part is not positive definite.
     pub(super) fn factorise(&mut self, matrix: &Matrix) -> bool {
         let n = matrix.size();
         for block in 0..matrix.diagonal.len() {
@@ -173,7 +173,7 @@ impl Sparse {
     }
 }
 
-/// L U of the matrix itself.
+/// The sparse LU factorisation of the matrix itself.
 pub(super) struct SparseLu {
     places: SymbolicSparseColMat<usize>,
     order: Argsort<usize>,
@@ -195,7 +195,7 @@ impl SparseLu {
         })
     }
 
-    /// False where the matrix is singular.
+    /// Factorises and solves; false where the matrix is singular.
     pub(super) fn solve(&self, matrix: &Matrix, z: &mut [f64]) -> bool {
         let mut values = Vec::new();
         matrix.for_each(|_, _, value| values.push(value));

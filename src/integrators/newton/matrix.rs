@@ -1,5 +1,5 @@
-//! The matrix M - γ C - γ² K in blocks of 3 x 3, with a kept pattern: a system emits the pieces of its
-//! Jacobian in the same places at every call, so where pairs go is looked up once.
+//! The matrix M - γ C - γ² K in blocks of 3 x 3. A system emits the entries of its Jacobian in the same places
+//! at every call, so the sparsity pattern is kept and the places of pairs are looked up once.
 
 use super::worst_particle;
 use crate::physics::{Derivative, Jacobian, PairBlock};
@@ -7,44 +7,44 @@ use nalgebra::{Matrix3, Vector3};
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// Rows and columns are coordinates in threes, one block a particle, those without a free coordinate
-/// left out. A fixed coordinate in a block with free ones, or one that pads the last block, is a row
-/// and column of the identity.
+/// Each block has three coordinates, those of a particle; particles without a free coordinate are left out. A
+/// fixed coordinate in a block with free ones, or one that pads the last block, has a row and column of the
+/// identity.
 #[derive(Default)]
 pub(super) struct Matrix {
     /// A_jj.
     pub diagonal: Vec<Matrix3<f64>>,
     /// A_ij below the diagonal, column by column, rows ascending.
     pub lower: Vec<Matrix3<f64>>,
-    /// A_ji of the same places; as long as `lower` in an unsymmetric matrix, else empty.
+    /// A_ji for the same places; empty where the matrix is symmetric.
     upper: Vec<Matrix3<f64>>,
     pattern: Pattern,
 }
 
-/// Where blocks are, and where what is emitted goes.
+/// The places of blocks, and the places to which the entries of a Jacobian go.
 #[derive(Default)]
 struct Pattern {
     /// Which coordinates are free.
     free: Vec<bool>,
-    /// From particle to block; `NOWHERE` without a free coordinate.
+    /// The block of each particle; `NOWHERE` without a free coordinate.
     blocks: Vec<usize>,
-    /// The coordinate each row stands for, or would stand for where it pads the last block.
+    /// The coordinate of each row, also where the row pads the last block.
     coordinates: Vec<usize>,
-    /// Rows of the identity.
+    /// Whether each row is one of the identity.
     pinned: Vec<bool>,
-    /// Where each column of `lower` begins, one more at the end.
+    /// The index at which each column of `lower` begins, and the end of the last.
     starts: Vec<usize>,
-    /// Block rows of `lower`.
+    /// The block row of each entry of `lower`.
     rows: Vec<u32>,
-    /// By position, then by velocity.
+    /// The entries of ∂f/∂x, then those of ∂f/∂v.
     emitted: [Emitted; 2],
 }
 
-/// What was emitted last.
+/// The places of the entries that a system emitted last.
 #[derive(Default)]
 struct Emitted {
     ends: Vec<[u32; 2]>,
-    /// Where each pair is in `lower`; `NOWHERE` where an end is fixed.
+    /// The index of each pair in `lower`; `NOWHERE` where an end is fixed.
     off: Vec<usize>,
     entries: Vec<(usize, usize)>,
 }
@@ -53,7 +53,7 @@ const NOWHERE: usize = usize::MAX;
 const BOTH: [Derivative; 2] = [Derivative::Position, Derivative::Velocity];
 
 impl Pattern {
-    /// Whether this is the pattern of that Jacobian: the same places in the same order.
+    /// Whether a Jacobian has this pattern: the same places in the same order.
     fn fits(&self, inverse_mass: &[f64], jacobian: &Jacobian) -> bool {
         let free = inverse_mass.iter().map(|w| *w > 0.0);
         free.eq(self.free.iter().copied())
@@ -81,7 +81,7 @@ impl Pattern {
             free,
             ..Self::default()
         };
-        // Which blocks below the diagonal there are, column by column.
+        // The blocks below the diagonal, column by column.
         let pairs = BOTH.iter().flat_map(|&by| jacobian.pairs(by));
         let pairs = pairs.map(|pair| pair.ends.map(|end| pattern.block(end as usize)));
         let entries_ = BOTH.iter().flat_map(|&by| entries(jacobian, by));
@@ -112,7 +112,7 @@ impl Pattern {
         self.blocks.get(particle).copied().unwrap_or(NOWHERE)
     }
 
-    /// Where two blocks meet in `lower`.
+    /// The index in `lower` of the block that couples two blocks.
     fn off(&self, [i, j]: [usize; 2]) -> usize {
         let (column, row) = (i.min(j), i.max(j) as u32);
         let Some(&[start, end]) = self.starts.get(column..).and_then(|s| s.first_chunk()) else {
@@ -123,13 +123,13 @@ impl Pattern {
     }
 }
 
-/// Places of a Jacobian's single entries.
+/// The places of a Jacobian's triplets.
 fn entries(jacobian: &Jacobian, by: Derivative) -> impl Iterator<Item = (usize, usize)> {
     jacobian.triplets(by).iter().map(|&(r, c, _)| (r, c))
 }
 
 impl Matrix {
-    /// Rows, a multiple of three.
+    /// The number of rows, a multiple of three.
     pub(super) fn size(&self) -> usize {
         3 * self.diagonal.len()
     }
@@ -138,21 +138,21 @@ impl Matrix {
         self.upper.is_empty()
     }
 
-    /// Places and rows of the blocks below the diagonal in a column of blocks.
+    /// The indices in `lower` and the block rows of the blocks below the diagonal in a column.
     #[inline(always)]
     pub(super) fn below(&self, column: usize) -> (Range<usize>, &[u32]) {
         let range = self.pattern.starts[column]..self.pattern.starts[column + 1];
         (range.clone(), &self.pattern.rows[range])
     }
 
-    /// From coordinates to rows; 0 in those that stand for none.
+    /// Copies from coordinates to rows; rows that only pad are 0.
     pub(super) fn gather(&self, values: &[f64], rows: &mut Vec<f64>) {
         rows.clear();
         let coordinates = self.pattern.coordinates.iter();
         rows.extend(coordinates.map(|&at| values.get(at).copied().unwrap_or(0.0)));
     }
 
-    /// From rows to coordinates; 0 in those that have none.
+    /// Copies from rows to coordinates; coordinates without a row are 0.
     pub(super) fn scatter(&self, rows: &[f64], values: &mut [f64]) {
         values.fill(0.0);
         for (&at, row) in self.pattern.coordinates.iter().zip(rows) {
@@ -168,7 +168,7 @@ impl Matrix {
         self.pattern.coordinates.get(row).map_or(0, |at| at / 3)
     }
 
-    /// The largest of what the diagonal is in units of the masses, 1 at least.
+    /// The largest diagonal entry in units of its mass, at least 1.
     pub(super) fn stiffest(&self, inverse_mass: &[f64]) -> f64 {
         let mut stiffest = 1.0_f64;
         for (row, &at) in self.pattern.coordinates.iter().enumerate() {
@@ -179,7 +179,7 @@ impl Matrix {
         stiffest
     }
 
-    /// Overwrites it with the matrix of this Jacobian. Returns whether the pattern is a new one.
+    /// Overwrites it with the matrix of this Jacobian. Returns whether the pattern is new.
     pub(super) fn assemble(
         &mut self,
         inverse_mass: &[f64],
@@ -288,7 +288,7 @@ impl Matrix {
         }
     }
 
-    /// The symmetric part's blocks: on the diagonal, and below it.
+    /// A diagonal block of the symmetric part.
     pub(super) fn symmetric_diagonal(&self, at: usize) -> Matrix3<f64> {
         if self.upper.is_empty() {
             self.diagonal[at]
@@ -297,6 +297,7 @@ impl Matrix {
         }
     }
 
+    /// A block of the symmetric part below the diagonal.
     #[inline(always)]
     pub(super) fn symmetric_lower(&self, at: usize) -> Matrix3<f64> {
         match self.upper.get(at) {
@@ -359,7 +360,7 @@ impl Matrix {
         }
     }
 
-    /// Every entry (row, column, value), in an order that depends on the pattern alone.
+    /// Visits every entry (row, column, value), in an order that depends on the pattern alone.
     pub(super) fn for_each(&self, mut entry: impl FnMut(usize, usize, f64)) {
         let mut whole = |i: usize, j: usize, block: &Matrix3<f64>| {
             for c in 0..3 {

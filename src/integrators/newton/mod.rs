@@ -1,15 +1,14 @@
-//! Newton's iteration for M (u - b) = γ f(t, y + γ u, u), globalised.
+//! Newton's iteration for M (u - b) = γ f(t, y + γ u, u), globalised by a line search.
 //!
-//! Full steps wherever they descend ([`search`]), in directions that always do, over blocks of 3 x 3
-//! ([`matrix`]) and the linear solver the matrix calls for ([`solver`]). Every decision depends on the
-//! equation at hand alone, so an integrator that was used gives the same bits as a fresh one.
+//! It takes descent directions, and full steps wherever they descend ([`search`]). The matrix has blocks of
+//! 3 x 3 ([`matrix`]), and the algorithm that suits it solves the linear systems ([`solver`]). Every decision
+//! depends on the present equation alone, so an integrator that was used gives the same bits as a fresh one.
 //!
 //! Newton's own direction A⁻¹ r descends where the symmetric part of A = M - γ C - γ² K is positive
-//! definite: r·d = dᵀ A d. Compressed springs and the turning of dampers can make it indefinite. Then
-//! what is negative is left out spring by spring ([`Linearization::Definite`]; Teran et al. 2005,
-//! SCA; for springs Choi & Ko 2002), and where a system cannot say what that is, masses are added
-//! until A is definite. Where A is definite nothing is changed, so convergence to a minimum stays
-//! quadratic.
+//! definite: r·d = dᵀ A d. Compressed springs and the turning of dampers can make it indefinite. The negative
+//! part is then left out spring by spring ([`Linearization::Definite`]; Teran et al. 2005, SCA; for springs
+//! Choi & Ko 2002). Where a system does not separate that part, masses are added until A is definite. A
+//! definite A is not changed, so convergence to a minimum stays quadratic.
 
 mod conjugate;
 mod factors;
@@ -25,22 +24,22 @@ use matrix::Matrix;
 use search::{Merit, StageEquation, Trial};
 use solver::LinearSolver;
 
-/// Quadratic convergence needs four to six, a way around hills a few dozen, along a valley that bends
-/// hundreds; more means it is not converging.
+/// Quadratic convergence takes four to six iterations, a path around maxima of Φ a few dozen, and one along a
+/// curved valley hundreds. With more the iteration does not converge.
 const MAX_ITERATIONS: u32 = 2_000;
-/// Roundings that a residual may consist of when it stops shrinking.
+/// The number of roundings that a residual may consist of when it stops shrinking.
 const ROUNDING: f64 = 8.0;
-/// Where linear systems are solved by iteration, to this share of the residual at most.
+/// The largest relative residual of linear systems that are solved by iteration.
 const FORCING: f64 = 1e-3;
-/// Relative residual from which on Newton's step is tried even where it need not descend, and again
-/// whenever half of the residual at the last failure is left.
+/// The relative residual below which Newton's step is tried even where it need not descend. After a failure
+/// it is tried again once the residual has halved.
 const LINEAR: f64 = 0.1;
-/// One plain solve, of the methods that do not iterate, is solved to rounding, by factors.
+/// The tolerance of the single solve of methods that do not iterate: factors solve it to rounding.
 const PLAIN: f64 = 0.0;
-/// The first share of the masses added, and how it grows.
+/// The first multiple of the masses that is added, and the factor by which it grows.
 const SHIFT: f64 = 1.0;
 const GROWTH: f64 = 4.0;
-/// Tries with masses added: up to 4³⁰, 1e18 times the masses.
+/// The number of tries with masses added: up to 4³⁰, 1e18 times the masses.
 const SHIFTS: u32 = 30;
 
 pub(super) struct Newton {
@@ -48,15 +47,15 @@ pub(super) struct Newton {
     solver: LinearSolver,
     matrix: Matrix,
     jacobian: Jacobian,
-    /// Where the iteration is, and where it may go next.
+    /// The present iterate, and a trial for the next.
     at: Trial,
     next: Trial,
     /// The direction, over all coordinates and over the matrix's rows.
     d: Vec<f64>,
     z: Vec<f64>,
-    /// Linear systems solved so far.
+    /// The number of linear systems solved so far.
     pub(super) solves: u64,
-    /// Iterations in all; a single linearised step is none.
+    /// The number of iterations so far; a single linearised step does not count.
     pub(super) iterations: u64,
 }
 
@@ -76,9 +75,9 @@ impl Newton {
         }
     }
 
-    /// Improves `u` until |r| <= tolerance (|M (u - b)| + |γ f|), or until it stops shrinking
-    /// within a few roundings of the positions: far from the origin forces are no better. Returns the
-    /// powers there.
+    /// Improves `u` until |r| <= tolerance (|M (u - b)| + |γ f|), or until r stops shrinking and consists of a
+    /// few roundings of the positions: far from the origin forces are no more precise. Returns the powers
+    /// there.
     ///
     /// # Errors
     /// [`StepError::NotConverged`], [`StepError::NotFinite`] at the first guess, and
@@ -104,7 +103,7 @@ impl Newton {
         Ok(self.at.power)
     }
 
-    /// Leaves the solution in `self.at`; `seen` is shown every accepted iterate.
+    /// Leaves the solution in `self.at`; calls `seen` with every accepted iterate.
     fn iterate(
         &mut self,
         stage: &StageEquation,
@@ -121,40 +120,41 @@ impl Newton {
         }
         let mut before = f64::INFINITY;
         let mut merit = Merit::Potential;
-        let mut leap = LINEAR;
+        let mut full_step_below = LINEAR;
         for iteration in 0..MAX_ITERATIONS {
             seen(&self.at);
             // A guess is not a solution, however loose the tolerance.
             let solved =
-                self.at.off == 0.0 || (iteration > 0 && self.at.relative <= self.tolerance);
-            // Newton squares a small residual until only rounding is left of it.
+                self.at.norm == 0.0 || (iteration > 0 && self.at.relative <= self.tolerance);
+            // Newton squares a small residual in each iteration until only rounding is left.
             let stalled = self.at.relative >= 0.5 * before;
-            if solved || (stalled && self.at.off <= self.floor(stage)) {
+            if solved || (stalled && self.at.norm <= self.floor(stage)) {
                 return Ok(());
             }
             before = self.at.relative;
             self.iterations += 1;
-            // In step with Newton, which squares the residual; no further than is asked for.
+            // The linear solve is as precise as Newton's squaring of the residual needs, and no more precise
+            // than the tolerance.
             let wanted = (0.1 * self.at.relative).min(FORCING);
             let left = 0.25 * self.tolerance / self.at.relative;
             let precise = wanted.max(left).min(0.1);
             let own = self.direction(stage, Linearization::Exact, precise)?;
             if !own {
-                if self.at.relative <= leap {
-                    if self.leap(stage) {
+                if self.at.relative <= full_step_below {
+                    if self.full_step(stage) {
                         std::mem::swap(&mut self.at, &mut self.next);
                         continue;
                     }
-                    leap = 0.5 * self.at.relative;
+                    full_step_below = 0.5 * self.at.relative;
                 }
                 self.descend(stage, precise)?;
             }
-            // A direction whose matrix had its negative part left out knows where to go, but not how far.
+            // A direction from a matrix without its negative part descends, but its length may be too short.
             while !self.advance(stage, merit, !own) {
                 if merit == Merit::Slope {
                     return Err(self.not_converged(iteration));
                 }
-                // The potential cannot tell: rounding hides it, or it is not these forces'.
+                // The potential does not decide: rounding hides its change, or these forces have none.
                 merit = Merit::Slope;
             }
             std::mem::swap(&mut self.at, &mut self.next);
@@ -171,8 +171,8 @@ impl Newton {
         }
     }
 
-    /// Overwrites `self.d` with A⁻¹ r at `self.at`, solved to `tolerance` at least. False where that need
-    /// not be a direction of descent: the matrix is not positive definite.
+    /// Overwrites `self.d` with A⁻¹ r at `self.at`, solved at least to `tolerance`. False where the matrix is
+    /// not positive definite, so that this need not be a descent direction.
     ///
     /// # Errors
     /// [`StepError::Singular`] where there is no memory for factors.
@@ -186,10 +186,10 @@ impl Newton {
         self.try_direction(stage, tolerance)
     }
 
-    /// Overwrites `self.d` with a direction of descent where Newton's is none.
+    /// Overwrites `self.d` with a descent direction where Newton's direction need not be one.
     ///
     /// # Errors
-    /// [`StepError::Singular`] where nothing makes the matrix definite.
+    /// [`StepError::Singular`] where no multiple of the masses makes the matrix definite.
     fn descend(&mut self, stage: &StageEquation, tolerance: f64) -> Result<(), StepError> {
         let mut definite = self.direction(stage, Linearization::Definite, tolerance)?;
         let (mut shift, mut added) = (SHIFT, 0.0);
@@ -208,20 +208,20 @@ impl Newton {
             .ok_or(StepError::Singular { particle })
     }
 
-    /// Newton's whole step with the exact matrix that [`direction`](Self::direction) left, definite or
-    /// not, in `self.next`; false unless Φ does not rise and a tenth of the residual is left.
+    /// Leaves in `self.next` Newton's full step with the exact matrix of [`direction`](Self::direction),
+    /// definite or not. True if Φ does not rise and at most a tenth of the residual is left.
     ///
-    /// A plane chain under compression would rather buckle sideways, where nothing pushes it: Φ then has
-    /// a saddle, which solves the equation as well as a minimum does, and the directions of
-    /// [`descend`](Self::descend) come near it only linearly.
-    fn leap(&mut self, stage: &StageEquation) -> bool {
+    /// A plane chain under compression is unstable against buckling sideways, where no force acts: Φ then has a
+    /// saddle, which solves the equation as well as a minimum does. The directions of
+    /// [`descend`](Self::descend) converge to it only linearly.
+    fn full_step(&mut self, stage: &StageEquation) -> bool {
         self.matrix.gather(&self.at.residual, &mut self.z);
         if self.solver.solve_lu(&self.matrix, &mut self.z).is_err() {
             return false;
         }
         self.solves += 1;
         self.matrix.scatter(&self.z, &mut self.d);
-        self.leaps(stage)
+        self.try_full_step(stage)
     }
 
     fn assemble(&mut self, stage: &StageEquation, kept: Linearization) {
@@ -231,7 +231,7 @@ impl Newton {
         self.assembled(system, stage.gamma);
     }
 
-    /// The matrix of `self.jacobian`.
+    /// Assembles the matrix of `self.jacobian`.
     fn assembled(&mut self, system: &dyn System, gamma: f64) {
         let inverse_mass = system.inverse_mass();
         if self.matrix.assemble(inverse_mass, gamma, &self.jacobian) {
@@ -239,7 +239,8 @@ impl Newton {
         }
     }
 
-    /// False where the matrix is not positive definite, or too nearly so for a finite direction.
+    /// Overwrites `self.d` with the solution of the assembled system. False where the matrix is not positive
+    /// definite, or so nearly singular that the direction is not finite.
     fn try_direction(&mut self, stage: &StageEquation, tolerance: f64) -> Result<bool, StepError> {
         self.matrix.gather(&self.at.residual, &mut self.z);
         let (solver, inverse_mass) = (&mut self.solver, stage.system.inverse_mass());
@@ -248,22 +249,22 @@ impl Newton {
         }
         self.solves += 1;
         self.matrix.scatter(&self.z, &mut self.d);
-        // Scaled, for what has nearly come to rest: products would underflow. A direction that has
-        // itself underflowed to 0 leads nowhere, and is as good as any.
+        // Both vectors are scaled, since near rest their products would underflow. A direction that has
+        // itself underflowed to 0 is accepted, since it changes nothing.
         let (far, steep) = (largest(&self.d), largest(&self.at.residual));
         let pairs = self.d.iter().zip(&self.at.residual);
         let along: f64 = pairs.map(|(d, r)| (d / far) * (r / steep)).sum();
-        // NaN is not positive.
+        // A NaN is not accepted.
         Ok(far == 0.0 || (along > 0.0 && far.is_finite()))
     }
 
-    /// What a few roundings of positions and velocities do to the residual at `self.at`, in its norm:
+    /// The norm of the change that a few roundings of positions and velocities make to the residual at `self.at`:
     /// eps (γ |∂f/∂x| max(|y|, |γ u|) + M (|u| + |b|)), with the last Jacobian.
     fn floor(&mut self, stage: &StageEquation) -> f64 {
         let (at, size) = (&self.at, &mut self.z);
         size.clear();
         size.resize(at.u.len(), 0.0);
-        // y and γ u may cancel: their sum is no better than they are.
+        // y and γ u may cancel, so their sum has the absolute rounding of the larger.
         let parts = stage.y.iter().zip(&at.u);
         let reach: Vec<f64> = parts
             .map(|(y, u)| y.abs().max((stage.gamma * u).abs()))
@@ -281,9 +282,9 @@ impl Newton {
     }
 
     /// One Newton step of backward Euler from the state itself:
-    /// (M - h C - h² K) Δv = h (f0 + h K v0), everything taken at (x0, v0). Returns the powers there.
+    /// (M - h C - h² K) Δv = h (f0 + h K v0), with everything taken at (x0, v0). Returns the powers there.
     ///
-    /// As the literature has it: no search, and the matrix as it is, definite or not.
+    /// As in the literature there is no line search, and the matrix is used as it is, definite or not.
     pub(super) fn single(
         &mut self,
         system: &dyn System,
@@ -296,7 +297,7 @@ impl Newton {
         fit(&mut self.d, u.len());
         let mut right = vec![0.0; u.len()];
         let inverse_mass = system.inverse_mass();
-        // Forces that depend on time are met at the end of the step, as in implicit Euler.
+        // Forces that depend on time are evaluated at the end of the step, as in implicit Euler.
         let power = system.acceleration(t + h, &state.x, &state.v, &mut right);
         self.jacobian.clear();
         system.jacobian(t + h, &state.x, &state.v, linearization, &mut self.jacobian);
@@ -312,8 +313,8 @@ impl Newton {
         self.matrix.gather(&right, &mut self.z);
         self.solves += 1;
         let (solver, matrix) = (&mut self.solver, &self.matrix);
-        // A few unknowns by LU whatever their matrix, as ever: at huge steps it is all rounding, and
-        // both of these methods then meet the same.
+        // A few unknowns are always solved by LU: at huge steps the result is all rounding, and is then the same
+        // for both methods that use this function.
         if solver::is_small(matrix) || !solver.solve(matrix, inverse_mass, PLAIN, &mut self.z)? {
             solver.solve_lu(matrix, &mut self.z)?;
         }

@@ -1,43 +1,42 @@
-//! The stage equation M (u - b) = γ f(t, y + γ u, u), one trial of it, and how far to go along a
-//! direction: the full step, or as much of it as descends; further, where the
-//! direction is not Newton's own and still falls there.
+//! The stage equation M (u - b) = γ f(t, y + γ u, u), a trial solution, and the line search: it takes the full
+//! step, or the part of it that descends, and goes further where the direction is not Newton's own and the
+//! descent continues.
 //!
-//! What descends is the incremental potential
+//! The search minimises the incremental potential
 //! Φ(u) = ½ (u - b)ᵀ M (u - b) + U(y + γ u) - W(γ u) - ½ γ uᵀ D u, whose gradient is minus the
-//! residual: W the work of forces without a potential and D(x) the damping, both as they are where
-//! the search begins. Without dampers and driven forces Φ is the same in every iteration, so it
-//! never rises; with dampers along their springs D turns with x, no Φ exists, and a halved residual
-//! counts as well. (Armijo's rule; where rounding hides the decrease of Φ its slope decides, as in
+//! residual. W is the work of forces without a potential and D(x) the damping, both taken where the search
+//! begins. Without dampers and driven forces Φ is the same in every iteration, so it never rises. With axial
+//! dampers D turns with x and no Φ exists, so a halved residual is accepted as well. (Armijo's rule; where rounding hides the decrease of Φ its slope decides, as in
 //! Hager & Zhang 2005, SIAM J. Optim. 16.)
 
 use super::{Newton, fit, worst_particle};
 use crate::physics::{Derivative, ForceKinds, Jacobian, Power, System};
 
-/// Share of the decrease its slope promises that Φ has to make (Armijo).
+/// The fraction of the decrease predicted by its slope that Φ has to achieve (Armijo).
 const ARMIJO: f64 = 1e-4;
-/// Φ is known to no better than this share of its potential energy: lengths that differ by 1e-6
-/// from their rest length already lose six digits of it.
+/// The relative rounding error of Φ, in units of its potential energy: springs whose lengths differ by 1e-6
+/// from their rest length already lose six digits.
 const HIDDEN: f64 = 1e-10;
-/// Where the slope decides, it may not be left steeper than this, upwards.
+/// Where the slope decides, the largest upward slope that is accepted, in units of the initial one.
 const STEEP: f64 = 0.9;
-/// Trials along one direction.
+/// The number of trials along one direction.
 const TRIALS: u32 = 40;
-/// A step is lengthened while the slope is no less than this share of what it was.
+/// A step is lengthened while the downward slope is at least this fraction of the initial one.
 const STILL_STEEP: f64 = 0.5;
 
-/// What is to be solved for u.
+/// The stage equation, which is solved for u.
 #[derive(Clone, Copy)]
 pub(super) struct StageEquation<'a> {
     pub system: &'a dyn System,
     pub t: f64,
     pub gamma: f64,
-    /// The velocity u departs from.
+    /// The velocity from which u departs.
     pub b: &'a [f64],
-    /// The position γ u is added to.
+    /// The position to which γ u is added.
     pub y: &'a [f64],
 }
 
-/// Everything known of one u.
+/// A trial solution u, with everything computed at it.
 #[derive(Default)]
 pub(super) struct Trial {
     pub u: Vec<f64>,
@@ -48,16 +47,16 @@ pub(super) struct Trial {
     /// is one. 0 on fixed coordinates.
     pub residual: Vec<f64>,
     pub power: Power,
-    /// U(x), once it has been asked for.
+    /// U(x), once it is computed.
     potential: Option<f64>,
-    /// |r|.
-    pub off: f64,
-    /// |r| / (|M (u - b)| + |γ f|), 0 where both are.
+    /// The norm |r|.
+    pub norm: f64,
+    /// |r| / (|M (u - b)| + |γ f|); 0 where both norms are 0.
     pub relative: f64,
 }
 
 impl Trial {
-    /// Evaluates the equation `alpha` times `d` from another trial.
+    /// Evaluates the equation at `alpha` times `d` from another trial.
     fn step(&mut self, stage: &StageEquation, from: &Self, alpha: f64, d: &[f64]) {
         self.u.clear();
         let steps = from.u.iter().zip(d);
@@ -92,11 +91,11 @@ impl Trial {
             };
         }
         let scale = left.sqrt() + right.sqrt();
-        self.off = off.sqrt();
+        self.norm = off.sqrt();
         self.relative = if !scale.is_finite() {
             f64::NAN
         } else if scale > 0.0 {
-            self.off / scale
+            self.norm / scale
         } else {
             0.0
         };
@@ -110,7 +109,7 @@ impl Trial {
     }
 
     pub(super) fn is_finite(&self) -> bool {
-        self.off.is_finite() && self.relative.is_finite()
+        self.norm.is_finite() && self.relative.is_finite()
     }
 
     /// The particle with the largest residual, or the first that is not finite.
@@ -119,21 +118,21 @@ impl Trial {
     }
 }
 
-/// What decides whether a trial is good.
+/// The criterion by which a trial is accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Merit {
     Potential,
-    /// Its slope along the direction, -r·d, which needs no potential.
+    /// The slope of Φ along the direction, -r·d, which needs no potential.
     Slope,
 }
 
-/// Φ along one direction d from one u, without what is constant.
+/// Φ along one direction d from one u, without its constant.
 struct Line {
     slope: f64,
     potential: f64,
     /// dᵀ (M - γ D) d.
     curvature: f64,
-    /// dᵀ (M (u - b) - γ D u) - W(γ d), the slope without the potential's part.
+    /// dᵀ (M (u - b) - γ D u) - W(γ d): the slope without the part of the potential.
     rest: f64,
 }
 
@@ -167,7 +166,8 @@ impl Line {
         }
     }
 
-    /// Whether a trial is good: α from the start, where the residual was `before`, with this slope there.
+    /// Whether the trial at α, where the slope is `slope`, is accepted. `before` is the norm of the residual at
+    /// the start.
     fn accepts(
         &self,
         stage: &StageEquation,
@@ -183,10 +183,10 @@ impl Line {
         let (change, hidden) = self.change(stage, alpha, to);
         change <= ARMIJO * alpha * self.slope
             || (flat && alpha * self.slope.abs() <= hidden && change <= hidden)
-            || (stage.system.kinds().depends_on_velocity() && to.off <= 0.5 * before)
+            || (stage.system.kinds().depends_on_velocity() && to.norm <= 0.5 * before)
     }
 
-    /// Φ(u + α d) - Φ(u), and how much of it may be rounding.
+    /// Φ(u + α d) - Φ(u), and a bound for its rounding error.
     fn change(&self, stage: &StageEquation, alpha: f64, to: &mut Trial) -> (f64, f64) {
         let potential = to.potential(stage);
         let change =
@@ -200,9 +200,9 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Newton {
-    /// Leaves in `self.next` the first good trial along `self.d`, a direction of descent that is 0 on fixed
-    /// coordinates: the full step, if it is one, and further with `extend`. A trial that solves the equation,
-    /// or leaves a residual of a few roundings, is good. False if no trial is.
+    /// Leaves in `self.next` the first accepted trial along `self.d`, a descent direction that is 0 on fixed
+    /// coordinates. The full step is tried first, and with `extend` longer ones after it. A trial that solves
+    /// the equation, or leaves a residual of a few roundings, is accepted. False if none is.
     pub(super) fn advance(&mut self, stage: &StageEquation, merit: Merit, extend: bool) -> bool {
         let (mut line, mut floor, mut alpha) = (None, None, 1.0);
         for _ in 0..TRIALS {
@@ -216,7 +216,7 @@ impl Newton {
             }
             let line = line.get_or_insert_with(|| self.line(stage));
             let slope = -dot(&self.next.residual, &self.d);
-            let (before, off) = (self.at.off, self.next.off);
+            let (before, off) = (self.at.norm, self.next.norm);
             if line.accepts(stage, merit, before, &mut self.next, [alpha, slope])
                 || off <= *floor.get_or_insert_with(|| self.floor(stage))
             {
@@ -225,10 +225,10 @@ impl Newton {
                 }
                 return true;
             }
-            // Where the secant of the slopes vanishes, within bounds.
-            let share = line.slope / (line.slope - slope);
+            // The next trial is where the secant of the slopes vanishes, within bounds.
+            let secant = line.slope / (line.slope - slope);
             alpha *= if slope > 0.0 {
-                share.clamp(0.1, 0.5)
+                secant.clamp(0.1, 0.5)
             } else {
                 0.5
             };
@@ -240,7 +240,7 @@ impl Newton {
         Line::new(stage, &mut self.at, &self.d, &self.jacobian)
     }
 
-    /// Doubles the step while Φ falls as steeply as at the start.
+    /// Doubles the step while Φ keeps falling steeply.
     fn lengthen(&mut self, stage: &StageEquation, line: &Line, mut slope: f64) {
         let mut alpha = 1.0;
         let mut further = Trial::default();
@@ -261,10 +261,10 @@ impl Newton {
         }
     }
 
-    /// Leaves the full step in `self.next`; false unless Φ does not rise and a tenth of the residual is left.
-    pub(super) fn leaps(&mut self, stage: &StageEquation) -> bool {
+    /// Leaves the full step in `self.next`. True if Φ does not rise and at most a tenth of the residual is left.
+    pub(super) fn try_full_step(&mut self, stage: &StageEquation) -> bool {
         self.next.step(stage, &self.at, 1.0, &self.d);
-        if !self.next.is_finite() || self.next.off > 0.1 * self.at.off {
+        if !self.next.is_finite() || self.next.norm > 0.1 * self.at.norm {
             return false;
         }
         let (change, hidden) = self.line(stage).change(stage, 1.0, &mut self.next);

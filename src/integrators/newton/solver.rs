@@ -1,5 +1,5 @@
-//! One linear solve: with the symmetric part, by what the matrix calls for, and refined where that is not
-//! all of the matrix.
+//! A linear solve. The algorithm that suits the matrix solves with its symmetric part; iterative refinement
+//! follows where the matrix is not symmetric.
 
 use super::conjugate::{Conjugate, ConjugateEnd, dot};
 use super::factors::{Dense, Sparse, SparseLu, solve_dense_lu};
@@ -7,19 +7,20 @@ use super::matrix::Matrix;
 use super::{StepError, fit, largest};
 use crate::vector::axpy;
 
-/// Refinements before LU takes over; each gains the digits the symmetric part has right.
+/// The number of refinements before LU takes over. The closer the matrix is to its symmetric part, the more
+/// digits each one gains.
 const REFINEMENTS: usize = 8;
-/// Residual of a refined solve, relative to the right side in the largest norm: a few last bits.
+/// The residual of a refined solve, relative to the right side in the maximum norm: a few last bits.
 const REFINED: f64 = 4.0 * f64::EPSILON;
-/// Beyond this many times the iterations it was chosen for, conjugate gradients give way.
-const PATIENCE: f64 = 8.0;
-/// Up to this many rows a dense factor is as fast or faster.
+/// Conjugate gradients are given up after this many times the iterations that were expected.
+const BUDGET: f64 = 8.0;
+/// The number of rows up to which a dense factor is at least as fast.
 const DENSE: usize = 60;
-/// Multiplications of a sparse factorisation in the time of one multiplication of a product with
-/// the matrix: the former run in blocks, the latter waits for memory. An estimate.
+/// The multiplications that a sparse factorisation does in the time of one in a product with the matrix. The
+/// factorisation runs in blocks, and the product waits for memory. An estimate.
 const DENSER: f64 = 4.0;
 
-/// What solves with the symmetric part.
+/// The algorithm that solves with the symmetric part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Algorithm {
     /// Dense Cholesky.
@@ -30,29 +31,29 @@ pub(super) enum Algorithm {
     Conjugate,
 }
 
-/// Factors and their memory, for matrices of one pattern.
+/// A solver of linear systems. It keeps factors and their memory, for matrices of one pattern.
 #[derive(Default)]
 pub(super) struct LinearSolver {
-    /// Instead of what the matrix calls for.
+    /// An algorithm that replaces the one the matrix calls for.
     pub forced: Option<Algorithm>,
     dense: Dense,
     sparse: Option<Sparse>,
     lu: Option<SparseLu>,
     conjugate: Conjugate,
     right: Vec<f64>,
-    left: Vec<f64>,
+    residual: Vec<f64>,
 }
 
 impl LinearSolver {
-    /// What was made for another pattern is of no use.
+    /// Drops the factors, since the pattern is new.
     pub(super) fn forget(&mut self) {
         self.sparse = None;
         self.lu = None;
     }
 
-    /// Replaces `z` by A⁻¹ z, if the symmetric part of A is positive definite (as far as was seen): to
-    /// rounding with factors, to `tolerance` of the norm of `z` by iteration. False, and nothing solved, if
-    /// it is not.
+    /// Replaces `z` by A⁻¹ z, if the symmetric part of A is found positive definite. Factors solve to rounding,
+    /// conjugate gradients to `tolerance` of the norm of `z`. False, with nothing solved, if it is not positive
+    /// definite.
     pub(super) fn solve(
         &mut self,
         matrix: &Matrix,
@@ -65,8 +66,8 @@ impl LinearSolver {
             if !self.conjugate.prepare(matrix) {
                 return Ok(false);
             }
-            let cap = PATIENCE * iterations(matrix, inverse_mass, tolerance);
-            // As many as there are unknowns is what exact arithmetic needs.
+            let cap = BUDGET * iterations(matrix, inverse_mass, tolerance);
+            // In exact arithmetic as many iterations as unknowns are enough.
             let cap = (cap as usize).clamp(100, 10 * matrix.size() + 100);
             self.right.clear();
             self.right.extend_from_slice(z);
@@ -91,17 +92,17 @@ impl LinearSolver {
         };
         if matrix.is_symmetric() {
             solve(z);
-        } else if !refine(matrix, z, &mut self.right, &mut self.left, solve) {
+        } else if !refine(matrix, z, &mut self.right, &mut self.residual, solve) {
             z.copy_from_slice(&self.right);
             self.solve_lu(matrix, z)?;
         }
         Ok(true)
     }
 
-    /// What `solve` takes: by size first; among many unknowns by the work each is expected to take.
+    /// The algorithm that `solve` uses: dense for few unknowns, else the one with the least expected work.
     ///
-    /// A factor of `fill` numbers takes fill² / n multiplications, whatever the stiffness. A function of
-    /// this matrix and its pattern, never of what was solved before.
+    /// A factor of `fill` numbers takes fill² / n multiplications, independent of the stiffness. The choice
+    /// depends on this matrix and its pattern alone, never on earlier solves.
     pub(super) fn kind(
         &mut self,
         matrix: &Matrix,
@@ -131,7 +132,7 @@ impl LinearSolver {
         }
     }
 
-    /// With the matrix itself, definite or not.
+    /// Solves with LU of the matrix itself, definite or not.
     ///
     /// # Errors
     /// [`StepError::Singular`].
@@ -152,7 +153,7 @@ impl LinearSolver {
         }
     }
 
-    /// Conjugate gradients on the symmetric part, again on what is left of the whole.
+    /// Solves by conjugate gradients on the symmetric part, with refinement for the whole matrix.
     fn by_iteration(
         &mut self,
         matrix: &Matrix,
@@ -165,29 +166,29 @@ impl LinearSolver {
         }
         let enough = tolerance * norm(z);
         let n = z.len();
-        let mut left = std::mem::take(&mut self.left);
-        fit(&mut left, n);
-        left.copy_from_slice(z);
+        let mut residual = std::mem::take(&mut self.residual);
+        fit(&mut residual, n);
+        residual.copy_from_slice(z);
         z.fill(0.0);
         let mut ended = ConjugateEnd::Slow;
         for _ in 0..REFINEMENTS {
-            // Half of what is allowed goes to the symmetric part.
-            let inner = (0.5 * enough / norm(&left)).min(0.5);
-            ended = self.conjugate.solve(matrix, inner, cap, &mut left);
+            // The solve with the symmetric part may use half of the tolerance.
+            let inner = (0.5 * enough / norm(&residual)).min(0.5);
+            ended = self.conjugate.solve(matrix, inner, cap, &mut residual);
             if ended != ConjugateEnd::Solved {
                 break;
             }
-            axpy(z, 1.0, &left);
-            matrix.product(z, &mut left);
-            for (left, right) in left.iter_mut().zip(&self.right) {
-                *left = right - *left;
+            axpy(z, 1.0, &residual);
+            matrix.product(z, &mut residual);
+            for (residual, right) in residual.iter_mut().zip(&self.right) {
+                *residual = right - *residual;
             }
-            if norm(&left) <= enough {
+            if norm(&residual) <= enough {
                 break;
             }
             ended = ConjugateEnd::Slow;
         }
-        self.left = left;
+        self.residual = residual;
         ended
     }
 }
@@ -196,10 +197,10 @@ pub(super) fn is_small(matrix: &Matrix) -> bool {
     matrix.size() <= DENSE
 }
 
-/// What theory expects of conjugate gradients, to a tolerance.
+/// The number of iterations that conjugate gradients are expected to take, by theory.
 ///
-/// With D the blocks on the diagonal, D⁻¹ A has its eigenvalues between the smallest of M / D and about 2, so
-/// the next ln(2 / tolerance) natural digits take sqrt(2 D / M) / 2 iterations each: the larger γ ω, the more.
+/// With D the blocks on the diagonal, the eigenvalues of D⁻¹ A lie between the smallest of M / D and about 2. So
+/// each factor of e in ln(2 / tolerance) takes sqrt(2 D / M) / 2 iterations, more the larger γ ω is.
 fn iterations(matrix: &Matrix, inverse_mass: &[f64], tolerance: f64) -> f64 {
     let digits = (2.0 / tolerance).ln();
     0.5 * digits * (2.0 * matrix.stiffest(inverse_mass)).sqrt()
@@ -209,36 +210,36 @@ fn norm(z: &[f64]) -> f64 {
     dot(z, z).sqrt()
 }
 
-/// Solves with the whole matrix through `solve`, which knows its symmetric part only; false where
-/// that does not converge. `right` is left with what `z` was.
+/// Solves with the whole matrix by refinement through `solve`, which solves with its symmetric part; false
+/// where that does not converge. `right` then holds the original `z`.
 fn refine(
     matrix: &Matrix,
     z: &mut [f64],
     right: &mut Vec<f64>,
-    left: &mut Vec<f64>,
+    residual: &mut Vec<f64>,
     mut solve: impl FnMut(&mut [f64]),
 ) -> bool {
     right.clear();
     right.extend_from_slice(z);
-    left.clear();
-    left.extend_from_slice(z);
+    residual.clear();
+    residual.extend_from_slice(z);
     let size = largest(right.iter());
     z.fill(0.0);
     let mut before = f64::INFINITY;
     for _ in 0..REFINEMENTS {
-        solve(left);
-        axpy(z, 1.0, left);
-        matrix.product(z, left);
-        for (left, right) in left.iter_mut().zip(right.iter()) {
-            *left = right - *left;
+        solve(residual);
+        axpy(z, 1.0, residual);
+        matrix.product(z, residual);
+        for (residual, right) in residual.iter_mut().zip(right.iter()) {
+            *residual = right - *residual;
         }
-        let off = largest(left.iter());
+        let off = largest(residual.iter());
         if off <= REFINED * size {
             return true;
         }
-        // NaN is not less.
+        // NaN ends the refinement too.
         if off.is_nan() || off > 0.5 * before {
-            // No longer shrinking: at rounding for this matrix, or not converging at all.
+            // The residual no longer shrinks: it is at rounding for this matrix, or does not converge.
             return off <= 1e-13 * size;
         }
         before = off;

@@ -35,7 +35,7 @@ impl Effect for Scaled {
     fn kinds(&self) -> ForceKinds {
         let kinds = self.effect.kinds();
         if self.factor < 0.0 {
-            kinds.turned()
+            kinds.negated()
         } else {
             kinds
         }

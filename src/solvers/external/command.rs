@@ -1,20 +1,20 @@
-//! A command line with placeholders, split as a POSIX shell would, without a shell.
+//! A command line with placeholders, split as a POSIX shell would split it, without a shell.
 
 use std::ffi::{OsStr, OsString};
 use std::str::FromStr;
 
-/// What a command can be told about the run.
+/// A value of the run that a command can contain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Placeholder {
-    /// Path of the scene file (YAML), as it is on disk: without flags.
+    /// Path of the scene file (YAML) on disk, without changes by flags.
     Scene,
     /// Path of a file with the scene as flat arrays: [`Flat`](super::Flat).
     SceneJson,
     /// Seconds a step.
     Timestep,
-    /// Seconds in all.
+    /// Seconds of the whole run.
     Duration,
-    /// A path that ends in `.npz` and is read instead of stdout.
+    /// Path of an `.npz` file that is read instead of stdout.
     Output,
 }
 
@@ -26,10 +26,10 @@ const NAMES: [(&str, Placeholder); 5] = [
     ("output", Placeholder::Output),
 ];
 
-/// Words, some of which have parts that are filled in for each run.
+/// The words of a command, with parts that are filled in for each run.
 ///
-/// Quotes and backslashes are taken off first and placeholders replaced afterwards, so a path with
-/// spaces stays one word. `{{` and `}}` stand for braces.
+/// Quotes and backslashes are removed first and placeholders replaced afterwards, so a path with spaces
+/// stays one word. `{{` and `}}` stand for braces.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Command {
     words: Vec<Vec<Part>>,
@@ -41,7 +41,7 @@ enum Part {
     Value(Placeholder),
 }
 
-/// A command that cannot be used.
+/// The reason why a command cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CommandError {
     #[error("expected a command, found nothing")]
@@ -115,13 +115,13 @@ fn parts(word: &str) -> Result<Vec<Part>, CommandError> {
 }
 
 impl Command {
-    /// Whether this placeholder occurs.
+    /// Whether the command contains this placeholder.
     pub fn uses(&self, placeholder: Placeholder) -> bool {
         let mut parts = self.words.iter().flatten();
         parts.any(|part| *part == Part::Value(placeholder))
     }
 
-    /// The program and its arguments, with a value in each placeholder's place.
+    /// The program and its arguments, with each placeholder replaced by its value.
     pub fn words<V: AsRef<OsStr>>(&self, value: impl Fn(Placeholder) -> V) -> Vec<OsString> {
         let word = |parts: &Vec<Part>| {
             let mut word = OsString::new();

@@ -1,18 +1,18 @@
-//! A scene as flat arrays of numbers: what a program in any language reads in a few lines.
+//! A scene as flat arrays of numbers, which a program in any language can read in a few lines.
 
 use super::Task;
 use crate::scene::Scene;
 use crate::scene::model::{GRAVITATIONAL, PARTICLES, Part, Row, SPRINGS};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-/// Version of the keys and of what they mean.
+/// The version of the keys and of their meaning.
 const SCHEMA_VERSION: u32 = 1;
 
-/// Everything that moves the particles, all defaults filled in; the JSON behind `{scene_json}`.
-/// `docs/external.md` says what its keys mean. Numbers read back to the same bits. SI units.
+/// The JSON behind `{scene_json}`: everything that influences the motion, with all defaults filled in.
+/// `docs/external.md` explains its keys. Numbers read back to the same bits. SI units.
 ///
-/// What particles, springs and pairs have comes from the [table](crate::scene::model) of their
-/// parameters: an array for each row that moves something, under its name.
+/// The arrays of particles, springs and pairs come from the [table](crate::scene::model) of parameters: one
+/// for each row that influences the motion, under its name.
 #[derive(Clone, Copy)]
 pub struct Flat<'a>(pub &'a Task<'a>);
 
@@ -47,7 +47,7 @@ impl Serialize for Flat<'_> {
     }
 }
 
-/// The rows of a part that move something, an array each.
+/// Writes an array for each row of a part that influences the motion.
 fn arrays<M: SerializeMap>(map: &mut M, scene: &Scene, part: &Part) -> Result<(), M::Error> {
     for row in part.rows {
         if let Some(name) = row.flat {
@@ -57,7 +57,7 @@ fn arrays<M: SerializeMap>(map: &mut M, scene: &Scene, part: &Part) -> Result<()
     Ok(())
 }
 
-/// All members of a part, as a mapping of arrays.
+/// The members of a part, as a mapping of arrays.
 struct Arrays<'a>(&'a Scene, &'a Part);
 
 impl Serialize for Arrays<'_> {
@@ -68,7 +68,7 @@ impl Serialize for Arrays<'_> {
     }
 }
 
-/// One row of so many members; what is several numbers, as x, y, z, one after the other.
+/// One row for this many members. Components, as x, y, z, follow one another.
 struct Array<'a>(&'a Scene, &'a Row, usize);
 
 impl Serialize for Array<'_> {

@@ -1,11 +1,11 @@
-//! Programs of somebody else's: each computes a whole trajectory by itself and leaves it as rows.
+//! External programs. Each computes a whole trajectory by itself and writes it as rows.
 //!
 //! ```text
 //! Command (words with placeholders) + Task -> the program runs -> Rows, or a Failure
 //! ```
-//! Such a program takes no single steps, so it is not an [`Engine`](super::Engine) but a [`Program`]:
-//! asked once, it answers with everything. What is here is pure. Whoever calls the library starts
-//! the process; the command line does so in `verbs::cli`, the only place that may.
+//! Such a program takes no single steps, so it is not an [`Engine`](super::Engine) but a [`Program`]: one call
+//! returns everything. This module is pure. The caller of the library starts the process; the command line
+//! does so in `verbs::cli`, the only place that may.
 
 mod command;
 mod flat;
@@ -18,16 +18,16 @@ use crate::scene::Scene;
 use crate::trajectory::{ReadError, Rows};
 use std::time::Duration;
 
-/// What a program is asked for: the scene from its start to `steps` timesteps.
+/// The task of a program: the scene from its start over `steps` timesteps.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
-    /// With the duration that flags may have changed.
+    /// The scene, with the duration that flags may have changed.
     pub scene: &'a Scene,
-    /// What the scene makes of its particles: which effects are in force.
+    /// The scene's system, which says which effects act.
     pub system: &'a ParticleSystem,
-    /// Seconds a step, which need not be the scene's own.
+    /// Seconds a step; it may differ from the scene's own.
     pub timestep: f64,
-    /// Steps that cover the duration.
+    /// The number of steps that cover the duration.
     pub steps: u64,
 }
 
@@ -35,24 +35,23 @@ pub struct Task<'a> {
 pub trait Program: Send + Sync {
     /// Runs from the scene's start to the end of the task, or as far as it gets.
     ///
-    /// Rows may be any whole number of steps apart. What is after the task's last step is ignored.
+    /// Rows may be any whole number of steps apart. Rows after the task's last step are ignored.
     ///
     /// # Errors
-    /// Whatever keeps rows from being known; it becomes the outcome.
+    /// The [`Failure`] because of which there are no rows; it becomes the outcome.
     fn record(&self, task: &Task) -> Result<Recording, Failure>;
 }
 
-/// What a program left.
+/// The result of a program.
 #[derive(Debug, Clone)]
 pub struct Recording {
     pub rows: Rows,
-    /// Wall time of the whole program, s: starting, reading and writing included. None of a file,
-    /// which does not say.
+    /// Wall time of the whole program, s, with start, reading and writing. None for a stored file.
     pub seconds: Option<f64>,
 }
 
-/// What went wrong with a program. An outcome, not a fault of the run: every message says what was
-/// expected and what to do.
+/// The failure of a program. It is an outcome, not a fault of the run: every message says what was expected
+/// and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     #[error(
@@ -90,7 +89,7 @@ pub enum Failure {
     NoFile,
     #[error("what it gave is no trajectory of this scene: {}", line(.0))]
     Unreadable(#[from] ReadError),
-    /// Something around the program: its pipes, the files handed to it.
+    /// A failure of input or output around the program: its pipes, or the files passed to it.
     #[error("could not {doing}: {cause}")]
     Io {
         doing: &'static str,
@@ -99,13 +98,13 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// For `map_err`.
+    /// Converts an I/O error, for `map_err`.
     pub fn io(doing: &'static str) -> impl Fn(std::io::Error) -> Self {
         move |cause| Self::Io { doing, cause }
     }
 }
 
-/// The error with its help on one line.
+/// The error and its help on one line.
 fn line(error: &ReadError) -> String {
     error.to_string().replace("\nhelp: ", "; ")
 }

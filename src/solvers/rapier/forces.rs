@@ -7,11 +7,11 @@ use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
 use crate::solvers::{Counts, Engine, Unsupported};
 
-/// A rapier world without joints or gravity that is handed all forces of the scene before each
-/// step, one substep a step: symplectic Euler (kick, drift), the same operations in the same order.
+/// A rapier world without joints or gravity. It gets all forces of the scene before each step, and takes one
+/// substep a step. This is symplectic Euler (kick, drift), with the same operations in the same order.
 ///
-/// It takes every effect that is a force. Not to be confused with what rapier makes of a scene in
-/// its own terms, which is [`RapierEngine`](super::RapierEngine).
+/// It accepts every effect that is a force. Not to be confused with [`RapierEngine`](super::RapierEngine),
+/// which expresses the scene by rapier's own joints and gravity.
 pub struct RapierForces {
     world: World,
     system: ParticleSystem,
@@ -26,7 +26,7 @@ impl RapierForces {
     /// `timestep` in seconds, positive.
     ///
     /// # Errors
-    /// [`Unsupported`] for masses outside of what rapier can move.
+    /// [`Unsupported`] for masses outside the range that rapier can move.
     pub fn new(scene: &Scene, system: ParticleSystem, timestep: f64) -> Result<Self, Unsupported> {
         let state = ParticleSystem::initial_state(scene);
         Ok(Self {
@@ -44,7 +44,7 @@ impl Engine for RapierForces {
     fn step(&mut self) -> Result<(), StepError> {
         let State { t, x, v, .. } = &self.state;
         let power = self.system.forces(*t, x, v, &mut self.forces);
-        // Where the kick is, as in symplectic Euler, whose work this then is to the last bit.
+        // The work is taken at the kick, as in symplectic Euler, so it equals that method's to the last bit.
         self.state.work.advance(power, self.timestep);
         self.world.set_forces(&self.forces);
         self.world.step(&mut self.state);

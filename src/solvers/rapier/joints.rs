@@ -1,4 +1,4 @@
-//! rapier with the scene in its own terms: spring joints, motors, its own gravity.
+//! rapier with the scene expressed by its own spring joints, motors and gravity.
 
 use super::mirrors;
 use super::settings::RapierSettings;
@@ -10,13 +10,13 @@ use crate::solvers::{Counts, Engine, Unsupported};
 
 /// A rapier world that mirrors a scene.
 ///
-/// The method this is, at h = timestep / iterations: gravity and wind kick the velocities, springs
-/// and dampers are met by *linearly implicit Euler without geometric stiffness* (k n nᵀ), solved by
-/// `pgs` Gauss-Seidel sweeps, then positions drift. It loses energy by design, and at one sweep it
-/// has not solved what it set out to. Not to be confused with the truth.
+/// Its method, at h = timestep / iterations: gravity and wind kick the velocities, springs and dampers act by
+/// *linearly implicit Euler without geometric stiffness* (k n nᵀ), solved by `pgs` Gauss-Seidel sweeps, then
+/// positions drift. It loses energy by design, and one sweep does not solve its equations. Not to be confused
+/// with the truth.
 ///
-/// Work integrals are taken from the states before and after each step by the trapezoidal rule,
-/// second order in the timestep: rapier does not tell what its joints did in between.
+/// Work integrals follow from the states before and after each step by the trapezoidal rule, of second order
+/// in the timestep, since rapier does not report the work of its joints.
 pub struct RapierEngine {
     world: World,
     system: ParticleSystem,
@@ -24,7 +24,7 @@ pub struct RapierEngine {
     timestep: f64,
     steps: u64,
     power: Power,
-    /// Forces, N: only to have the powers.
+    /// Scratch: forces, N, which are computed for their powers alone.
     scratch: Vec<f64>,
 }
 
@@ -32,7 +32,7 @@ impl RapierEngine {
     /// `timestep` in seconds, positive; rapier divides it into `settings.iterations` substeps.
     ///
     /// # Errors
-    /// [`Unsupported`] for what rapier does not have or would silently get wrong.
+    /// [`Unsupported`] where the scene has something that rapier lacks or would silently get wrong.
     pub fn new(
         scene: &Scene,
         system: ParticleSystem,
@@ -55,7 +55,7 @@ impl RapierEngine {
         Ok(engine)
     }
 
-    /// Zero, and free of cost, where nothing dissipates or drives.
+    /// The powers at the present state. They are 0, at no cost, where no force does such work.
     fn power_now(&mut self) -> Power {
         if self.system.kinds().does_work() {
             let State { t, x, v, .. } = &self.state;
@@ -82,7 +82,7 @@ impl Engine for RapierEngine {
         &self.state
     }
 
-    /// rapier tells neither forces nor solves.
+    /// rapier reports neither force evaluations nor solves.
     fn counts(&self) -> Counts {
         Counts::default()
     }

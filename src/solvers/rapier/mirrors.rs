@@ -1,7 +1,6 @@
-//! Which effects rapier has itself, and how they are said to it: one row an effect.
+//! The effects that rapier has itself, each with a row that adds it to a world.
 //!
-//! An effect without a row here is one rapier does not have, and a scene that asks for it is
-//! answered [`Unsupported`].
+//! rapier lacks an effect without a row here, and a scene that calls for it is [`Unsupported`].
 
 use super::world::{End, NEGLIGIBLE, World, unsupported};
 use crate::physics::ParticleSystem;
@@ -11,11 +10,11 @@ use rapier3d::dynamics::{
     GenericJoint, GenericJointBuilder, JointAxesMask, JointAxis, MotorModel, SpringJointBuilder,
 };
 
-/// One effect in rapier's own terms.
+/// An effect, expressed by rapier's own joints, gravity or forces.
 struct Mirror {
     /// The effect's id in `effects::REGISTRY`.
     effect: &'static str,
-    /// Adds it to a world whose substep is the number of seconds given.
+    /// Adds the effect to a world with substeps of this many seconds.
     add: fn(&Scene, f64, &mut World) -> Result<(), Unsupported>,
 }
 
@@ -60,7 +59,8 @@ pub(super) fn add_all(
     Ok(())
 }
 
-/// A spring joint per spring; its damper in the joint (axial) or beside it (isotropic).
+/// Adds a spring joint for each spring. An axial damper is part of the joint; an isotropic one is a motor of
+/// its own.
 fn springs(scene: &Scene, substep: f64, world: &mut World) -> Result<(), Unsupported> {
     for (id, spring) in scene.springs.iter().enumerate() {
         let [a, b] = spring.ends.map(|end| &scene.particles[end]);
@@ -74,21 +74,21 @@ fn springs(scene: &Scene, substep: f64, world: &mut World) -> Result<(), Unsuppo
             )));
         }
         let ends = spring.ends.map(End::Particle);
-        let beside = scene.damping_model == DampingModel::Isotropic;
-        let along = if beside { 0.0 } else { spring.damping };
-        if has_effect(id, spring.stiffness, along, substep)? {
-            world.join(ends, spring_joint(spring, along));
+        let isotropic = scene.damping_model == DampingModel::Isotropic;
+        let axial = if isotropic { 0.0 } else { spring.damping };
+        if has_effect(id, spring.stiffness, axial, substep)? {
+            world.join(ends, spring_joint(spring, axial));
         }
-        if beside && has_effect(id, 0.0, spring.damping, substep)? {
+        if isotropic && has_effect(id, 0.0, spring.damping, substep)? {
             world.join(ends, velocity_motor(spring.damping));
         }
     }
     Ok(())
 }
 
-/// Whether a joint of this stiffness and damping does anything. rapier takes 1/(h² k + h c) for 0
-/// when the sum is not above 1e-20, and the joint is then *rigid*: so no joint at all for 0, and an
-/// answer for what is too soft.
+/// Whether a joint of this stiffness and damping has an effect. rapier treats 1/(h² k + h c) as 0 when the sum
+/// is not above 1e-20, and the joint is then *rigid*. So there is no joint where both are 0, and softer
+/// joints are unsupported.
 fn has_effect(id: usize, k: f64, c: f64, h: f64) -> Result<bool, Unsupported> {
     let softness = h * h * k + h * c;
     if k == 0.0 && c == 0.0 {
@@ -109,8 +109,8 @@ fn spring_joint(spring: &Spring, damping: f64) -> GenericJoint {
         .into()
 }
 
-/// A damper of the whole relative velocity, N s/m: three motors with target velocity 0. A joint of
-/// its own, since rapier ignores single-axis motors on the axes a spring joint couples.
+/// A damper of the whole relative velocity, N s/m: three motors with target velocity 0. It is a joint of its
+/// own, since rapier ignores single-axis motors on the axes that a spring joint couples.
 fn velocity_motor(damping: f64) -> GenericJoint {
     let axes = [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ];
     let start = GenericJointBuilder::new(JointAxesMask::empty()).contacts_enabled(false);
@@ -123,8 +123,8 @@ fn velocity_motor(damping: f64) -> GenericJoint {
         .into()
 }
 
-/// Motors that hold each particle back against the air. Not rapier's `linear_damping`, which scales
-/// the velocity once a step, whatever the substeps do.
+/// Adds motors that slow each particle relative to the air. Not to be confused with rapier's `linear_damping`,
+/// which scales the velocity once a step, for any number of substeps.
 fn drag(scene: &Scene, substep: f64, world: &mut World) -> Result<(), Unsupported> {
     for (i, particle) in scene.particles.iter().enumerate() {
         if particle.fixed || particle.drag <= 0.0 {
@@ -141,10 +141,10 @@ fn drag(scene: &Scene, substep: f64, world: &mut World) -> Result<(), Unsupporte
     Ok(())
 }
 
-/// A constant force: rapier keeps a body's forces until they are reset.
+/// Adds the constant force of wind. rapier keeps a body's forces until they are reset.
 fn wind(scene: &Scene, _: f64, world: &mut World) -> Result<(), Unsupported> {
     if let Some(wind) = &scene.wind {
-        world.push_all(wind.direction.map(|d| wind.strength * d));
+        world.add_force_to_all(wind.direction.map(|d| wind.strength * d));
     }
     Ok(())
 }

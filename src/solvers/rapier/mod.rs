@@ -1,12 +1,11 @@
 //! rapier worlds that mirror a scene.
 //!
-//! Three engines, because each answers another question: `rapier` is what people ship,
-//! `rapier-converged` proves that its world is the same scene (its sweeps are raised until the
-//! joint solve converges), `rapier-forces` proves that the harness is unbiased (rapier only adds
-//! up forces computed here). None of them is the truth: see [`RapierEngine`] for the method that
-//! rapier's joints are.
+//! There are three engines, since each answers another question. `rapier` is what people use.
+//! `rapier-converged` proves that its world is the same scene: it takes enough sweeps for the joint solve to
+//! converge. `rapier-forces` proves that the harness is unbiased: rapier only applies forces computed here.
+//! None of them is the truth; [`RapierEngine`] describes the method of rapier's joints.
 //!
-//! rapier speaks glam; its types stay inside this folder.
+//! rapier uses glam; its types stay inside this folder.
 
 mod forces;
 mod joints;

@@ -1,26 +1,26 @@
-//! The knobs of rapier's solver that change the answer.
+//! The settings of rapier's solver that change the result.
 
-/// What rapier's solver is told, beside the timestep.
+/// The settings of rapier's solver, besides the timestep.
 ///
-/// rapier's continuous collision detection is always off here: it has nothing to do without contact.
+/// rapier's continuous collision detection is always off here, since there is no contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RapierSettings {
     /// `num_solver_iterations`, n: *substeps* of h = dt / n, each with a solve of its own. Not to
-    /// be confused with sweeps of one solve, which are `pgs`. At least 1; 0 is taken for 1.
+    /// be confused with sweeps of one solve, which are `pgs`. At least 1; 0 counts as 1.
     pub iterations: u32,
     /// `num_internal_pgs_iterations`: Gauss-Seidel sweeps over the joints in each substep. At
-    /// least 1; 0 is taken for 1.
+    /// least 1; 0 counts as 1.
     pub pgs: u32,
-    /// `num_internal_stabilization_iterations`: sweeps *after* the drift of each substep, over
-    /// joints already met, which changes velocities once more.
+    /// `num_internal_stabilization_iterations`: sweeps over the joints *after* the drift of each substep, which
+    /// change velocities once more.
     pub stabilization: u32,
     /// `normalized_max_linear_velocity`, m/s: faster bodies are slowed down to it in every substep.
-    /// rapier ships with 400; None, the default here, switches it off, since it hides divergence.
+    /// rapier's default is 400. None, the default here, switches it off, since it hides divergence.
     pub speed: Option<f64>,
 }
 
 impl RapierSettings {
-    /// rapier's own defaults (0.36).
+    /// rapier's own defaults (0.36), without its limit of speed.
     pub const DEFAULT: Self = Self {
         iterations: 4,
         pgs: 1,
@@ -28,8 +28,8 @@ impl RapierSettings {
         speed: None,
     };
 
-    /// Enough sweeps for the joint solve of a soft network to converge to rounding, and none after
-    /// the drift: what is left is linearly implicit Euler at dt / 4.
+    /// Enough sweeps for the joint solve of a soft network to converge to rounding, and none after the drift.
+    /// The method is then linearly implicit Euler at dt / 4.
     pub const CONVERGED: Self = Self {
         iterations: 4,
         pgs: 64,
@@ -37,7 +37,7 @@ impl RapierSettings {
         speed: None,
     };
 
-    /// No joints: one substep, nothing to sweep.
+    /// Settings of a world without joints: one substep, and no need for sweeps.
     pub const FORCES: Self = Self {
         iterations: 1,
         pgs: 1,
@@ -45,7 +45,7 @@ impl RapierSettings {
         speed: None,
     };
 
-    /// What differs from [`DEFAULT`](Self::DEFAULT), as the command line writes it:
+    /// The settings that differ from [`DEFAULT`](Self::DEFAULT), as the command line writes them:
     /// `pgs=4,stabilization=0`, or `defaults`.
     pub fn changes(&self) -> String {
         let usual = Self::DEFAULT;

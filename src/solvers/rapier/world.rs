@@ -1,4 +1,4 @@
-//! A scene's particles as rapier bodies, and back.
+//! A scene's particles as rapier bodies.
 
 use super::settings::RapierSettings;
 use crate::physics::State;
@@ -8,32 +8,33 @@ use rapier3d::dynamics::{GenericJoint, RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
-/// rapier takes 1/m for 0 where m or 1/m is not above this (its `INV_EPSILON`): such a body would
-/// not move.
+/// rapier treats 1/m as 0 where m or 1/m is not above this (its `INV_EPSILON`), so such a body would not
+/// move.
 pub(super) const NEGLIGIBLE: f64 = 1e-20;
 
-/// One body per particle, in the same order; no colliders, so rapier has no collisions to look for.
+/// A rapier world with one body for each particle, in the same order. It has no colliders, so rapier detects
+/// no collisions.
 pub(super) struct World {
     inner: PhysicsWorld,
     bodies: Vec<RigidBodyHandle>,
-    /// Indices of the free particles.
+    /// The indices of the free particles.
     free: Vec<usize>,
-    /// The fixed body dampers hold on to; made on first use.
+    /// The fixed body that stands for the air in drag joints; made on first use.
     air: Option<RigidBodyHandle>,
-    /// rapier disabled a body that was no longer finite.
-    lost: bool,
+    /// Whether rapier disabled a body that was no longer finite.
+    quarantined: bool,
 }
 
 /// One end of a joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum End {
     Particle(usize),
-    /// Air at rest.
+    /// The air, at rest.
     Air,
 }
 
 impl World {
-    /// Bodies only; no gravity, no forces, no joints.
+    /// A world of bodies, without gravity, forces or joints.
     pub(super) fn new(
         scene: &Scene,
         timestep: f64,
@@ -46,7 +47,7 @@ impl World {
         parameters.num_solver_iterations = settings.iterations.max(1) as usize;
         parameters.num_internal_pgs_iterations = settings.pgs.max(1) as usize;
         parameters.num_internal_stabilization_iterations = settings.stabilization as usize;
-        // The default cap of 400 m/s keeps an exploding run finite and wrong.
+        // rapier's default limit of 400 m/s keeps a diverging run finite and wrong.
         parameters.normalized_max_linear_velocity = settings.speed.unwrap_or(f64::MAX);
         parameters.max_ccd_substeps = 0;
 
@@ -72,7 +73,7 @@ impl World {
                 .translation(vector(particle.position))
                 .lock_rotations()
                 .linear_damping(0.0)
-                // A small oscillation would fall asleep.
+                // rapier would put a body with a small oscillation to sleep.
                 .can_sleep(false);
             bodies.push(inner.insert_body(body));
         }
@@ -81,19 +82,19 @@ impl World {
             bodies,
             free,
             air: None,
-            lost: false,
+            quarantined: false,
         })
     }
 
-    /// Uniform gravity, m/s², signed along the axis.
+    /// Sets uniform gravity, m/s², signed along the axis.
     pub(super) fn set_gravity(&mut self, up: Axis, gravity: f64) {
         let mut g = [0.0; 3];
         g[up.index()] = gravity;
         self.inner.gravity = vector(g);
     }
 
-    /// A force, N, that stays on every free particle until it is replaced.
-    pub(super) fn push_all(&mut self, force: [f64; 3]) {
+    /// Adds a force, N, to every free particle. It acts until it is replaced.
+    pub(super) fn add_force_to_all(&mut self, force: [f64; 3]) {
         for &i in &self.free {
             if let Some(body) = self.inner.bodies.get_mut(self.bodies[i]) {
                 body.add_force(vector(force), true);
@@ -112,7 +113,7 @@ impl World {
         }
     }
 
-    /// Joints are solved in the order they are added.
+    /// Adds a joint. rapier solves joints in the order they are added.
     pub(super) fn join(&mut self, ends: [End; 2], joint: impl Into<GenericJoint>) {
         let [first, second] = ends.map(|end| match end {
             End::Particle(i) => self.bodies[i],
@@ -128,18 +129,18 @@ impl World {
             .get_or_insert_with(|| inner.insert_body(RigidBodyBuilder::fixed()))
     }
 
-    /// One step of rapier, and the result into `state`'s positions and velocities.
+    /// Takes one step of rapier, and copies positions and velocities to `state`.
     pub(super) fn step(&mut self, state: &mut State) {
-        if self.lost {
+        if self.quarantined {
             return;
         }
         self.inner.step();
-        // rapier disables a body that left the finite numbers and puts it back where it was: a run
-        // that blew up would look like one at rest.
-        self.lost = !self.inner.quarantine().is_empty();
+        // rapier disables a body that is no longer finite and puts it back where it was, so a run that
+        // diverged would look like one at rest.
+        self.quarantined = !self.inner.quarantine().is_empty();
         for &i in &self.free {
             let body = &self.inner.bodies[self.bodies[i]];
-            let (x, v) = if self.lost {
+            let (x, v) = if self.quarantined {
                 ([f64::NAN; 3], [f64::NAN; 3])
             } else {
                 (body.translation().to_array(), body.linvel().to_array())
@@ -150,7 +151,7 @@ impl World {
     }
 }
 
-/// Into rapier's vectors.
+/// Converts to rapier's vectors.
 fn vector(v: [f64; 3]) -> Vector {
     Vector::from_array(v)
 }

@@ -84,7 +84,7 @@ impl<'a> Setup<'a> {
             system,
             truth,
             session,
-            limits: facts::limits(scene, system).now_and_then(),
+            limits: facts::limits(scene, system).coarse(),
             scale,
             size,
             room: (NUMBERS / each).clamp(16, INSTANTS),
@@ -325,7 +325,7 @@ fn along(coarse: &Setting, fine: &Setting, part: f64) -> Option<Setting> {
             Setting::Tolerance {
                 tolerance: from,
                 duration,
-                most,
+                max_steps,
                 ..
             },
             Setting::Tolerance { tolerance: to, .. },
@@ -333,7 +333,7 @@ fn along(coarse: &Setting, fine: &Setting, part: f64) -> Option<Setting> {
             tolerance: mean(*from, *to),
             duration: *duration,
             steps,
-            most: *most,
+            max_steps: *max_steps,
         }),
         _ => {
             let duration = coarse.timestep() * coarse.steps() as f64;

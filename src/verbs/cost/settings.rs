@@ -208,7 +208,7 @@ fn rate(linearised: &Linearised) -> f64 {
 }
 
 /// A pair's setting. It takes about as many steps as its error per unit step, (h w)^order, makes it.
-fn tolerance(scene: &Scene, rate: f64, order: u32, tolerance: f64, most: u64) -> Setting {
+fn tolerance(scene: &Scene, rate: f64, order: u32, tolerance: f64, max_steps: u64) -> Setting {
     let rate = if rate > 0.0 {
         rate
     } else {
@@ -219,7 +219,7 @@ fn tolerance(scene: &Scene, rate: f64, order: u32, tolerance: f64, most: u64) ->
         tolerance,
         duration: scene.duration,
         steps: steps.clamp(1.0, limits::STEPS) as u64,
-        most,
+        max_steps,
     }
 }
 

@@ -79,7 +79,7 @@ fn one(
     let dim = 3 * plan.scene.particles.len();
     let mut recorder = Recorder::new(steps, dim, timestep);
     let start = Instant::now();
-    let coarse = limits.now_and_then();
+    let coarse = limits.coarse();
     let mut ended = run.finish(&coarse, &mut recorder, &|taken| session.progress(taken));
     let wall = spread(vec![start.elapsed().as_secs_f64()]);
     if ended != Ended::Completed
@@ -128,7 +128,7 @@ const PATIENCE: f64 = 0.02;
 /// Times the cases again that take less than the patience, one after the other, when nothing else runs;
 /// the run that was recorded, beside others, was their warm-up. A longer one keeps the time of that run.
 pub fn time_again(plan: &Plan, records: &mut [Record], limits: &Limits) {
-    let coarse = limits.now_and_then();
+    let coarse = limits.coarse();
     for (case, record) in plan.cases.iter().zip(records) {
         let Some(wall) = &mut record.wall else {
             continue;

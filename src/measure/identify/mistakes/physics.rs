@@ -115,7 +115,7 @@ pub(super) fn mass_ignored(scene: &Scene) -> Option<ParticleSystem> {
 
 /// Forces undivided, weight among them. Without gravity this is `mass_ignored`.
 pub(super) fn force_as_acceleration(scene: &Scene) -> Option<ParticleSystem> {
-    (falls(scene) && weighs(scene)).then(|| ParticleSystem::new(scene).undivided())
+    (falls(scene) && weighs(scene)).then(|| ParticleSystem::new(scene).with_unit_masses())
 }
 
 fn falls(scene: &Scene) -> bool {

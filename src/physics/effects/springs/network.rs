@@ -144,11 +144,11 @@ fn cuts(springs: &[&Spring], particles: usize) -> Vec<usize> {
         ends_at[end] += 1;
     }
     for parts in PARTS {
-        let share = (2 * springs.len()).div_ceil(parts);
+        let per_part = (2 * springs.len()).div_ceil(parts);
         let mut cuts = whole.clone();
         let mut before = 0;
         for (particle, &ends) in ends_at.iter().enumerate() {
-            if before >= share * cuts.len() {
+            if before >= per_part * cuts.len() {
                 cuts.push(particle);
             }
             before += ends as usize;

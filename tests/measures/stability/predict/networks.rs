@@ -196,7 +196,7 @@ fn wrong_matrices_are_seen() {
             *value = -*value;
         }
     })));
-    assert!(fails(&system.undivided()));
+    assert!(fails(&system.with_unit_masses()));
     assert!(fails(&Seen(&system, |out: &mut Jacobian| {
         out.position.retain(|(row, column, _)| row >= column);
     })));
