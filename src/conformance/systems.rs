@@ -2,7 +2,7 @@
 //! and small networks without symmetries that could hide an error, as scenes built in code.
 
 use crate::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, System};
-use crate::scene::{Axis, DampingModel, Particle, Scene, Solver, Spring};
+use crate::scene::{DampingModel, Particle, Scene, Solver, Spring};
 
 /// x'' = -w² x - 2 ζ w x', one coordinate, mass 1.
 #[derive(Debug, Clone, Copy)]
@@ -187,30 +187,24 @@ pub fn swinging_triangle(damping: f64, model: DampingModel) -> Scene {
         velocity,
         fixed,
         mass,
-        radius: 0.1,
-        drag: 0.0,
+        ..Particle::default()
     };
     let spring = |a: usize, b: usize, stiffness: f64, rest_length: f64| Spring {
         ends: [a, b],
         stiffness,
-        cubic: 0.0,
         damping,
         rest_length,
+        ..Spring::default()
     };
     Scene {
         name: "swinging triangle".into(),
-        description: None,
-        file: String::new(),
         solver: Solver {
             method: "rk4".into(),
             timestep: 0.01,
-            gravity: -9.81,
-            tolerance: None,
+            ..Solver::default()
         },
         duration: 1.0,
-        up: Axis::Z,
         damping_model: model,
-        plot: None,
         particles: vec![
             particle([0.0, 0.0, 2.0], [0.0; 3], 1.0, true),
             particle([0.1, 0.0, 1.0], [0.3, 0.5, 0.0], 1.0, false),
@@ -223,9 +217,7 @@ pub fn swinging_triangle(damping: f64, model: DampingModel) -> Scene {
             spring(2, 3, 30.0, 1.1),
             spring(3, 1, 20.0, 1.0),
         ],
-        gravitational: Vec::new(),
-        wind: None,
-        expect: Vec::new(),
+        ..Scene::default()
     }
 }
 

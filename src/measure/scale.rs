@@ -1,7 +1,7 @@
 //! The energy scale S that errors are relative to.
 
 use crate::physics::{ParticleSystem, System};
-use crate::scene::{Particle, Scene, Spring};
+use crate::scene::{Scene, Spring};
 
 /// S in joules: the larger of K(0) + U_elastic(0) and `peak`, the largest kinetic energy of the
 /// truth where one is known; if both are 0, the sum over free particles of m |g| L, with L the
@@ -31,14 +31,20 @@ pub fn energy_scale(scene: &Scene, system: &ParticleSystem, peak: Option<f64>) -
 /// less than a thousand times what a free fall for the whole duration gains, which is motion however
 /// small the scale. None without either.
 pub fn divergence_limit(scene: &Scene, scale: Option<f64>) -> Option<f64> {
-    let wind = scene.wind.as_ref().map_or(0.0, |wind| wind.strength.abs());
-    let fall = |p: &Particle| {
-        let speed = (scene.solver.gravity.abs() + wind / p.mass) * scene.duration;
-        0.5 * p.mass * speed * speed
-    };
-    let free = scene.particles.iter().filter(|p| !p.fixed);
-    let limit = (1e12 * scale.unwrap_or(0.0)).max(1e3 * free.map(fall).sum::<f64>());
+    let fall = free_fall(scene) * scene.duration * scene.duration;
+    let limit = (1e12 * scale.unwrap_or(0.0)).max(1e3 * fall);
     (limit > 0.0 && limit.is_finite()).then_some(limit)
+}
+
+/// What gravity and wind give the free particles in a fall of t seconds, over t², J/s².
+pub(super) fn free_fall(scene: &Scene) -> f64 {
+    let wind = scene.wind.as_ref().map_or(0.0, |wind| wind.strength.abs());
+    let free = scene.particles.iter().filter(|p| !p.fixed);
+    let fall = free.map(|p| {
+        let a = scene.solver.gravity.abs() + wind / p.mass;
+        0.5 * p.mass * a * a
+    });
+    fall.sum()
 }
 
 /// Elastic energy of all springs when each is off its rest length by a few last bits of that or of its

@@ -4,49 +4,16 @@
 //! Two programs that agree to rounding on a scene agree on its masses, springs, dampers, gravity
 //! and units. What is compared is rapier with the method of ours that it *is*, not with the truth.
 
-mod claim;
 mod lockstep;
-mod shake;
+mod start;
 
+use crate::measure::{Check, CheckStatus};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::rapier::Settings;
 use crate::solvers::{Solver, Unsupported, find};
-use claim::Claim;
 use lockstep::{Path, distance};
-use shake::{condition, nudged, shaken};
-
-/// One proof's outcome.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Proof {
-    /// `twin-forces`, `twin-joints` or `twin-fall`.
-    pub id: &'static str,
-    /// The engine that is proved.
-    pub subject: &'static str,
-    pub status: Status,
-    /// Largest distance over the steps taken: of positions in units of the largest coordinate, of
-    /// velocities in units of the largest speed, whichever is larger. None where nothing ran.
-    pub measured: Option<f64>,
-    /// What rounding can explain, in the same units; 0 means bit for bit.
-    pub bound: f64,
-    /// Where the bound comes from.
-    pub derivation: String,
-    /// One sentence.
-    pub message: String,
-}
-
-/// How a proof ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
-    Pass,
-    /// The two sides do not compute the same scene: nothing compared with this engine means
-    /// anything.
-    Fail,
-    /// Neither proved nor refuted, with the reason in the message.
-    Inconclusive,
-    /// The engine does not take the scene, so there is nothing to prove.
-    Skip,
-}
+use start::{condition, disturbed, set_in_motion};
 
 /// World steps of the proof against symplectic Euler.
 const FORCE_STEPS: u32 = 16;
@@ -56,23 +23,33 @@ const JOINT_STEPS: u32 = 4;
 const MAX_SWEEPS: u32 = 1024;
 /// Nor more visits to a joint than this in one try: about two seconds.
 const MAX_ROWS: u64 = 20_000_000;
-/// All proofs a scene calls for, at a timestep in seconds.
+/// A proof that could not tell a relative error of this size is none.
+const BLUNT: f64 = 1e-6;
+
+/// All proofs a scene calls for, at a timestep in seconds: `twin-forces`, `twin-joints` and, without
+/// springs, `twin-fall`.
+///
+/// What is `measured` is the largest distance over the steps taken: of positions in units of the largest
+/// coordinate, of velocities in units of the largest speed, whichever is larger. The `bound` is what
+/// rounding can explain, in the same units; 0 means bit for bit. A proof that fails says that the two sides
+/// do not compute the same scene: nothing compared with this engine means anything. It is inconclusive
+/// where neither is shown, and skipped where the engine does not take the scene.
 ///
 /// The scene is started with small pseudo-random velocities added, the same in every run: many
 /// scenes begin at rest with no spring stretched, where a few steps would exercise only gravity.
-pub fn prove(scene: &Scene, timestep: f64) -> Vec<Proof> {
+pub fn prove(scene: &Scene, timestep: f64) -> Vec<Check> {
     prove_pair(scene, scene, timestep)
 }
 
 /// The same with a scene of its own for rapier: a different one must fail. For tests of the proof.
-pub fn prove_pair(ours: &Scene, theirs: &Scene, timestep: f64) -> Vec<Proof> {
-    let mut start = shaken(ours, timestep * f64::from(JOINT_STEPS));
+pub fn prove_pair(ours: &Scene, theirs: &Scene, timestep: f64) -> Vec<Check> {
+    let mut start = set_in_motion(ours, timestep * f64::from(JOINT_STEPS));
     // Whatever residual the scene puts up with, the proof solves to the default one.
     start.solver.tolerance = None;
-    // Their side differs in what the caller made different, never in the shaking.
+    // Their side differs in what the caller made different, never in how it is set in motion.
     let mut other = theirs.clone();
-    for (theirs, shaken) in other.particles.iter_mut().zip(&start.particles) {
-        theirs.velocity = shaken.velocity;
+    for (theirs, moving) in other.particles.iter_mut().zip(&start.particles) {
+        theirs.velocity = moving.velocity;
     }
     let pair = Pair {
         ours: start,
@@ -85,6 +62,80 @@ pub fn prove_pair(ours: &Scene, theirs: &Scene, timestep: f64) -> Vec<Proof> {
         proofs.push(pair.fall());
     }
     proofs
+}
+
+/// What a proof sets out to show.
+struct Claim {
+    id: &'static str,
+    subject: &'static str,
+    /// The integrator of ours that the subject must be.
+    method: &'static str,
+}
+
+impl Claim {
+    fn judge(&self, ours: &Path, theirs: &Path, bound: f64, derivation: String) -> Check {
+        let (subject, method) = (self.subject, self.method);
+        let measured = distance(ours, theirs);
+        let (status, message) = if let Some(reason) = ours.ended() {
+            (
+                CheckStatus::Inconclusive,
+                format!("{method} could not take these steps: {reason}"),
+            )
+        } else if bound.is_nan() || bound > BLUNT {
+            (
+                CheckStatus::Inconclusive,
+                format!(
+                    "rounding alone may move this scene by {bound:.0e} in a few steps: it proves nothing"
+                ),
+            )
+        } else {
+            match measured {
+                Some(0.0) => (
+                    CheckStatus::Pass,
+                    format!("{subject} is {method}, bit for bit"),
+                ),
+                Some(d) if d <= bound => (
+                    CheckStatus::Pass,
+                    format!("{subject} is {method} to {d:.0e}, rounding ({bound:.0e})"),
+                ),
+                Some(d) => (
+                    CheckStatus::Fail,
+                    format!(
+                        "{subject} is {d:.0e} away from {method}; rounding explains {bound:.0e}"
+                    ),
+                ),
+                None => (
+                    CheckStatus::Fail,
+                    format!("{subject} left the finite numbers, {method} did not"),
+                ),
+            }
+        };
+        self.check(status, measured, bound, derivation, message)
+    }
+
+    fn skip(&self, unsupported: Unsupported) -> Check {
+        let reason = unsupported.reason;
+        self.check(CheckStatus::Skip, None, 0.0, String::new(), reason)
+    }
+
+    fn check(
+        &self,
+        status: CheckStatus,
+        measured: Option<f64>,
+        bound: f64,
+        derivation: String,
+        message: String,
+    ) -> Check {
+        Check {
+            id: self.id.to_owned(),
+            subject: self.subject.to_owned(),
+            status,
+            measured: measured.filter(|measured| measured.is_finite()),
+            bound: Some(bound).filter(|bound| bound.is_finite()),
+            derivation,
+            message,
+        }
+    }
 }
 
 struct Pair {
@@ -103,7 +154,7 @@ impl Pair {
     }
 
     /// rapier-forces is symplectic Euler.
-    fn forces(&self) -> Proof {
+    fn forces(&self) -> Check {
         let proof = Claim {
             id: "twin-forces",
             subject: "rapier-forces",
@@ -112,7 +163,7 @@ impl Pair {
         let solver = find(proof.subject);
         let theirs = match self.theirs(solver, FORCE_STEPS) {
             Ok(path) => path,
-            Err(unsupported) => return proof.skip(&unsupported),
+            Err(unsupported) => return proof.skip(unsupported),
         };
         let ours = Path::ours(&self.ours, proof.method, self.timestep, 1, FORCE_STEPS);
         // v += h (f / m), x += h v: the forces are the same code, and both sides round the same
@@ -122,7 +173,7 @@ impl Pair {
     }
 
     /// rapier-converged is linearly implicit Euler without geometric stiffness, at dt / 4.
-    fn joints(&self) -> Proof {
+    fn joints(&self) -> Check {
         let proof = Claim {
             id: "twin-joints",
             subject: "rapier-converged",
@@ -132,7 +183,7 @@ impl Pair {
         let run = |settings: &Settings| self.theirs(Some(Solver::rapier(*settings)), JOINT_STEPS);
         let mut coarse = match run(&settings) {
             Ok(path) => path,
-            Err(unsupported) => return proof.skip(&unsupported),
+            Err(unsupported) => return proof.skip(unsupported),
         };
         let (path, bound, derivation) = self.reference(proof.method, settings.iterations);
         let joints = self.ours.springs.len() as u64 * u64::from(JOINT_STEPS * settings.iterations);
@@ -149,7 +200,7 @@ impl Pair {
                 let part = 1.0 / condition(&self.ours, settings.substep(self.timestep));
                 let kept = (1.0 - part).powf(f64::from(settings.pgs) / 2.0);
                 let left = moved.max(f64::EPSILON) * kept / (1.0 - kept);
-                if judged.status != Status::Fail || left <= 0.1 * bound {
+                if judged.status != CheckStatus::Fail || left <= 0.1 * bound {
                     return judged;
                 }
             }
@@ -159,11 +210,13 @@ impl Pair {
             "rapier's sweeps did not converge within {}, more are not spent on a proof",
             settings.pgs
         );
-        proof.undecided(distance(&path, &coarse), bound, derivation, message)
+        let measured = distance(&path, &coarse);
+        let status = CheckStatus::Inconclusive;
+        proof.check(status, measured, bound, derivation, message)
     }
 
     /// rapier's fall is symplectic Euler at dt / n.
-    fn fall(&self) -> Proof {
+    fn fall(&self) -> Check {
         let proof = Claim {
             id: "twin-fall",
             subject: "rapier",
@@ -172,7 +225,7 @@ impl Pair {
         let settings = Settings::DEFAULT;
         let theirs = match self.theirs(Some(Solver::rapier(settings)), JOINT_STEPS) {
             Ok(path) => path,
-            Err(unsupported) => return proof.skip(&unsupported),
+            Err(unsupported) => return proof.skip(unsupported),
         };
         let (path, bound, derivation) = self.reference(proof.method, settings.iterations);
         proof.judge(&path, &theirs, bound, derivation)
@@ -192,9 +245,9 @@ impl Pair {
         let path = Path::ours(&self.ours, method, h, substeps, JOINT_STEPS);
         // The larger of two random directions: one alone may miss what grows.
         let grown = [2, 3].map(|seed| {
-            let start = nudged(&self.ours, seed);
-            let nudged = Path::ours(&start, method, h, substeps, JOINT_STEPS);
-            distance(&path, &nudged).unwrap_or(f64::INFINITY)
+            let start = disturbed(&self.ours, seed);
+            let disturbed = Path::ours(&start, method, h, substeps, JOINT_STEPS);
+            distance(&path, &disturbed).unwrap_or(f64::INFINITY)
         });
         let grown = grown[0].max(grown[1]);
         let condition = condition(&self.ours, h);

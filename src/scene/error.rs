@@ -1,9 +1,74 @@
 //! The one error this module gives: what is wrong, where, and what to do about it.
 
-use super::locate::Fault;
-use super::shown::printable;
+use super::words::printable;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use std::ops::Range;
+
+/// Why a value is refused, without its place.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct Refusal {
+    /// The key at fault: the whole path where the place is known, else what stands below the value being
+    /// read; empty for that value itself.
+    pub(super) key: String,
+    /// What was expected and what was found.
+    pub message: String,
+    /// What to do; empty where the message says it all.
+    pub help: String,
+}
+
+impl Refusal {
+    pub(super) fn new(message: impl Into<String>, help: impl Into<String>) -> Refusal {
+        Refusal {
+            key: String::new(),
+            message: message.into(),
+            help: help.into(),
+        }
+    }
+
+    /// The refusal as a result.
+    pub(super) fn because<T>(
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Result<T, Refusal> {
+        Err(Refusal::new(message, help))
+    }
+
+    pub(super) fn of(self, key: &str) -> Refusal {
+        Refusal {
+            key: key.to_owned(),
+            ..self
+        }
+    }
+}
+
+/// Stands around the parts of a [`Refusal`] that travels through serde, whose errors are nothing but
+/// text: no YAML file may contain it as it is.
+pub(super) const MARK: char = '\u{1f}';
+
+/// The refusal of the value being read.
+pub(super) fn refuse<E: serde::de::Error>(refusal: Refusal) -> E {
+    let Refusal { key, message, help } = refusal;
+    let [key, message, help] = [key, message, help].map(|text| text.replace(MARK, " "));
+    E::custom(format!("{MARK}{key}{MARK}{message}{MARK}{help}{MARK}"))
+}
+
+/// A refusal at a place in the text.
+#[derive(Debug)]
+pub(super) struct Fault {
+    /// Bytes from the start of the text.
+    pub(super) offset: usize,
+    pub(super) refusal: Refusal,
+}
+
+impl Fault {
+    pub(super) fn new(offset: usize, message: impl Into<String>, help: &str) -> Fault {
+        Fault {
+            offset,
+            refusal: Refusal::new(message, help),
+        }
+    }
+}
 
 /// Why a scene cannot be used, for its author. Displays as a block whose first line begins with
 /// `file:line:column` and which shows the offending line.
@@ -16,12 +81,8 @@ pub struct SceneError {
     pub line: Option<u32>,
     /// From 1, in characters.
     pub column: Option<u32>,
-    /// The key at fault, as `springs[7].stiffness`; empty for the file as a whole.
-    pub key: String,
-    /// What was expected and what was found, without place and key.
-    pub message: String,
-    /// What to do; empty where the message says it all.
-    pub help: String,
+    /// What is wrong with which key, without the place; no key for the file as a whole.
+    pub refusal: Refusal,
     excerpt: Option<Box<Excerpt>>,
 }
 
@@ -40,9 +101,7 @@ impl SceneError {
             file: file.to_owned(),
             line: None,
             column: None,
-            key: String::new(),
-            message,
-            help: String::new(),
+            refusal: Refusal::new(message, ""),
             excerpt: None,
         }
     }
@@ -63,31 +122,26 @@ impl SceneError {
             .count();
         let column = text[start..offset].chars().count();
         SceneError {
+            file: file.to_owned(),
             line: u32::try_from(breaks + 1).ok(),
             column: u32::try_from(column + 1).ok(),
-            key: fault.key,
-            help: fault.help,
+            refusal: fault.refusal,
             excerpt: Some(Box::new(excerpt(&text[start..offset], &text[offset..end]))),
-            ..SceneError::of_file(file, fault.message)
         }
-    }
-
-    /// `file:line:column: key: message` on one line, without excerpt and help.
-    pub fn headline(&self) -> String {
-        let mut headline = self.file.clone();
-        for number in [self.line, self.column].into_iter().flatten() {
-            headline.push_str(&format!(":{number}"));
-        }
-        if !self.key.is_empty() {
-            headline.push_str(&format!(": {}", self.key));
-        }
-        format!("{headline}: {}", self.message)
     }
 
     /// The whole block, by a renderer of the caller's choice: plain or styled.
     pub fn render(&self, renderer: &Renderer) -> String {
-        let title = Level::ERROR.no_name().primary_title(self.headline());
-        let mut report = Group::with_title(title);
+        let Refusal { key, message, help } = &self.refusal;
+        let mut headline = self.file.clone();
+        for number in [self.line, self.column].into_iter().flatten() {
+            headline += &format!(":{number}");
+        }
+        if !key.is_empty() {
+            headline += &format!(": {key}");
+        }
+        let title = Level::ERROR.no_name();
+        let mut report = Group::with_title(title.primary_title(format!("{headline}: {message}")));
         if let (Some(excerpt), Some(line)) = (&self.excerpt, self.line) {
             report = report.element(
                 Snippet::source(&excerpt.line)
@@ -95,8 +149,8 @@ impl SceneError {
                     .annotation(AnnotationKind::Primary.span(excerpt.marked.clone())),
             );
         }
-        if !self.help.is_empty() {
-            report = report.element(Level::HELP.message(&self.help));
+        if !help.is_empty() {
+            report = report.element(Level::HELP.message(help));
         }
         renderer.render(&[report])
     }
@@ -107,47 +161,36 @@ const AROUND: usize = 70;
 
 /// Cuts the line to what fits, and control characters to what a terminal may be shown.
 fn excerpt(before: &str, after: &str) -> Excerpt {
+    let skipped = before.chars().count().saturating_sub(AROUND);
     let mut line = String::new();
-    if let Some((cut, _)) = before.char_indices().rev().nth(AROUND) {
+    if skipped > 0 {
         line.push_str("… ");
-        line.extend(before[cut..].chars().skip(1).map(printable));
-    } else {
-        line.extend(before.chars().map(printable));
     }
+    line.extend(before.chars().skip(skipped).map(printable));
     let start = line.len();
-    let marked = token(after);
-    line.extend(after.chars().take(AROUND).map(printable));
-    let end = start
-        + line[start..]
-            .chars()
-            .take(marked)
-            .map(char::len_utf8)
-            .sum::<usize>();
+    let shown = || after.chars().take(AROUND).map(printable);
+    let marked: usize = shown().take(token(after)).map(char::len_utf8).sum();
+    line.extend(shown());
     if after.chars().nth(AROUND).is_some() {
         line.push_str(" …");
     }
     Excerpt {
         line,
-        marked: start..end,
+        marked: start..start + marked,
     }
 }
 
 /// Characters of the value or key that begins here; a bracket or an indicator is one.
 fn token(text: &str) -> usize {
     let mut chars = text.chars();
+    let one = |c: char| matches!(c, ',' | ':' | '[' | ']' | '{' | '}');
     match chars.next() {
         None => 0,
-        Some('[' | ']' | '{' | '}' | ',' | ':') => 1,
-        Some(quote @ ('"' | '\'')) => chars
-            .take(AROUND)
-            .position(|c| c == quote)
-            .map_or(1, |inner| inner + 2),
-        Some(_) => {
-            1 + chars
-                .take_while(|c| {
-                    !c.is_whitespace() && !matches!(c, ',' | ':' | '[' | ']' | '{' | '}')
-                })
-                .count()
+        Some(c) if one(c) => 1,
+        Some(quote @ ('"' | '\'')) => {
+            let inner = chars.take(AROUND).position(|c| c == quote);
+            inner.map_or(1, |inner| inner + 2)
         }
+        Some(_) => 1 + chars.take_while(|c| !c.is_whitespace() && !one(*c)).count(),
     }
 }

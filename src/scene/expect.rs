@@ -1,173 +1,244 @@
-//! Judges `expect`: engines, keys and words that exist, bounds that a number can meet.
+//! Reads `expect`: engines, keys and words that exist, bounds that a number can meet. Everything here is
+//! bounded: aliases multiply.
 
-use super::check::quantity;
-use super::entries::{Entries, RawWanted, Word};
-use super::expectation::{ALL, Expectation, REST, Wanted, Whom};
-use super::limits::BOUND;
-use super::locate::Problem;
-use super::names::{KeyKind, Names};
-use super::path::At;
-use super::raw::RawBounds;
-use super::shown::shorten;
-use super::suggest;
+use super::error::{Refusal, refuse};
+use super::expectation::{ALL, Expectation, KeyKind, Names, REST, Scope, Wanted};
+use super::limits::{BOUND, EXPECTED, WORD_BYTES, known};
+use super::place::Problem;
+use super::values::{Any, Key, Maybe, index_of, no_merge, number, text, twice, unknown};
+use super::words::{did_you_mean, shorten};
+use serde::de::{Error, MapAccess, SeqAccess, Visitor};
+use std::fmt;
 
-/// Every expectation, in the order of the file.
-pub(super) fn expectations(
-    raw: Option<Entries<Entries<RawWanted>>>,
-    names: &Names,
-    at: At,
-) -> Result<Vec<Expectation>, Problem> {
-    let mut found = Vec::new();
-    for (engine, Entries(keys)) in raw.map(|raw| raw.0).unwrap_or_default() {
-        let whom = whom(&engine, names, at)?;
-        let at = at.key(&engine);
-        if keys.is_empty() {
-            let help = "say what it must do, as {status: completed}";
-            return Err(Problem::new(at, "expected at least one key", help));
-        }
-        for (key, raw) in keys {
-            let known = names.keys.iter().find(|known| known.path == key);
-            let Some(known) = known else {
-                let paths: Vec<&str> = names.keys.iter().map(|known| known.path.as_str()).collect();
-                let message = format!("unknown key `{}`", shorten(&key));
-                return Err(Problem::new(
-                    at.name(&key),
-                    message,
-                    suggest::key(&key, &paths),
-                ));
-            };
-            let wanted = wanted(raw, &known.kind, at.key(&key))?;
-            found.push(Expectation {
-                whom: whom.clone(),
-                key,
-                wanted,
-            });
-        }
-    }
-    Ok(found)
+const MAPPING: &str = "a mapping such as {status: completed}";
+
+/// The whole of `expect`: a line for each engine.
+pub(super) struct Engines<'r> {
+    pub(super) names: &'r Names,
+    pub(super) expect: &'r mut Vec<Expectation>,
+    /// The first unknown key: the value it has may say better what is wrong.
+    pub(super) problem: &'r mut Option<Problem>,
 }
 
-fn whom(engine: &str, names: &Names, at: At) -> Result<Whom, Problem> {
+impl<'de> Visitor<'de> for Engines<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(MAPPING)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(mut self, mut map: A) -> Result<(), A::Error> {
+        let mut before = Vec::new();
+        while let Some(scope) = map.next_key_seed(Key(|engine: &str| {
+            fresh(engine, &mut before)?;
+            scope(engine, self.names)
+        }))? {
+            map.next_value_seed(Any(Line(scope, &mut self)))?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a key that is too long, was there before, is one too many, or merges.
+fn fresh(key: &str, before: &mut Vec<String>) -> Result<(), Refusal> {
+    short(key)?;
+    if before.iter().any(|before| before == key) {
+        return Err(twice(key));
+    }
+    if before.len() >= EXPECTED {
+        return Refusal::because(format!("expected at most {EXPECTED} keys"), "");
+    }
+    before.push(key.to_owned());
+    no_merge(key)
+}
+
+fn short(text: &str) -> Result<(), Refusal> {
+    if text.len() > WORD_BYTES {
+        let found = shorten(text);
+        let message = format!("expected at most {WORD_BYTES} bytes, found `{found}`");
+        return Refusal::because(message, "");
+    }
+    Ok(())
+}
+
+fn scope(engine: &str, names: &Names) -> Result<Scope, Refusal> {
     let mut known = [ALL, REST].to_vec();
     known.extend(names.methods.iter().chain(&names.engines));
     match engine {
-        ALL => Ok(Whom::All),
-        REST => Ok(Whom::Rest),
-        id if known.contains(&id) => Ok(Whom::Engine(id.to_owned())),
-        other => {
-            let message = format!("unknown engine `{}`", shorten(other));
-            let near = suggest::nearest(other, &known);
-            let help = near.map_or_else(
-                || format!("the engines here are {}", known.join(", ")),
-                |near| format!("did you mean `{near}`?"),
-            );
-            Err(Problem::new(at.name(other), message, help))
+        ALL => Ok(Scope::All),
+        REST => Ok(Scope::Rest),
+        id if known.contains(&id) => Ok(Scope::Engine(id.to_owned())),
+        other => Refusal::because(
+            format!("unknown engine `{}`", shorten(other)),
+            did_you_mean(other, &known)
+                .unwrap_or_else(|| format!("the engines here are {}", known.join(", "))),
+        ),
+    }
+}
+
+/// What is expected of one engine.
+struct Line<'l, 'r>(Scope, &'l mut Engines<'r>);
+
+impl<'de> Visitor<'de> for Line<'_, '_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(MAPPING)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        let Line(scope, engines) = self;
+        let keys = &engines.names.keys;
+        let mut before = Vec::new();
+        while let Some(key) = map.next_key_seed(Key(|key: &str| {
+            fresh(key, &mut before)?;
+            Ok(keys.iter().find(|known| known.path == key))
+        }))? {
+            let wanted = map.next_value_seed(Any(Value(key.map(|key| &key.kind))))?;
+            let Some(key) = key else {
+                let key = before.last().map_or("", String::as_str);
+                let paths: Vec<&str> = keys.iter().map(|known| known.path.as_str()).collect();
+                let path = format!("expect.{scope}");
+                let problem = || Problem::of_key(&path, key, unknown(key, &paths));
+                engines.problem.get_or_insert_with(problem);
+                continue;
+            };
+            engines.expect.push(Expectation {
+                scope: scope.clone(),
+                key: key.path.clone(),
+                wanted,
+            });
+        }
+        if before.is_empty() {
+            let help = "say what it must do, as {status: completed}";
+            return Err(refuse(Refusal::new("expected at least one key", help)));
+        }
+        Ok(())
+    }
+}
+
+/// What is expected under a key of this kind; with no kind, only its shape is judged.
+struct Value<'k>(Option<&'k KeyKind>);
+
+impl Value<'_> {
+    fn takes_words(&self) -> Result<(), Refusal> {
+        match self.0 {
+            Some(KeyKind::Number) => Refusal::because(
+                "expected `below` or `above`, found no bounds",
+                "write it as {below: 1e-3}",
+            ),
+            Some(KeyKind::Text) => Refusal::because(
+                "expected `contains`, found a word or words",
+                "write it as {contains: \"...\"}",
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    fn word(&self, word: &str) -> Result<String, Refusal> {
+        short(word)?;
+        self.takes_words()?;
+        if let Some(KeyKind::Word(words)) = self.0 {
+            known(word, words, "word")?;
+        }
+        Ok(word.to_owned())
+    }
+}
+
+impl<'de> Visitor<'de> for Value<'_> {
+    type Value = Wanted;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a word, a list of words, or bounds such as {below: 1e-3}")
+    }
+
+    fn visit_str<E: Error>(self, word: &str) -> Result<Wanted, E> {
+        let word = self.word(word).map_err(refuse)?;
+        Ok(Wanted::Words(vec![word]))
+    }
+
+    fn visit_bool<E: Error>(self, truth: bool) -> Result<Wanted, E> {
+        self.visit_str(&truth.to_string())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Wanted, A::Error> {
+        self.takes_words().map_err(refuse)?;
+        let mut words: Vec<String> = Vec::new();
+        while let Some(word) = list.next_element_seed(Any(text(|word| {
+            if words.len() >= EXPECTED {
+                return Refusal::because(format!("expected at most {EXPECTED} words"), "");
+            }
+            if words.iter().any(|before| before == word) {
+                return Refusal::because(format!("`{word}` is given twice"), "keep one of them");
+            }
+            self.word(word)
+        })))? {
+            words.push(word);
+        }
+        if words.is_empty() && self.0.is_some() {
+            let message = "expected at least one word, found an empty list";
+            return Err(refuse(Refusal::new(message, "")));
+        }
+        Ok(Wanted::Words(words))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Wanted, A::Error> {
+        if let Some(KeyKind::Word(words)) = self.0 {
+            let message = format!("expected {}, found bounds", words.join(" or "));
+            let help = "bounds are for numbers and text";
+            return Err(refuse(Refusal::new(message, help)));
+        }
+        let (mut above, mut below, mut contains) = (None, None, None);
+        let limit = |n| BOUND.judge(n);
+        let mut seen = 0;
+        while let Some(key) = map.next_key_seed(Key(|key: &str| bound(key, &mut seen, self.0)))? {
+            match key {
+                "above" => above = map.next_value_seed(Maybe(Any(number(limit))))?,
+                "below" => below = map.next_value_seed(Maybe(Any(number(limit))))?,
+                _ => contains = map.next_value_seed(Maybe(Any(text(some_text))))?,
+            }
+        }
+        let wrong = |message: String, help: &str| Err(refuse(Refusal::new(message, help)));
+        match (self.0, contains, above, below) {
+            (Some(KeyKind::Text), None, ..) => wrong(
+                "expected `contains`, found nothing".into(),
+                "write it as {contains: \"...\"}",
+            ),
+            (_, Some(text), ..) => Ok(Wanted::Contains(text)),
+            (Some(KeyKind::Number), _, None, None) => wrong(
+                "expected `below` or `above`, found neither".into(),
+                "write it as {below: 1e-3}",
+            ),
+            (_, _, Some(above), Some(below)) if above >= below => wrong(
+                format!("no number is above {above:?} and below {below:?}"),
+                "",
+            ),
+            (_, _, above, below) => Ok(Wanted::Bounds { above, below }),
         }
     }
 }
 
-fn wanted(raw: RawWanted, kind: &KeyKind, at: At) -> Result<Wanted, Problem> {
-    match (kind, raw) {
-        (KeyKind::Word(known), RawWanted::Word(word)) => {
-            Ok(Wanted::Words(vec![one_of(word, known, at)?]))
-        }
-        (KeyKind::Word(known), RawWanted::Words(list)) => words(list, known, at),
-        (KeyKind::Word(known), RawWanted::Bounds(_)) => {
-            let message = format!("expected {}, found bounds", known.join(" or "));
-            Err(Problem::new(at, message, "bounds are for numbers and text"))
-        }
-        (KeyKind::Number, RawWanted::Bounds(raw)) => bounds(raw, at),
-        (KeyKind::Number, _) => {
-            let message = "expected `below` or `above`, found no bounds";
-            Err(Problem::new(at, message, "write it as {below: 1e-3}"))
-        }
-        (KeyKind::Text, RawWanted::Bounds(raw)) => text(raw, at),
-        (KeyKind::Text, _) => {
-            let message = "expected `contains`, found a word or words";
-            Err(Problem::new(at, message, "write it as {contains: \"...\"}"))
-        }
-    }
-}
-
-fn words(list: Vec<Word>, known: &[&str], at: At) -> Result<Wanted, Problem> {
-    let mut words: Vec<String> = Vec::new();
-    for (i, word) in list.into_iter().enumerate() {
-        let word = one_of(word, known, at.index(i))?;
-        if words.contains(&word) {
-            let message = format!("`{word}` is given twice");
-            return Err(Problem::new(at.index(i), message, "keep one of them"));
-        }
-        words.push(word);
-    }
-    if words.is_empty() {
-        let message = "expected at least one word, found an empty list";
-        return Err(Problem::new(at, message, ""));
-    }
-    Ok(Wanted::Words(words))
-}
-
-fn one_of(Word(word): Word, known: &[&str], at: At) -> Result<String, Problem> {
-    if known.contains(&word.as_str()) {
-        return Ok(word);
-    }
-    let message = format!(
-        "unknown word `{}`: expected one of {}",
-        shorten(&word),
-        known.join(", ")
-    );
-    let help = suggest::nearest(&word, known).map(|near| format!("did you mean `{near}`?"));
-    Err(Problem::new(at, message, help.unwrap_or_default()))
-}
-
-fn bounds(raw: RawBounds, at: At) -> Result<Wanted, Problem> {
-    if raw.contains.is_some() {
-        let help = "`contains` is for text: write `below` or `above`";
-        return Err(Problem::new(
-            at.name("contains"),
+/// The key among those of bounds, if it fits the kind.
+fn bound(key: &str, seen: &mut u32, kind: Option<&KeyKind>) -> Result<&'static str, Refusal> {
+    const KEYS: [&str; 3] = ["below", "above", "contains"];
+    let known = KEYS[index_of(key, KEYS.into_iter(), seen)?];
+    match kind {
+        Some(KeyKind::Number) if known == "contains" => Refusal::because(
             "found `contains` on a number",
-            help,
-        ));
-    }
-    let below = raw
-        .below
-        .map(|below| quantity(below, BOUND, at.key("below")))
-        .transpose()?;
-    let above = raw
-        .above
-        .map(|above| quantity(above, BOUND, at.key("above")))
-        .transpose()?;
-    match (above, below) {
-        (None, None) => {
-            let message = "expected `below` or `above`, found neither";
-            Err(Problem::new(at, message, "write it as {below: 1e-3}"))
-        }
-        (Some(above), Some(below)) if above >= below => {
-            let message = format!("no number is above {above:?} and below {below:?}");
-            Err(Problem::new(at, message, ""))
-        }
-        (above, below) => Ok(Wanted::Bounds { above, below }),
+            "`contains` is for text: write `below` or `above`",
+        ),
+        Some(KeyKind::Text) if known != "contains" => Refusal::because(
+            format!("found `{key}` on a text"),
+            format!("`{key}` is for numbers: write `contains`"),
+        ),
+        _ => Ok(known),
     }
 }
 
-fn text(raw: RawBounds, at: At) -> Result<Wanted, Problem> {
-    for (key, given) in [("below", raw.below), ("above", raw.above)] {
-        if given.is_some() {
-            let message = format!("found `{key}` on a text");
-            let help = format!("`{key}` is for numbers: write `contains`");
-            return Err(Problem::new(at.name(key), message, help));
-        }
+fn some_text(text: &str) -> Result<String, Refusal> {
+    short(text)?;
+    if text.trim().is_empty() {
+        return Refusal::because("expected some text, found none", "");
     }
-    match raw.contains {
-        Some(Word(text)) if !text.trim().is_empty() => Ok(Wanted::Contains(text)),
-        Some(_) => Err(Problem::new(
-            at.key("contains"),
-            "expected some text, found none",
-            "",
-        )),
-        None => Err(Problem::new(
-            at,
-            "expected `contains`, found nothing",
-            "write it as {contains: \"...\"}",
-        )),
-    }
+    Ok(text.to_owned())
 }

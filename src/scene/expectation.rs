@@ -1,25 +1,56 @@
-//! What a scene says that every engine must do.
+//! What a scene says that every engine must do, and the words of other stages that it may use. The scene
+//! module knows none of them by itself: [`verbs::names`](crate::verbs::names) is what this
+//! program knows.
 
-use super::model::Scene;
 use std::fmt;
 
-/// Whom `expect` is about when it is about every integrator.
+/// The line of `expect` about every integrator.
 pub(super) const ALL: &str = "all";
-/// Every integrator that it does not name.
+/// The line about every integrator without a line of its own.
 pub(super) const REST: &str = "rest";
+
+/// What a scene may name.
+#[derive(Debug, Clone, Default)]
+pub struct Names {
+    /// Ids of integrators: what `solver.type` may be, and what `expect` may be about.
+    pub methods: Vec<&'static str>,
+    /// Ids of reference engines, which `expect` may be about.
+    pub engines: Vec<&'static str>,
+    /// What `expect` may say of them.
+    pub keys: Vec<Key>,
+}
+
+/// A key of an outcome that a scene may expect something of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Key {
+    /// Dotted, as `energy.class`.
+    pub path: String,
+    pub kind: KeyKind,
+}
+
+/// What stands under a key, and so how an expectation of it looks.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum KeyKind {
+    /// One of these words: a word or a list of those allowed.
+    Word(Vec<&'static str>),
+    /// A number: `below` and `above`.
+    Number,
+    /// A sentence: `contains`.
+    Text,
+}
 
 /// One key of one line of `expect`, about the outcome at the scene's own timestep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expectation {
-    pub whom: Whom,
+    pub scope: Scope,
     /// Dotted path into an outcome, as `energy.class`.
     pub key: String,
     pub wanted: Wanted,
 }
 
-/// Whom it is about.
+/// The engines an expectation is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Whom {
+pub enum Scope {
     /// Every integrator, but for the keys given for it otherwise.
     All,
     /// Every integrator that has no line of its own.
@@ -42,27 +73,7 @@ pub enum Wanted {
     Contains(String),
 }
 
-impl Scene {
-    /// What is expected of an engine, each key once: what its own line says (or, for an integrator
-    /// without one, `rest`), then what `all` says of other keys if it is an `integrator`.
-    pub fn expected_of(&self, engine: &str, integrator: bool) -> Vec<&Expectation> {
-        let own = |e: &Expectation| matches!(&e.whom, Whom::Engine(id) if id == engine);
-        let named = self.expect.iter().any(own);
-        let rest = |e: &Expectation| integrator && !named && e.whom == Whom::Rest;
-        let mut found: Vec<&Expectation> =
-            self.expect.iter().filter(|e| own(e) || rest(e)).collect();
-        let nearer = found.len();
-        for expectation in &self.expect {
-            let open = !found[..nearer].iter().any(|e| e.key == expectation.key);
-            if integrator && open && expectation.whom == Whom::All {
-                found.push(expectation);
-            }
-        }
-        found
-    }
-}
-
-impl fmt::Display for Whom {
+impl fmt::Display for Scope {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::All => ALL,

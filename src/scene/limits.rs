@@ -2,7 +2,13 @@
 //!
 //! The bounds lie far outside any sensible scene. They keep sums, squares and products of accepted
 //! numbers (energies, k/m, 1/h²) inside the range of a double, so that a NaN met later is the
-//! integrator's doing and not the file's.
+//! integrator's doing and not the file's. Those of a single key stand on its row of
+//! the table.
+
+use super::error::Refusal;
+use super::expectation::Names;
+use super::values::Number;
+use super::words::{did_you_mean, shorten};
 
 /// The largest file read, in bytes: 64 MiB, about 300,000 particles.
 pub const FILE_BYTES: usize = 64 << 20;
@@ -23,6 +29,9 @@ pub const EXPECTED: usize = 64;
 /// The longest key or word under `expect`, in bytes.
 pub const WORD_BYTES: usize = 200;
 
+/// The smallest distance two attracting particles may start at, m: at 0 the force is infinite.
+pub const ATTRACTION_DISTANCE: f64 = 1e-12;
+
 /// What a number stands for, and the values it may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
@@ -34,59 +43,87 @@ pub struct Quantity {
     pub unit: &'static str,
 }
 
-const fn signed(high: f64, unit: &'static str) -> Quantity {
-    Quantity {
-        low: -high,
-        high,
-        unit,
+impl Quantity {
+    pub(super) const fn signed(high: f64, unit: &'static str) -> Self {
+        Self::from(-high, high, unit)
     }
-}
 
-const fn not_negative(high: f64, unit: &'static str) -> Quantity {
-    Quantity {
-        low: 0.0,
-        high,
-        unit,
+    pub(super) const fn not_negative(high: f64, unit: &'static str) -> Self {
+        Self::from(0.0, high, unit)
     }
-}
 
-const fn positive(low: f64, high: f64, unit: &'static str) -> Quantity {
-    Quantity { low, high, unit }
+    pub(super) const fn from(low: f64, high: f64, unit: &'static str) -> Self {
+        Self { low, high, unit }
+    }
+
+    /// The number, if it is finite and within the bounds.
+    pub(super) fn judge(self, number: Number) -> Result<f64, Refusal> {
+        let x = number.value();
+        let Quantity { low, high, unit } = self;
+        if (low..=high).contains(&x) {
+            return Ok(x);
+        }
+        let expected = if !x.is_finite() {
+            format!("a finite number ({unit})")
+        } else if low > 0.0 && x <= 0.0 {
+            format!("a positive number ({unit})")
+        } else if low == 0.0 && x < 0.0 {
+            format!("a number of at least 0 ({unit})")
+        } else if x > high {
+            format!("at most {high:e} ({unit})")
+        } else {
+            format!("at least {low:e} ({unit})")
+        };
+        Refusal::because(format!("expected {expected}, found {number}"), "")
+    }
 }
 
 /// A coordinate of a position, and of `plot.y_range`.
-pub const POSITION: Quantity = signed(1e12, "m");
-/// A component of a velocity.
-pub const VELOCITY: Quantity = signed(1e12, "m/s");
-/// A particle's mass.
-pub const MASS: Quantity = positive(1e-30, 1e30, "kg");
-/// A particle's radius.
-pub const RADIUS: Quantity = not_negative(1e12, "m");
-/// A particle's linear drag coefficient.
-pub const DRAG: Quantity = not_negative(1e18, "N s/m");
+pub const POSITION: Quantity = Quantity::signed(1e12, "m");
 /// A spring's stiffness.
-pub const STIFFNESS: Quantity = not_negative(1e18, "N/m");
-/// A spring's cubic stiffness.
-pub const CUBIC: Quantity = not_negative(1e18, "N/m³");
-/// A spring's damping.
-pub const DAMPING: Quantity = not_negative(1e18, "N s/m");
-/// A spring's rest length.
-pub const REST_LENGTH: Quantity = not_negative(1e12, "m");
-/// The constant of a pairwise attraction; negative repels.
-pub const G: Quantity = signed(1e30, "N m²/kg²");
-/// A component of the wind's direction, before it is normalised.
-pub const DIRECTION: Quantity = signed(1e12, "any unit");
-/// The wind's force; negative blows the other way.
-pub const WIND: Quantity = signed(1e18, "N");
+pub const STIFFNESS: Quantity = Quantity::not_negative(1e18, "N/m");
 /// The timestep.
-pub const TIMESTEP: Quantity = positive(1e-30, 1e12, "s");
+pub const TIMESTEP: Quantity = Quantity::from(1e-30, 1e12, "s");
 /// The simulated time.
-pub const DURATION: Quantity = positive(1e-30, 1e12, "s");
-/// The signed acceleration of gravity.
-pub const GRAVITY: Quantity = signed(1e12, "m/s²");
-/// The implicit methods' relative residual.
-pub const TOLERANCE: Quantity = positive(1e-300, 1.0, "relative");
+pub const DURATION: Quantity = Quantity::from(1e-30, 1e12, "s");
 /// What a number is expected to stay below or above.
-pub const BOUND: Quantity = signed(f64::MAX, "in the key's unit");
-/// The smallest distance two attracting particles may start at: at 0 the force is infinite.
-pub const ATTRACTION_DISTANCE: f64 = 1e-12;
+pub const BOUND: Quantity = Quantity::signed(f64::MAX, "in the key's unit");
+
+/// Whether a scene may be called so.
+pub(super) fn name(name: &str, _: &Names) -> Result<(), Refusal> {
+    if name.trim().is_empty() {
+        let message = "expected a name, found none";
+        return Refusal::because(message, "without the key it is the file's");
+    }
+    if name.chars().count() > NAME_CHARS {
+        let message = format!("expected at most {NAME_CHARS} characters");
+        return Refusal::because(message, "the rest may go into `description`");
+    }
+    if name.contains(char::is_control) {
+        return Refusal::because("expected one line without control characters", "");
+    }
+    Ok(())
+}
+
+/// Whether reports may print it: an escape sequence would reach the terminal.
+pub(super) fn description(text: &str, _: &Names) -> Result<(), Refusal> {
+    if text.contains(|c: char| c.is_control() && !matches!(c, '\n' | '\t')) {
+        return Refusal::because("expected text without control characters", "");
+    }
+    Ok(())
+}
+
+/// Whether there is such an integrator.
+pub(super) fn method(word: &str, names: &Names) -> Result<(), Refusal> {
+    known(word, &names.methods, "integrator")
+}
+
+/// Whether the word is one of those known.
+pub(super) fn known(word: &str, words: &[&str], what: &str) -> Result<(), Refusal> {
+    if words.contains(&word) {
+        return Ok(());
+    }
+    let (word, list) = (shorten(word), words.join(", "));
+    let message = format!("unknown {what} `{word}`: expected one of {list}");
+    Refusal::because(message, did_you_mean(&word, words).unwrap_or_default())
+}

@@ -1,41 +1,34 @@
 //! The scene file: bytes in, a checked [`Scene`] out, or one error that points at its place.
 //!
 //! ```text
-//! bytes -> text (size, UTF-8, nesting) -> raw (YAML's shape) -> validate (meaning) -> Scene
+//! bytes -> text (size, UTF-8, nesting) -> read (keys and values, by the table of the model)
+//!       -> complete (what concerns several values) -> Scene
 //! ```
 //! Only [`Scene`] and what it is made of leaves this module, so nothing after it needs to doubt a
-//! number: ids are valid, quantities are finite and within [`limits`].
+//! number: ids are valid, quantities are finite and within their bounds.
 
-mod check;
-mod entries;
+mod complete;
 mod error;
 mod expect;
 mod expectation;
-mod keys;
-mod leaf;
 pub mod limits;
-mod locate;
-mod members;
-mod model;
-mod names;
-mod number;
-mod path;
-mod raw;
-mod refusal;
-pub(crate) mod shown;
-pub(crate) mod suggest;
+pub mod model;
+mod place;
+mod read;
+mod table;
 mod text;
-mod times;
-mod validate;
+mod values;
+pub(crate) mod words;
 
-pub use error::SceneError;
-pub use expectation::{Expectation, Wanted, Whom};
+pub use complete::check_times;
+pub use error::{Refusal, SceneError};
+pub use expectation::{Expectation, Key, KeyKind, Names, Scope, Wanted};
 pub use model::{
     Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, Solver, Spring, Wind, steps,
 };
-pub use names::{Key, KeyKind, Names};
-pub use times::{TimesError, check_times};
+pub use table::Value;
 
+use read::Reading;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -59,9 +52,22 @@ pub fn parse(bytes: &[u8], file: &str, names: &Names) -> Result<Scene, SceneErro
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = text::check(bytes)
         .map_err(|fault| SceneError::at(file, &String::from_utf8_lossy(bytes), fault))?;
-    let raw = raw::document(text).map_err(|fault| SceneError::at(file, text, fault))?;
-    validate::scene(raw, file, names)
-        .map_err(|problem| SceneError::at(file, text, problem.locate(text)))
+    let located = |fault| SceneError::at(file, text, fault);
+    let mut scene = Scene {
+        file: file.to_owned(),
+        ..Scene::default()
+    };
+    if let Some(stem) = Path::new(file).file_stem() {
+        scene.name = stem.to_string_lossy().replace(char::is_control, " ");
+    }
+    let mut reading = Reading {
+        scene,
+        names,
+        no_id: None,
+        problem: None,
+    };
+    read::document(text, &mut reading).map_err(located)?;
+    complete::scene(reading).map_err(|problem| located(problem.locate(text)))
 }
 
 /// Reads a scene file from disk.

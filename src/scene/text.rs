@@ -1,22 +1,19 @@
 //! What is refused before any YAML is read: bytes that are no text, and nesting so deep that the
 //! parser's time grows with its square.
 
+use super::error::Fault;
 use super::limits::NESTING;
-use super::locate::Fault;
 
 /// The text of a scene file, without BOM.
 pub(super) fn check(bytes: &[u8]) -> Result<&str, Fault> {
     let text = std::str::from_utf8(bytes).map_err(|e| {
-        fault(
-            e.valid_up_to(),
-            "these bytes are not UTF-8 text",
-            "save the file as UTF-8",
-        )
+        let message = "these bytes are not UTF-8 text";
+        Fault::new(e.valid_up_to(), message, "save the file as UTF-8")
     })?;
     if let Some((offset, c)) = text.char_indices().find(|(_, c)| forbidden(*c)) {
         let code = u32::from(c);
         let message = format!("the control character U+{code:04X} is not allowed in YAML");
-        return Err(fault(offset, &message, "remove it"));
+        return Err(Fault::new(offset, message, "remove it"));
     }
     // A quote in a block scalar can hide what follows it, so a second count does without quotes;
     // it takes quoted prose for structure and is more patient.
@@ -24,22 +21,10 @@ pub(super) fn check(bytes: &[u8]) -> Result<&str, Fault> {
     match too_deep(bytes, NESTING, true).or_else(|| too_deep(bytes, 16 * NESTING, false)) {
         Some(offset) => {
             let message = format!("brackets nest more than {NESTING} deep");
-            Err(fault(
-                offset,
-                &message,
-                "a scene needs four levels: is a bracket left open?",
-            ))
+            let help = "a scene needs four levels: is a bracket left open?";
+            Err(Fault::new(offset, message, help))
         }
         None => Ok(text),
-    }
-}
-
-fn fault(offset: usize, message: &str, help: &str) -> Fault {
-    Fault {
-        offset,
-        key: String::new(),
-        message: message.to_owned(),
-        help: help.to_owned(),
     }
 }
 

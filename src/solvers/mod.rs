@@ -8,7 +8,7 @@ mod setting;
 mod solver;
 
 pub use integrator::{AdaptiveEngine, IntegratorEngine, advance};
-pub use run::{Ended, Limits, Observer, Run, Status, Tally, Unwatched};
+pub use run::{Ended, Limits, Run, Status, Tally};
 pub use setting::Setting;
 pub use solver::{BuildIntegrator, Kind, Solver, catalogue, find, methods, own_first};
 

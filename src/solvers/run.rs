@@ -4,6 +4,7 @@ use super::setting::Setting;
 use super::{Counts, Engine};
 use crate::integrators::StepError;
 use crate::physics::{ParticleSystem, State, System};
+use crate::trajectory::Observer;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -15,34 +16,6 @@ pub enum Status {
     Diverged,
     Failed,
     Unsupported,
-}
-
-/// Sees the states of a run.
-pub trait Observer {
-    /// The first step number, at or after `from`, at which it wants the state; None for no more.
-    fn next(&self, from: u64) -> Option<u64>;
-
-    /// The state at step `step` (0 is the start), called at the steps asked for, in order.
-    fn observe(&mut self, step: u64, state: &State);
-
-    /// The state a run diverged in, if it is still finite: the last one of this run.
-    fn observe_diverged(&mut self, step: u64, state: &State) {
-        self.observe(step, state);
-    }
-
-    /// The last state of a run whose number of steps was not known, unless it was observed.
-    fn observe_end(&mut self, _step: u64, _state: &State) {}
-}
-
-/// The observer of a run nobody watches.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Unwatched;
-
-impl Observer for Unwatched {
-    fn next(&self, _from: u64) -> Option<u64> {
-        None
-    }
-    fn observe(&mut self, _step: u64, _state: &State) {}
 }
 
 /// When a run counts as diverged: non-finite, or K + U_elastic beyond a limit.

@@ -1,30 +1,26 @@
 //! Every step as text: `t,id,x,y,z,vx,vy,vz`, one row a particle.
 
-use super::{SaveError, Selection};
+use super::{Observer, SaveError, Selection};
 use crate::physics::State;
-use crate::solvers::Observer;
-use std::io::Write;
+use std::io::{self, Write};
 
 /// Writes rows as a run goes on. Numbers have the fewest digits that read back to the same bits.
 pub struct CsvWriter<W: Write> {
-    rows: csv::Writer<W>,
+    out: W,
     selection: Selection,
     timestep: f64,
-    /// The first failure; what follows is dropped and `finish` tells.
-    failed: Option<csv::Error>,
+    /// After the first failure what follows is dropped, and `finish` tells.
+    written: io::Result<()>,
 }
 
 impl<W: Write> CsvWriter<W> {
-    /// Every `every`-th of `steps` steps (0 counts as 1), and the last.
-    pub fn new(out: W, steps: u64, every: u64, timestep: f64) -> Self {
-        let mut rows = csv::Writer::from_writer(out);
-        let header = ["t", "id", "x", "y", "z", "vx", "vy", "vz"];
-        let failed = rows.write_record(header).err();
+    /// Every `every`-th of `steps` steps (0 counts as 1), and the last. `out` is buffered.
+    pub fn new(mut out: W, steps: u64, every: u64, timestep: f64) -> Self {
         Self {
-            rows,
+            written: writeln!(out, "t,id,x,y,z,vx,vy,vz"),
+            out,
             selection: Selection::new(every, steps),
             timestep,
-            failed,
         }
     }
 
@@ -32,24 +28,21 @@ impl<W: Write> CsvWriter<W> {
     ///
     /// # Errors
     /// The first failure of the stream, whenever it happened.
-    pub fn finish(self) -> Result<W, SaveError> {
-        if let Some(error) = self.failed {
-            return Err(std::io::Error::other(error).into());
-        }
-        let out = self.rows.into_inner();
-        Ok(out.map_err(|e| std::io::Error::other(e.to_string()))?)
+    pub fn finish(mut self) -> Result<W, SaveError> {
+        self.written?;
+        self.out.flush()?;
+        Ok(self.out)
     }
 
-    fn write(&mut self, step: u64, state: &State) -> Result<(), csv::Error> {
-        let t = format!("{:?}", step as f64 * self.timestep);
+    fn write(&mut self, step: u64, state: &State) -> io::Result<()> {
+        let t = step as f64 * self.timestep;
         let particles = state.x.chunks_exact(3).zip(state.v.chunks_exact(3));
         for (id, (x, v)) in particles.enumerate() {
-            self.rows.write_field(&t)?;
-            self.rows.write_field(id.to_string())?;
+            write!(self.out, "{t:?},{id}")?;
             for value in x.iter().chain(v) {
-                self.rows.write_field(format!("{value:?}"))?;
+                write!(self.out, ",{value:?}")?;
             }
-            self.rows.write_record(None::<&[u8]>)?;
+            writeln!(self.out)?;
         }
         Ok(())
     }
@@ -61,8 +54,8 @@ impl<W: Write> Observer for CsvWriter<W> {
     }
 
     fn observe(&mut self, step: u64, state: &State) {
-        if self.failed.is_none() {
-            self.failed = self.write(step, state).err();
+        if self.written.is_ok() {
+            self.written = self.write(step, state);
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Every step for NumPy: `t` (T), `x` (T, N, 3), `v` (T, N, 3), doubles, in one NPZ.
 
-use super::{SaveError, Selection};
+use super::{Observer, SaveError, Selection};
 use crate::physics::State;
-use crate::solvers::Observer;
 use npyz::WriterBuilder;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use zip::write::SimpleFileOptions;
@@ -20,7 +19,8 @@ pub struct NpzWriter<S: Scratch> {
     particles: usize,
     selection: Selection,
     timestep: f64,
-    failed: Option<std::io::Error>,
+    /// After the first failure what follows is dropped, and `finish` tells.
+    written: std::io::Result<()>,
 }
 
 impl<S: Scratch> NpzWriter<S> {
@@ -36,7 +36,7 @@ impl<S: Scratch> NpzWriter<S> {
             particles,
             selection: Selection::new(every, steps),
             timestep,
-            failed: None,
+            written: Ok(()),
         }
     }
 
@@ -45,18 +45,15 @@ impl<S: Scratch> NpzWriter<S> {
     /// # Errors
     /// The first failure of any stream, whenever it happened.
     pub fn finish<W: Write + Seek>(self, out: W) -> Result<W, SaveError> {
-        if let Some(error) = self.failed {
-            return Err(error.into());
-        }
+        self.written?;
         let rows = self.rows;
-        let (every, last_step, timestep) = (self.selection.every, self.last_step, self.timestep);
         let time = |row| {
             let step = if row + 1 < rows {
-                row * every
+                row * self.selection.every
             } else {
-                last_step
+                self.last_step
             };
-            Ok(step as f64 * timestep)
+            Ok(step as f64 * self.timestep)
         };
         let shape = [rows, self.particles as u64, 3];
         let mut archive = zip::ZipWriter::new(out);
@@ -121,12 +118,11 @@ impl<S: Scratch> Observer for NpzWriter<S> {
     }
 
     fn observe(&mut self, step: u64, state: &State) {
-        if self.failed.is_none() {
+        if self.written.is_ok() {
             self.rows += 1;
             self.last_step = step;
-            let written =
+            self.written =
                 append(&mut self.x, &state.x).and_then(|()| append(&mut self.v, &state.v));
-            self.failed = written.err();
         }
     }
 }

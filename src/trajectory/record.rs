@@ -1,10 +1,9 @@
 //! The record every measure reads: bounded in memory however long the run.
 //!
-//! A [`Recorder`] fills it while a run goes on, a [`RowRecorder`] from the rows of one that is over.
+//! A [`Recorder`] fills it while a run goes on, [`Trajectory::of_rows`] from the rows of one that is over.
 
-use super::{Precision, Rows};
+use super::{Observer, Precision, Rows};
 use crate::physics::{State, Work};
-use crate::solvers::Observer;
 
 /// At most this many instants, both ends included.
 const INSTANTS: u64 = 2_000;
@@ -96,16 +95,51 @@ impl Trajectory {
         known.then(|| (self.rows.x(next), self.rows.v(next).unwrap_or(&[])))
     }
 
-    /// One more row, after all others.
-    fn push(&mut self, step: u64, state: &State, is_instant: bool) {
-        if is_instant {
+    /// From the rows of a run that was to take `last` steps, and the work done up to each of them that
+    /// counts. Their velocities count as known if they have any. The first row and the last are
+    /// instants, and so is where the run `diverged`: the last that counts.
+    pub fn of_rows(rows: &Rows, work: &[Work], last: u64, diverged: bool) -> Self {
+        let particles = rows.dim / 3;
+        let (stride, most) = (stride(last, particles), most_instants(particles) as usize);
+        let shared = |step: u64| step.is_multiple_of(stride);
+        let many = rows.steps.iter().filter(|step| shared(**step)).count();
+        // Rows that leave out too many steps have too few at the instants of every other run.
+        let pitch = (many < most / 2).then(|| (rows.len() - 1).div_ceil(most - 1));
+        let is_instant = |k: usize| {
+            let by_thinning = pitch.map_or(shared(rows.steps[k]), |pitch| k.is_multiple_of(pitch));
+            rows.len() <= most || by_thinning || k + 1 == rows.len()
+        };
+        let mut trajectory = Self {
+            rows: Rows {
+                steps: Vec::new(),
+                x: Vec::new(),
+                v: rows.v.as_ref().map(|_| Vec::new()),
+                ..*rows
+            },
+            instants: Vec::new(),
+            work: Vec::new(),
+        };
+        for (k, &done) in work.iter().enumerate() {
+            let step = rows.steps[k];
+            let instant = is_instant(k) || diverged && k + 1 == work.len();
+            if instant || k > 0 && is_instant(k - 1) && rows.steps[k - 1] + 1 == step {
+                let v = rows.v(k).unwrap_or(&[]);
+                trajectory.push(step, rows.x(k), v, instant.then_some(done));
+            }
+        }
+        trajectory
+    }
+
+    /// One more row, after all others; an instant if the work done up to it is given.
+    fn push(&mut self, step: u64, x: &[f64], v: &[f64], work: Option<Work>) {
+        if let Some(work) = work {
             self.instants.push(self.rows.len());
-            self.work.push(state.work);
+            self.work.push(work);
         }
         self.rows.steps.push(step);
-        self.rows.x.extend_from_slice(&state.x);
-        if let Some(v) = &mut self.rows.v {
-            v.extend_from_slice(&state.v);
+        self.rows.x.extend_from_slice(x);
+        if let Some(known) = &mut self.rows.v {
+            known.extend_from_slice(v);
         }
     }
 }
@@ -166,95 +200,13 @@ impl Observer for Recorder {
 
     fn observe(&mut self, step: u64, state: &State) {
         let successor = self.stride > 1 && step % self.stride == 1 && step != self.last;
-        self.trajectory.push(step, state, !successor);
+        let work = (!successor).then_some(state.work);
+        self.trajectory.push(step, &state.x, &state.v, work);
     }
 
     fn observe_diverged(&mut self, step: u64, state: &State) {
-        self.trajectory.push(step, state, true);
-    }
-}
-
-/// Fills a [`Trajectory`] from rows that come in order.
-#[derive(Debug)]
-pub struct RowRecorder<'a> {
-    steps: &'a [u64],
-    thinning: Thinning,
-    trajectory: Trajectory,
-}
-
-/// Which rows become instants, beside the first and the last.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Thinning {
-    None,
-    /// Those at multiples of so many steps, where every other run has its instants too.
-    Steps(u64),
-    /// Every so many-th: rows that leave out too many steps to have those.
-    Rows(usize),
-}
-
-impl<'a> RowRecorder<'a> {
-    /// For rows of a run that was to take `last` steps. Their velocities count as known if they
-    /// have any.
-    pub fn new(rows: &'a Rows, last: u64) -> Self {
-        let particles = rows.dim / 3;
-        let (stride, most) = (stride(last, particles), most_instants(particles) as usize);
-        let shared = rows
-            .steps
-            .iter()
-            .filter(|s| s.is_multiple_of(stride))
-            .count();
-        let thinning = if rows.len() <= most {
-            Thinning::None
-        } else if shared >= most / 2 {
-            Thinning::Steps(stride)
-        } else {
-            Thinning::Rows((rows.len() - 1).div_ceil(most - 1))
-        };
-        Self {
-            steps: &rows.steps,
-            thinning,
-            trajectory: Trajectory {
-                rows: Rows {
-                    steps: Vec::new(),
-                    x: Vec::new(),
-                    v: rows.v.as_ref().map(|_| Vec::new()),
-                    ..*rows
-                },
-                instants: Vec::new(),
-                work: Vec::new(),
-            },
-        }
-    }
-
-    /// Row `k`, of which it keeps what it needs.
-    pub fn observe(&mut self, k: usize, state: &State) {
-        let Some(&step) = self.steps.get(k) else {
-            return;
-        };
-        let is_instant = self.is_instant(k);
-        if is_instant || k > 0 && self.is_instant(k - 1) && self.steps[k - 1] + 1 == step {
-            self.trajectory.push(step, state, is_instant);
-        }
-    }
-
-    /// Row `k` in which the run diverged: its last instant.
-    pub fn observe_diverged(&mut self, k: usize, state: &State) {
-        if let Some(&step) = self.steps.get(k) {
-            self.trajectory.push(step, state, true);
-        }
-    }
-
-    pub fn finish(self) -> Trajectory {
-        self.trajectory
-    }
-
-    fn is_instant(&self, k: usize) -> bool {
-        let by_thinning = match self.thinning {
-            Thinning::None => true,
-            Thinning::Steps(stride) => self.steps[k].is_multiple_of(stride),
-            Thinning::Rows(pitch) => k.is_multiple_of(pitch),
-        };
-        by_thinning || k + 1 == self.steps.len()
+        let work = Some(state.work);
+        self.trajectory.push(step, &state.x, &state.v, work);
     }
 }
 
@@ -319,11 +271,7 @@ mod tests {
     }
 
     fn recalled(rows: &Rows, last: u64) -> Trajectory {
-        let mut recorder = RowRecorder::new(rows, last);
-        for k in 0..rows.len() {
-            recorder.observe(k, &state(rows, k));
-        }
-        recorder.finish()
+        Trajectory::of_rows(rows, &vec![Work::default(); rows.len()], last, false)
     }
 
     #[test]

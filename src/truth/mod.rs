@@ -156,18 +156,10 @@ pub fn find(
     if demand == Demand::None {
         return Truth::none("not asked for");
     }
-    if let Some(found) = closed::find(scene, system, until) {
-        let error_bound = found.motion.error_bar(until);
-        if error_bound.is_finite() {
-            return Truth {
-                kind: TruthKind::ClosedForm,
-                method: Some(found.method),
-                reason: found.reason,
-                horizon: until,
-                error_bound,
-                motion: Some(found.motion),
-            };
-        }
+    if let Some(found) = closed::find(scene, system, until)
+        && found.error_bound.is_finite()
+    {
+        return found;
     }
     if demand == Demand::Closed {
         return Truth::none("no closed form known for what this scene contains");
@@ -175,10 +167,10 @@ pub fn find(
     match converged::find(scene, system, until, store) {
         Ok(found) => Truth {
             kind: TruthKind::Converged,
-            method: Some(found.method),
-            reason: found.reason,
-            horizon: found.horizon,
-            error_bound: found.error_bound,
+            method: Some(found.known.method),
+            reason: found.known.reason,
+            horizon: found.known.horizon,
+            error_bound: found.known.error_bound,
             motion: Some(Box::new(found.motion)),
         },
         Err(not) => Truth::none(not.to_string()),

@@ -1,6 +1,6 @@
 //! What the work of a verb needs from the outside, and what it is called there.
 
-use crate::solvers::Observer;
+use crate::trajectory::Observer;
 use crate::trajectory::SaveError;
 use crate::truth::{NoStore, Store};
 

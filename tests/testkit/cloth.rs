@@ -46,8 +46,7 @@ pub fn cloth(n: usize, damping: f64, model: DampingModel) -> Scene {
         solver: Solver {
             method: "symplectic_euler".into(),
             timestep: 1e-4,
-            gravity: -9.81,
-            ..empty().solver
+            ..Solver::default()
         },
         duration: 1.0,
         damping_model: model,

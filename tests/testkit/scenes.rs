@@ -1,6 +1,6 @@
 //! One way to a scene: a shipped file, a text, or particles and springs put together in code.
 
-use springcheck::scene::{self, Axis, DampingModel, Particle, Scene, Solver, Spring};
+use springcheck::scene::{self, DampingModel, Particle, Scene, Solver, Spring};
 use springcheck::verbs::names;
 use std::path::{Path, PathBuf};
 
@@ -57,23 +57,12 @@ pub fn parsed(yaml: &str) -> Scene {
 pub fn empty() -> Scene {
     Scene {
         name: "a test".into(),
-        description: None,
-        file: String::new(),
         solver: Solver {
             method: "rk4".into(),
-            timestep: 1e-3,
             gravity: 0.0,
-            tolerance: None,
+            ..Solver::default()
         },
-        duration: 5.0,
-        up: Axis::Z,
-        damping_model: DampingModel::Axial,
-        plot: None,
-        particles: Vec::new(),
-        springs: Vec::new(),
-        gravitational: Vec::new(),
-        wind: None,
-        expect: Vec::new(),
+        ..Scene::default()
     }
 }
 
@@ -81,11 +70,8 @@ pub fn empty() -> Scene {
 pub fn free(position: [f64; 3], mass: f64) -> Particle {
     Particle {
         position,
-        velocity: [0.0; 3],
-        fixed: false,
         mass,
-        radius: 0.1,
-        drag: 0.0,
+        ..Particle::default()
     }
 }
 
@@ -101,9 +87,8 @@ pub fn spring(ends: [usize; 2], stiffness: f64, rest_length: f64) -> Spring {
     Spring {
         ends,
         stiffness,
-        cubic: 0.0,
-        damping: 0.0,
         rest_length,
+        ..Spring::default()
     }
 }
 

@@ -10,11 +10,9 @@ use crate::scene::{DampingModel, Particle, Scene, Spring};
 fn particle(position: [f64; 3], fixed: bool, mass: f64) -> Particle {
     Particle {
         position,
-        velocity: [0.0; 3],
         fixed,
         mass,
-        radius: 0.01,
-        drag: 0.0,
+        ..Particle::default()
     }
 }
 
@@ -29,9 +27,8 @@ fn spring(ends: [usize; 2], stiffness: f64, rest_length: f64) -> Spring {
     Spring {
         ends,
         stiffness,
-        cubic: 0.0,
-        damping: 0.0,
         rest_length,
+        ..Spring::default()
     }
 }
 

@@ -33,9 +33,8 @@ pub struct Observed {
     /// How far its estimates from neighbouring steps differ; at most [`TOLERANCE`] where there is an
     /// order. None where there are too few points to estimate anything from.
     pub spread: Option<f64>,
-    /// Which points the estimates come from, as indices into what was given, coarse to fine. Empty
-    /// where there were too few.
-    pub used: Vec<usize>,
+    /// Which points the estimates come from, coarse to fine. Empty where there were too few.
+    pub used: Vec<Point>,
     pub verdict: Verdict,
 }
 
@@ -106,12 +105,9 @@ impl fmt::Display for Reason {
 /// can give settled slopes of any value.
 pub fn observed(points: &[Point], stated: u32) -> Observed {
     let given = usable(points);
-    let above: Vec<usize> = given
-        .iter()
-        .copied()
-        .filter(|&i| points[i].error > points[i].floor)
-        .collect();
-    let inconclusive = |reason, spread, used: &[usize]| Observed {
+    let above = given.iter().copied().filter(|p| p.error > p.floor);
+    let above: Vec<Point> = above.collect();
+    let inconclusive = |reason, spread, used: &[Point]| Observed {
         stated,
         order: None,
         spread,
@@ -128,7 +124,7 @@ pub fn observed(points: &[Point], stated: u32) -> Observed {
     let mut unsettled = None;
     for end in (RATIOS + 1..=above.len()).rev() {
         let used = &above[end - RATIOS - 1..end];
-        let estimate = Estimate::of(used.iter().map(|&i| &points[i]));
+        let estimate = Estimate::of(used);
         if estimate.spread <= TOLERANCE {
             return Observed {
                 stated,
@@ -138,16 +134,15 @@ pub fn observed(points: &[Point], stated: u32) -> Observed {
                 verdict: judge(estimate.order, stated),
             };
         }
-        unsettled.get_or_insert((estimate.spread, used));
-        let finest = &points[above[end - 1]];
+        let (spread, unsettled) = *unsettled.get_or_insert((estimate.spread, used));
+        let finest = &above[end - 1];
         if finest.error > 10.0 * finest.floor {
             let reason = if floored || end < above.len() {
                 Reason::AtFloor
             } else {
                 Reason::NotAsymptotic
             };
-            let (spread, used) = unsettled.unwrap_or((estimate.spread, used));
-            return inconclusive(reason, Some(spread), used);
+            return inconclusive(reason, Some(spread), unsettled);
         }
     }
     match unsettled {
@@ -157,16 +152,16 @@ pub fn observed(points: &[Point], stated: u32) -> Observed {
     }
 }
 
-/// Indices of finite points of different steps, coarse to fine.
-fn usable(points: &[Point]) -> Vec<usize> {
-    let fine = |p: &Point| {
+/// Finite points of different steps, coarse to fine.
+fn usable(points: &[Point]) -> Vec<Point> {
+    let fine = |p: &&Point| {
         p.h > 0.0 && p.h.is_finite() && p.error >= 0.0 && p.error.is_finite() && p.floor >= 0.0
     };
-    let mut indices: Vec<usize> = (0..points.len()).filter(|&i| fine(&points[i])).collect();
-    indices.sort_by(|&i, &j| points[j].h.total_cmp(&points[i].h));
+    let mut usable: Vec<Point> = points.iter().filter(fine).copied().collect();
+    usable.sort_by(|a, b| b.h.total_cmp(&a.h));
     // Steps closer than this have no slope between them.
-    indices.dedup_by(|finer, coarser| points[*finer].h > 0.99 * points[*coarser].h);
-    indices
+    usable.dedup_by(|finer, coarser| finer.h > 0.99 * coarser.h);
+    usable
 }
 
 fn judge(order: f64, stated: u32) -> Verdict {
@@ -187,8 +182,7 @@ struct Estimate {
 
 impl Estimate {
     /// From points coarse to fine, with positive errors.
-    fn of<'a>(points: impl Iterator<Item = &'a Point>) -> Self {
-        let points: Vec<&Point> = points.collect();
+    fn of(points: &[Point]) -> Self {
         // The slope between two steps, and where it belongs: their logarithmic mean.
         let slopes: Vec<(f64, f64)> = points
             .windows(2)

@@ -1,12 +1,11 @@
 //! How large a step may be: predicted from the linearised scene and a method's stability region,
 //! and measured on the scene itself.
 
-mod matrix;
 mod measured;
 mod predicted;
 
 pub use measured::{Cell, Make, Measured, classify, measure};
-pub use predicted::{Along, Effort, Excluded, Linearised, Prediction, Tightest, is_linear};
+pub use predicted::{Along, Effort, Linearised, Prediction, TightestLimit, is_linear};
 
 /// The largest step that is stable, with all smaller ones.
 #[derive(Debug, Clone, PartialEq)]

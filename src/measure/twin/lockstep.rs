@@ -61,7 +61,7 @@ impl Path {
 /// Largest distance over the instants both have: positions in units of the largest coordinate,
 /// velocities in units of the largest speed. None if a number is not finite.
 ///
-/// In units of the whole path's largest, so that a growing mode, which every shaken scene contains,
+/// In units of the whole path's largest, so that a growing mode, which every scene set in motion contains,
 /// grows in the unit as it does in the error.
 pub(super) fn distance(a: &Path, b: &Path) -> Option<f64> {
     let over = |part: fn(&State) -> &[f64]| {

@@ -13,7 +13,7 @@ mod flat;
 
 pub use command::{Command, CommandError, Placeholder};
 pub use failure::Failure;
-pub use flat::{Flat, FlatPairs, FlatSprings};
+pub use flat::Flat;
 
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;

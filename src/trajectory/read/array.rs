@@ -2,8 +2,7 @@
 
 use super::error::{HALF, Wrong};
 use super::limits;
-use super::shape::tuple;
-use crate::scene::shown::shorten;
+use crate::scene::words::shorten;
 use std::io::{ErrorKind, Read};
 
 /// What an array's header says.
@@ -116,6 +115,17 @@ impl Header {
             numbers[stored]
         };
         (0..numbers.len()).map(stored).collect()
+    }
+}
+
+/// A shape as Python writes it.
+pub(super) fn tuple(shape: &[usize]) -> String {
+    match shape {
+        [one] => format!("({one},)"),
+        _ => {
+            let sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
+            format!("({})", sizes.join(", "))
+        }
     }
 }
 
@@ -252,11 +262,9 @@ impl<'a> Parser<'a> {
             let digits = std::str::from_utf8(&self.rest[..end]).ok()?;
             self.rest = &self.rest[end..];
             // A size beyond any memory is as good as the largest; Python 2 writes 3L.
-            let too_long = !digits.is_empty() && digits.len() > 19;
-            sizes.push(if too_long {
-                usize::MAX
-            } else {
-                digits.parse().ok()?
+            sizes.push(match digits.parse() {
+                Err(_) if digits.len() > 19 => usize::MAX,
+                size => size.ok()?,
             });
             let _ = self.take(b'L');
             if self.take(b',').is_none() && self.next()? != b')' {

@@ -3,20 +3,6 @@
 use super::super::Precision;
 use std::fmt::{LowerExp, Write};
 
-/// How a column or array writes its numbers, as far as that alone tells.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) enum Written {
-    /// Doubles, or text that is not all alike.
-    #[default]
-    Any,
-    /// As singles.
-    Single,
-    /// In text, each number with so many digits after the point, zeros included.
-    Decimals(u32),
-    /// In text, each number as d.ddde+00 with so many digits.
-    Digits(u32),
-}
-
 /// Watches the numbers of a text column until two of them are not written alike.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Form {
@@ -41,31 +27,27 @@ impl Form {
         self.mixed = *self.first.get_or_insert(own) != own;
     }
 
-    pub fn written(self) -> Written {
+    /// Digits where each number has as many, zeros included; doubles where that tells nothing.
+    pub fn written(self) -> Precision {
         match self.first.filter(|_| !self.mixed) {
-            Some((decimals, false)) if decimals >= FEWEST => Written::Decimals(decimals),
-            Some((decimals, true)) if decimals >= FEWEST => Written::Digits(decimals + 1),
-            _ => Written::Any,
+            Some((decimals, false)) if decimals >= FEWEST => Precision::Decimals(decimals),
+            Some((decimals, true)) if decimals >= FEWEST => Precision::Digits(decimals + 1),
+            _ => Precision::Double,
         }
     }
 }
 
-/// How exactly these numbers are given: states of `width` numbers, one after the other.
+/// How exactly these numbers are given: states of `width` numbers, one after the other, written so
+/// exactly as far as that alone tells.
 ///
 /// Only numbers that differ from the same one in the state before count: starts and fixed particles
 /// are often exact. From what is left, floats in full need 17 digits (singles 9); rounding shows in
 /// that no number needs more than so many decimals, or so many digits, and most need just these.
-pub(super) fn detect(values: &[f64], width: usize, written: Written) -> Precision {
+pub(super) fn detect(values: &[f64], width: usize, written: Precision) -> Precision {
     match written {
-        Written::Decimals(decimals) => return Precision::Decimals(decimals),
-        Written::Digits(digits) if digits < FULL => return Precision::Digits(digits),
-        _ => {}
-    }
-    let sample = Sample::new(values, width, written);
-    match sample.float {
-        Float::Single => sample.rounded(SINGLE, Precision::Single),
-        Float::Double => sample.rounded(DOUBLE, Precision::Double),
-        Float::Exact(precision) => precision,
+        Precision::Decimals(_) => written,
+        Precision::Digits(digits) if digits < FULL => written,
+        _ => Sample::new(values, width, written).precision(),
     }
 }
 
@@ -101,62 +83,37 @@ impl Shortest {
 /// Numbers that say something about rounding.
 pub(super) struct Sample {
     values: Vec<f64>,
+    /// None where nothing is rounded: all numbers are short binary fractions, or nothing ever changes.
     pub shortest: Vec<Shortest>,
-    pub float: Float,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Float {
-    Double,
-    Single,
-    /// Nothing is rounded: all numbers are short binary fractions, or nothing ever changes.
-    Exact(Precision),
+    /// Whether they are singles.
+    pub single: bool,
 }
 
 /// So many numbers are enough.
 const ENOUGH: usize = 8192;
 
 impl Sample {
-    pub fn new(values: &[f64], width: usize, written: Written) -> Self {
-        let single = matches!(written, Written::Single);
-        let native = if single {
-            Precision::Single
-        } else {
-            Precision::Double
+    pub fn new(values: &[f64], width: usize, written: Precision) -> Self {
+        let mut sample = Self {
+            values: pick(values, width),
+            shortest: Vec::new(),
+            single: written == Precision::Single,
         };
-        let sample = pick(values, width);
-        if sample.is_empty() || !single && sample.iter().all(|v| is_short_fraction(*v)) {
-            return Self {
-                values: sample,
-                shortest: Vec::new(),
-                float: Float::Exact(native),
-            };
+        if !sample.single && sample.values.iter().all(|v| is_short_fraction(*v)) {
+            return sample;
         }
         let mut scratch = String::new();
-        let mut float = Float::Double;
-        if single || values.iter().all(|v| f64::from(*v as f32) == *v) {
-            float = Float::Single;
-        }
-        let shortest: Vec<_> = sample
-            .iter()
-            .map(|v| match float {
-                Float::Single => Shortest::new(*v as f32, &mut scratch),
-                _ => Shortest::new(*v, &mut scratch),
-            })
-            .collect();
+        sample.single |= values.iter().all(|v| f64::from(*v as f32) == *v);
+        let shortest = sample.values.iter().map(|v| match sample.single {
+            true => Shortest::new(*v as f32, &mut scratch),
+            false => Shortest::new(*v, &mut scratch),
+        });
+        sample.shortest = shortest.collect();
         // Singles in their own shortest text are no singles once read as doubles.
-        let longest = shortest.iter().map(|s| s.digits).max();
-        if float == Float::Double
-            && (longest == Some(8) || longest == Some(9))
-            && sample.iter().all(|v| is_printed_single(*v, &mut scratch))
-        {
-            float = Float::Single;
-        }
-        Self {
-            values: sample,
-            shortest,
-            float,
-        }
+        sample.single = sample.single
+            || matches!(sample.longest(), 8 | 9)
+                && (sample.values.iter()).all(|v| is_printed_single(*v, &mut scratch));
+        sample
     }
 
     pub fn longest(&self) -> u32 {
@@ -164,15 +121,19 @@ impl Sample {
     }
 
     pub fn decimals(&self) -> u32 {
-        self.shortest
-            .iter()
-            .map(|s| s.decimals())
-            .max()
-            .unwrap_or(0)
+        let decimals = self.shortest.iter().map(|s| s.decimals());
+        decimals.max().unwrap_or(0)
     }
 
     /// Decimals or digits if the numbers are rounded to them, else the float's own precision.
-    fn rounded(&self, full: u32, own: Precision) -> Precision {
+    fn precision(&self) -> Precision {
+        let (full, own) = match self.single {
+            true => (SINGLE, Precision::Single),
+            false => (DOUBLE, Precision::Double),
+        };
+        if self.shortest.is_empty() {
+            return own;
+        }
         let (longest, decimals) = (self.longest(), self.decimals());
         let share = |same: &dyn Fn(&Shortest) -> bool| {
             let count = self.shortest.iter().filter(|s| same(s)).count();
@@ -199,7 +160,7 @@ impl Sample {
             let magnitude = v.abs();
             magnitude / 10f64.powf(magnitude.log10().floor()) < 4.0
         };
-        if full == DOUBLE
+        if !self.single
             && longest == DOUBLE
             && to_digits >= MOST
             && self.values.iter().filter(open).count() >= 20

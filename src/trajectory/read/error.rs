@@ -1,7 +1,7 @@
 //! The one error of reading a trajectory: what is wrong, where, and what to do about it. Lines and columns
 //! are worked out from byte offsets only when something is wrong.
 
-use crate::scene::shown::{printable, shorten};
+use crate::scene::words::{printable, shorten};
 use std::fmt;
 
 /// Why a trajectory file cannot be used. Displays as `mine.csv:17:3: ...` or
@@ -70,9 +70,10 @@ impl Wrong {
         }
     }
 
-    pub fn at(self, file: &str, place: Place) -> ReadError {
+    /// The file is named by whoever knows its name.
+    pub fn at(self, place: Place) -> ReadError {
         ReadError {
-            file: file.to_owned(),
+            file: String::new(),
             place,
             message: self.message,
             help: self.help,

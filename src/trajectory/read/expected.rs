@@ -5,11 +5,13 @@ use crate::scene::Scene;
 /// The scene as a trajectory file sees it. What a file may leave out is filled in from here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
-    timestep: f64,
-    /// Positions at the start, 3 a particle, m.
-    start: Vec<f64>,
-    fixed: Vec<bool>,
-    free_axis: Option<FreeAxis>,
+    /// Seconds a step.
+    pub(super) timestep: f64,
+    /// Positions at the start, 3 a particle, m: what a file does not say of fixed ones.
+    pub(super) start: Vec<f64>,
+    /// Of each particle.
+    pub(super) fixed: Vec<bool>,
+    pub(super) free_axis: Option<FreeAxis>,
 }
 
 /// The only coordinate that moves, in a scene where one particle moves on one axis.
@@ -38,22 +40,8 @@ impl Expected {
         }
     }
 
-    /// Seconds a step.
-    pub fn timestep(&self) -> f64 {
-        self.timestep
-    }
-
-    pub fn particles(&self) -> usize {
+    pub(super) fn particles(&self) -> usize {
         self.fixed.len()
-    }
-
-    /// Of each particle; what a file does not say of fixed ones is taken from here.
-    pub(super) fn start(&self) -> &[f64] {
-        &self.start
-    }
-
-    pub(super) fn fixed(&self) -> &[bool] {
-        &self.fixed
     }
 
     /// Ids of the free particles, ascending.
@@ -70,10 +58,6 @@ impl Expected {
             [id] => Some(id),
             _ => None,
         }
-    }
-
-    pub(super) fn free_axis(&self) -> Option<FreeAxis> {
-        self.free_axis
     }
 }
 

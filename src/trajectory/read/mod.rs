@@ -27,14 +27,12 @@ mod digits;
 mod error;
 mod expected;
 mod npz;
-mod shape;
 mod times;
 
 pub use error::{Place, ReadError};
 pub use expected::{Expected, FreeAxis, free_axis};
 
 use super::{Precision, Rows};
-use digits::Written;
 use error::Wrong;
 
 /// How large a trajectory file may be.
@@ -95,7 +93,8 @@ struct Table {
 /// Whole states, one after the other.
 struct Numbers {
     values: Vec<f64>,
-    written: Written,
+    /// As far as its form alone tells.
+    written: Precision,
 }
 
 impl Numbers {
@@ -123,22 +122,31 @@ pub fn read(
     layout: Option<Layout>,
     expected: &Expected,
 ) -> Result<Rows, ReadError> {
+    let layout = layout.unwrap_or_else(|| Layout::guess(name, bytes));
+    rows(bytes, layout, expected).map_err(|error| ReadError {
+        file: name.to_owned(),
+        ..error
+    })
+}
+
+/// Errors do not name the file.
+fn rows(bytes: &[u8], layout: Layout, expected: &Expected) -> Result<Rows, ReadError> {
     if bytes.len() > limits::FILE_BYTES {
         let cap = limits::FILE_BYTES >> 30;
         let help = "keep fewer instants";
-        return Err(Wrong::new(format!("expected at most {cap} GiB"), help).at(name, Place::File));
+        return Err(Wrong::new(format!("expected at most {cap} GiB"), help).at(Place::File));
     }
-    let table = match layout.unwrap_or_else(|| Layout::guess(name, bytes)) {
-        Layout::Csv => csv::read(bytes, name, expected)?,
-        Layout::Npz => npz::read(bytes, name, expected)?,
-        Layout::Npy => npz::positions(bytes, name, expected)?,
+    let table = match layout {
+        Layout::Csv => csv::read(bytes, expected)?,
+        Layout::Npz => npz::read(bytes, expected)?,
+        Layout::Npy => npz::positions(bytes, expected)?,
     };
-    let steps = table.times.steps(expected.timestep(), name, bytes)?;
+    let steps = table.times.steps(expected.timestep, bytes)?;
     let dim = 3 * expected.particles();
     let (precision, x) = table.x.measured(dim);
     let (precision_v, v) = table.v.map(|v| v.measured(dim)).unzip();
     Ok(Rows {
-        timestep: expected.timestep(),
+        timestep: expected.timestep,
         dim,
         steps,
         x,

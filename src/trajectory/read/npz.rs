@@ -1,13 +1,11 @@
 //! Trajectories as NumPy arrays: `t`, `x` and `v` in an archive, or the positions alone.
 
-use super::array::Header;
-use super::digits::Written;
+use super::array::{Header, tuple};
 use super::error::{HALF, Place, ReadError, Wrong};
 use super::expected::Expected;
-use super::shape::{Shape, tuple};
-use super::times::{Source, Times};
-use super::{Numbers, Table};
-use crate::scene::{shown::shorten, suggest};
+use super::times::Times;
+use super::{Numbers, Precision, Table};
+use crate::scene::words::{nearest, shorten};
 use std::io::{Cursor, Read};
 use zip::{ZipArchive, result::ZipError};
 
@@ -16,8 +14,8 @@ const NAMES: [&str; 3] = ["t", "x", "v"];
 const EXAMPLE: &str = "np.savez('mine.npz', t=t, x=x, v=v) writes what is read here";
 
 /// Reads an archive as `np.savez` and `np.savez_compressed` write it.
-pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Table, ReadError> {
-    let whole = |wrong: Wrong| wrong.at(file, Place::File);
+pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError> {
+    let whole = |wrong: Wrong| wrong.at(Place::File);
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| {
         whole(if bytes.starts_with(b"PK") {
             Wrong::new(format!("the archive cannot be read: {error}"), HALF)
@@ -33,11 +31,11 @@ pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Tabl
         return Err(whole(unknown(name)));
     }
     let mut find = |name| match archive.by_name(&format!("{name}.npy")) {
-        Ok(entry) => Array::read(name, entry, file, expected).map(Some),
+        Ok(entry) => Array::read(name, entry, expected).map(Some),
         Err(ZipError::FileNotFound) => Ok(None),
         Err(error) => {
             let message = format!("cannot be unpacked: {error}");
-            Err(Wrong::new(message, EXAMPLE).at(file, of(name)))
+            Err(Wrong::new(message, EXAMPLE).at(of(name)))
         }
     };
     let (Some(t), Some(x)) = (find("t")?, find("x")?) else {
@@ -47,45 +45,43 @@ pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Tabl
     let v = find("v")?;
     let instants = t.numbers.values.len();
     for array in [Some(&x), v.as_ref()].into_iter().flatten() {
-        let (found, positions) = (&array.shape, &x.shape);
-        if found.instants() != instants {
-            let message = format!(
-                "expected the {instants} instants of t, found {}",
-                found.instants()
-            );
-            return Err(Wrong::new(message, "").at(file, of(array.name)));
+        if array.sizes[0] != instants {
+            let found = array.sizes[0];
+            let message = format!("expected the {instants} instants of t, found {found}");
+            return Err(Wrong::new(message, "").at(of(array.name)));
         }
-        if found != positions {
+        if array.coordinates != x.coordinates {
             let message = format!(
                 "expected x's shape {}, found {}",
                 tuple(&x.sizes),
                 tuple(&array.sizes)
             );
-            return Err(Wrong::new(message, "").at(file, of(array.name)));
+            return Err(Wrong::new(message, "").at(of(array.name)));
         }
     }
     Ok(Table {
         times: Times {
-            values: t.numbers.values,
-            written: t.numbers.written,
-            source: Source::Array,
+            numbers: t.numbers,
+            fields: None,
         },
-        x: x.states(expected.start()),
+        x: x.states(&expected.start),
         v: v.map(|v| v.states(&vec![0.0; 3 * expected.particles()])),
     })
 }
 
 /// Reads an array of positions; its times are n timesteps.
-pub(super) fn positions(bytes: &[u8], file: &str, expected: &Expected) -> Result<Table, ReadError> {
-    let x = Array::read("x", bytes, file, expected)?;
-    let instants = 0..x.shape.instants();
+pub(super) fn positions(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError> {
+    let x = Array::read("x", bytes, expected)?;
+    let instants = 0..x.sizes[0];
     Ok(Table {
         times: Times {
-            values: instants.map(|n| n as f64 * expected.timestep()).collect(),
-            written: Written::Any,
-            source: Source::Array,
+            numbers: Numbers {
+                values: instants.map(|n| n as f64 * expected.timestep).collect(),
+                written: Precision::Double,
+            },
+            fields: None,
         },
-        x: x.states(expected.start()),
+        x: x.states(&expected.start),
         v: None,
     })
 }
@@ -93,8 +89,11 @@ pub(super) fn positions(bytes: &[u8], file: &str, expected: &Expected) -> Result
 /// One array of a file.
 struct Array {
     name: &'static str,
+    /// Instants first, of which there are some.
     sizes: Vec<usize>,
-    shape: Shape,
+    /// What one instant of positions or velocities gives, in order: all coordinates, those of free
+    /// particles, or the one on the free axis.
+    coordinates: Vec<usize>,
     numbers: Numbers,
 }
 
@@ -102,17 +101,16 @@ impl Array {
     fn read(
         name: &'static str,
         mut from: impl Read,
-        file: &str,
         expected: &Expected,
     ) -> Result<Self, ReadError> {
-        let fail = |wrong: Wrong| wrong.at(file, of(name));
+        let fail = |wrong: Wrong| wrong.at(of(name));
         let header = Header::read(&mut from).map_err(fail)?;
         // The shape first: it says how much there is to read.
-        let shape = match name {
-            "t" => Shape::of_times(&header.shape),
-            _ => Shape::new(name, &header.shape, expected),
-        };
-        let shape = shape.map_err(fail)?;
+        let coordinates = coordinates(name, &header.shape, expected).map_err(fail)?;
+        if header.shape[0] == 0 {
+            let wrong = Wrong::new("expected at least one instant, found none", "");
+            return Err(fail(wrong));
+        }
         let values = header.numbers(&mut from).map_err(fail)?;
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
             let place = Place::Array {
@@ -121,25 +119,81 @@ impl Array {
             };
             let message = format!("expected a finite number, found {}", values[at]);
             let help = "end the arrays before the first number that is none";
-            return Err(Wrong::new(message, help).at(file, place));
+            return Err(Wrong::new(message, help).at(place));
         }
         let written = match header.is_single() {
-            true => Written::Single,
-            false => Written::Any,
+            true => Precision::Single,
+            false => Precision::Double,
         };
         Ok(Self {
             name,
             sizes: header.shape,
-            shape,
+            coordinates,
             numbers: Numbers { values, written },
         })
     }
 
+    /// Whole states, with what is not given as `missing` has it.
     fn states(self, missing: &[f64]) -> Numbers {
-        Numbers {
-            values: self.shape.fill(self.numbers.values, missing),
-            written: self.numbers.written,
+        let Numbers { values, written } = self.numbers;
+        if self.coordinates.len() == missing.len() {
+            return Numbers { values, written };
         }
+        let mut whole = missing.repeat(self.sizes[0]);
+        let given = values.chunks_exact(self.coordinates.len());
+        for (state, given) in whole.chunks_exact_mut(missing.len()).zip(given) {
+            for (at, value) in self.coordinates.iter().zip(given) {
+                state[*at] = *value;
+            }
+        }
+        Numbers {
+            values: whole,
+            written,
+        }
+    }
+}
+
+/// The coordinates an array of this name and shape gives at one instant, if it can be one of this
+/// scene's; none of times.
+fn coordinates(name: &str, shape: &[usize], expected: &Expected) -> Result<Vec<usize>, Wrong> {
+    if name == "t" {
+        let help = "t.ravel() makes it so";
+        let wrong = || {
+            Wrong::new(
+                format!("expected the shape (T,), found {}", tuple(shape)),
+                help,
+            )
+        };
+        return (shape.len() == 1).then(Vec::new).ok_or_else(wrong);
+    }
+    let of = |particles: &[usize]| -> Vec<usize> {
+        let each = particles.iter();
+        each.flat_map(|id| [3 * id, 3 * id + 1, 3 * id + 2])
+            .collect()
+    };
+    let n = expected.particles();
+    let free = expected.free();
+    match (shape, &free[..], expected.free_axis) {
+        (&[_, k, 3], ..) if k == n => Ok((0..3 * n).collect()),
+        (&[_, k, 3], ..) if k == free.len() => Ok(of(&free)),
+        (&[_, 3], [_], _) => Ok(of(&free)),
+        (&[_], _, Some(free)) => Ok(vec![free.coordinate()]),
+        _ => Err(Wrong::new(
+            format!("expected the shape (T, {n}, 3), found {}", tuple(shape)),
+            remedy(name, shape, n),
+        )),
+    }
+}
+
+/// What the array probably is, in NumPy's words.
+fn remedy(x: &str, shape: &[usize], n: usize) -> String {
+    match *shape {
+        [_, k] if k == 3 * n => format!("{x}.reshape(-1, {n}, 3) makes it so"),
+        [a, 3, _] if a == n => format!("{x}.transpose(2, 0, 1) makes it so"),
+        [3, b, _] if b == n => format!("{x}.transpose(2, 1, 0) makes it so"),
+        [a, _, 3] if a == n => format!("{x}.transpose(1, 0, 2) makes it so"),
+        [_, 3, b] if b == n => format!("{x}.transpose(0, 2, 1) makes it so"),
+        _ => format!("instants, then the scene's {n} particles, then x, y, z"),
     }
 }
 
@@ -166,7 +220,7 @@ fn unknown(entry: &str) -> Wrong {
         let message = format!("`{}` in the archive is no NumPy array", shorten(entry));
         return Wrong::new(message, EXAMPLE);
     };
-    let help = match suggest::nearest(name, &NAMES) {
+    let help = match nearest(name, &NAMES) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("the arrays are t, x and v: {EXAMPLE}"),
     };

@@ -1,22 +1,16 @@
 //! Times as step numbers.
 
 use super::super::Precision;
-use super::digits::{FULL, Float, Sample, Written};
+use super::Numbers;
+use super::digits::{FULL, Sample};
 use super::error::{Place, ReadError, Wrong, of_field};
 use crate::scene::limits::STEPS;
 
-/// The times of all instants, s, and where they stand in the file.
+/// The times of all instants, s.
 pub(super) struct Times {
-    pub values: Vec<f64>,
-    pub written: Written,
-    pub source: Source,
-}
-
-pub(super) enum Source {
-    /// Byte offsets of each instant's first record, and the field of its time.
-    Text { starts: Vec<u64>, field: usize },
-    /// The array `t`.
-    Array,
+    pub numbers: Numbers,
+    /// In text: byte offsets of each instant's first record, and the field of its time.
+    pub fields: Option<(Vec<u64>, usize)>,
 }
 
 /// A time lies this near to a whole number of steps, in steps, beside its own rounding.
@@ -56,28 +50,21 @@ enum Rounding {
 }
 
 impl Rounding {
-    fn of(times: &[f64], written: Written) -> Self {
-        let double = Self::Sum(f64::EPSILON);
-        match written {
-            Written::Decimals(decimals) => {
-                let digits = FULL;
-                return Self::Text { decimals, digits };
+    fn of(times: &Numbers) -> Self {
+        let (decimals, digits) = match times.written {
+            Precision::Decimals(decimals) => (decimals, FULL),
+            Precision::Digits(digits) => (FULL, digits),
+            Precision::Double | Precision::Single => {
+                let sample = Sample::new(&times.values, 1, times.written);
+                match (sample.longest(), sample.decimals()) {
+                    (0, _) => return Self::Sum(f64::EPSILON),
+                    _ if sample.single => return Self::Sum(f64::from(f32::EPSILON)),
+                    (digits, _) if digits >= FULL - 1 => return Self::Sum(f64::EPSILON),
+                    (digits, decimals) => (decimals, digits),
+                }
             }
-            Written::Digits(digits) => {
-                let decimals = FULL;
-                return Self::Text { decimals, digits };
-            }
-            Written::Any | Written::Single => {}
-        }
-        let sample = Sample::new(times, 1, written);
-        match sample.float {
-            Float::Single => Self::Sum(f64::from(f32::EPSILON)),
-            Float::Double if sample.longest() < FULL - 1 => Self::Text {
-                decimals: sample.decimals(),
-                digits: sample.longest(),
-            },
-            Float::Double | Float::Exact(_) => double,
-        }
+        };
+        Self::Text { decimals, digits }
     }
 
     /// Half a unit of the last place of a time that is text, s.
@@ -128,12 +115,13 @@ impl Times {
     ///
     /// # Errors
     /// A time that is negative, not after the last, or no whole number of steps.
-    pub fn steps(&self, timestep: f64, file: &str, bytes: &[u8]) -> Result<Vec<u64>, ReadError> {
-        let rounding = Rounding::of(&self.values, self.written);
-        let mut steps: Vec<u64> = Vec::with_capacity(self.values.len());
+    pub fn steps(&self, timestep: f64, bytes: &[u8]) -> Result<Vec<u64>, ReadError> {
+        let rounding = Rounding::of(&self.numbers);
+        let times = &self.numbers.values;
+        let mut steps: Vec<u64> = Vec::with_capacity(times.len());
         let mut last = None;
-        for (k, &t) in self.values.iter().enumerate() {
-            let fail = |wrong: Wrong| wrong.at(file, self.place(k, bytes));
+        for (k, &t) in times.iter().enumerate() {
+            let fail = |wrong: Wrong| wrong.at(self.place(k, bytes));
             follows(last, t).map_err(fail)?;
             let Some(n) = rounding.step(t, timestep) else {
                 return Err(fail(self.misfit(t, timestep, rounding)));
@@ -164,7 +152,7 @@ impl Times {
         let message = format!(
             "expected a whole number of steps of {timestep:?} s, found {found} at t = {t:?}"
         );
-        let help = match fitting(&self.values, rounding) {
+        let help = match fitting(&self.numbers.values, rounding) {
             Some(other) => format!("times are multiples of {other:?}: --timestep {other:?}"),
             None if (steps - steps.round()).abs() < 0.01 => {
                 "write t as n * timestep, not as a running sum".to_owned()
@@ -175,12 +163,12 @@ impl Times {
     }
 
     fn place(&self, k: usize, bytes: &[u8]) -> Place {
-        match &self.source {
-            Source::Text { starts, field } => {
+        match &self.fields {
+            Some((starts, field)) => {
                 let start = starts.get(k).copied().unwrap_or_default();
                 of_field(bytes, start, *field)
             }
-            Source::Array => Place::Array {
+            None => Place::Array {
                 name: "t".to_owned(),
                 index: vec![k],
             },
@@ -193,14 +181,10 @@ const SPARSEST: f64 = 1000.0;
 
 /// The roundest step that all times are multiples of, if there is one worth naming.
 fn fitting(times: &[f64], rounding: Rounding) -> Option<f64> {
-    let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
     let gaps = || {
-        times
-            .iter()
-            .copied()
-            .take(1)
-            .chain(gaps.clone())
-            .filter(|gap| *gap > 0.0)
+        let first = times.iter().copied().take(1);
+        let others = times.windows(2).map(|pair| pair[1] - pair[0]);
+        first.chain(others).filter(|gap| *gap > 0.0)
     };
     let smallest = gaps().reduce(f64::min)?;
     let mut common = smallest;

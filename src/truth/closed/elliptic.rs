@@ -20,10 +20,7 @@ pub(super) struct Jacobi {
 impl Modulus {
     /// The quarter period K, infinite at k = 1.
     pub fn quarter_period(&self) -> f64 {
-        let mut mean = 1.0;
-        for (a, _) in self.means() {
-            mean = a;
-        }
+        let mean = self.means().last().map_or(1.0, |(a, _)| a);
         if self.complement > 0.0 {
             std::f64::consts::FRAC_PI_2 / mean
         } else {

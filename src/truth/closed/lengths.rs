@@ -1,8 +1,6 @@
 //! Proof that springs on a line keep their length above 0, up to which they are linear.
 
-use super::mode::Mode;
-use super::modes::Modes;
-use super::part::Axis;
+use super::mode::{Mode, Start};
 
 /// A length may shrink to this share of itself in one step of the proof.
 const SHRINK: f64 = 0.75;
@@ -10,11 +8,12 @@ const SHRINK: f64 = 0.75;
 /// Products of modes and springs after which the proof gives up.
 const EFFORT: usize = 10_000_000;
 
-/// A spring's length over time: l0 plus a sum over the modes.
-struct Length {
-    start: f64,
+/// A spring's length over time: its start plus a sum over the modes.
+pub(super) struct Length {
+    /// m.
+    pub start: f64,
     /// Of each mode.
-    stretch: Vec<f64>,
+    pub stretch: Vec<f64>,
 }
 
 /// Bounds that hold from t = 0 to the end.
@@ -27,57 +26,56 @@ pub(super) struct Bounds {
     pub fastest: f64,
 }
 
-/// Bounds for each of these springs, of which the ends, in their order along the axis, and the length at the
-/// start are given. None if a length may come to `closest` or below before `until`.
+/// A mode at one time.
+struct Instant {
+    mode: Mode,
+    position: f64,
+    /// As it goes on from here.
+    start: Start,
+}
+
+/// Bounds for each of these lengths, or None if one may come to `closest` or below before `until`.
 ///
 /// Marches in time. At each instant the energies of the modes bound every later length, which ends
 /// the proof as soon as it is enough; until then the length, its rate and a bound on its
 /// acceleration give the next step in which no length shrinks below [`SHRINK`] of itself.
 pub(super) fn bounds(
-    modes: &Modes,
-    axis: &Axis,
-    springs: &[([Option<usize>; 2], f64)],
+    modes: &[(Mode, Start)],
+    lengths: &[Length],
     until: f64,
     closest: f64,
 ) -> Option<Vec<Bounds>> {
-    let lengths: Vec<Length> = springs
-        .iter()
-        .map(|&(ends, start)| Length {
-            start,
-            stretch: (0..modes.modes.len())
-                .map(|j| modes.stretch(j, ends))
-                .collect(),
-        })
-        .collect();
-    let mut bounds: Vec<Bounds> = lengths
-        .iter()
-        .map(|l| l.outer(modes, axis, until))
-        .collect();
+    let mut bounds: Vec<Bounds> = lengths.iter().map(|l| l.outer(modes, until)).collect();
     let mut t = 0.0;
-    let work = (lengths.len() * modes.modes.len()).max(1);
+    let work = (lengths.len() * modes.len()).max(1);
     for _ in 0..EFFORT / work {
-        let now = Instant::at(t, modes, axis);
+        let now: Vec<Instant> = modes
+            .iter()
+            .map(|&(mode, start)| Instant::new(t, mode, start))
+            .collect();
         let left = until - t;
         let mut step = left;
         let mut proven = true;
         for (length, bounds) in lengths.iter().zip(&mut bounds) {
-            let l = length.start + length.sum(|j| now.position[j]);
+            let l = length.start + length.sum(&now, |s, now| s * now.position);
             bounds.shortest = bounds.shortest.min(l);
             if l <= closest {
                 return None;
             }
-            let lowest = l + length.lowest(modes, &now, left);
+            // What it may lose at most from now on, as a negative number.
+            let lost = length.sum(&now, |s, now| {
+                s.abs() * now.mode.lowest(now.start.times(s.signum()), left)
+            });
+            let lowest = l + lost;
             if lowest > SHRINK * l {
                 bounds.shortest = bounds.shortest.min(lowest);
                 continue;
             }
             proven = false;
-            let speed = length.sum(|j| now.velocity[j]);
-            let most = |j: usize| {
-                let (mode, s) = (modes.modes[j], length.stretch[j]);
-                s.abs() * mode.acceleration_bound(now.velocity[j], now.pull[j], left)
-            };
-            let most: f64 = (0..modes.modes.len()).map(most).sum();
+            let speed = length.sum(&now, |s, now| s * now.start.velocity);
+            let most = length.sum(&now, |s, now| {
+                s.abs() * now.mode.acceleration_bound(now.start, left)
+            });
             step = step.min(safe(speed, most, (1.0 - SHRINK) * l));
             bounds.shortest = bounds.shortest.min(SHRINK * l);
         }
@@ -104,65 +102,38 @@ fn safe(speed: f64, most: f64, room: f64) -> f64 {
     }
 }
 
-/// All modes at one time.
-struct Instant {
-    position: Vec<f64>,
-    velocity: Vec<f64>,
-    /// Acceleration without damping.
-    pull: Vec<f64>,
-}
-
 impl Instant {
-    fn at(t: f64, modes: &Modes, axis: &Axis) -> Self {
-        let n = modes.modes.len();
-        let mut now = Self {
-            position: Vec::with_capacity(n),
-            velocity: Vec::with_capacity(n),
-            pull: Vec::with_capacity(n),
-        };
-        for (j, mode) in modes.modes.iter().enumerate() {
-            let response = mode.response(t);
-            let position = response.position(axis.velocity[j], axis.pull[j]);
-            let gained = response.gained(axis.velocity[j], axis.pull[j]);
-            now.position.push(position);
-            now.velocity.push(axis.velocity[j] + gained);
-            now.pull.push(axis.pull[j] - mode.w * mode.w * position);
+    fn new(t: f64, mode: Mode, start: Start) -> Self {
+        let response = mode.response(t);
+        let position = response.position(start);
+        Self {
+            mode,
+            position,
+            start: Start {
+                velocity: start.velocity + response.gained(start),
+                pull: start.pull - mode.w * mode.w * position,
+            },
         }
-        now
     }
 }
 
 impl Length {
-    fn sum(&self, of: impl Fn(usize) -> f64) -> f64 {
-        self.stretch
-            .iter()
-            .enumerate()
-            .map(|(j, s)| s * of(j))
-            .sum()
-    }
-
-    /// What the length may lose at most from `now` on, as a negative number.
-    fn lowest(&self, modes: &Modes, now: &Instant, left: f64) -> f64 {
-        let of = |(j, s): (usize, &f64)| {
-            let sign = s.signum();
-            let mode: Mode = modes.modes[j];
-            s.abs() * mode.lowest(sign * now.velocity[j], sign * now.pull[j], left)
-        };
-        self.stretch.iter().enumerate().map(of).sum()
+    /// Over the modes, of something each does per unit of stretch.
+    fn sum(&self, now: &[Instant], of: impl Fn(f64, &Instant) -> f64) -> f64 {
+        let terms = self.stretch.iter().zip(now);
+        terms.map(|(&s, now)| of(s, now)).sum()
     }
 
     /// Bounds from the modes' energies alone; the shortest is not one yet.
-    fn outer(&self, modes: &Modes, axis: &Axis, until: f64) -> Bounds {
+    fn outer(&self, modes: &[(Mode, Start)], until: f64) -> Bounds {
         let mut bounds = Bounds {
             shortest: self.start,
             longest: self.start,
             fastest: 0.0,
         };
-        for (j, mode) in modes.modes.iter().enumerate() {
-            let (velocity, pull) = (axis.velocity[j], axis.pull[j]);
-            let s = self.stretch[j].abs();
-            bounds.longest += s * mode.travel_bound(velocity, pull, until);
-            bounds.fastest += s * mode.speed_bound(velocity, pull, until);
+        for ((mode, start), s) in modes.iter().zip(&self.stretch) {
+            bounds.longest += s.abs() * mode.travel_bound(*start, until);
+            bounds.fastest += s.abs() * mode.speed_bound(*start, until);
         }
         bounds
     }

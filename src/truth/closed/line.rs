@@ -1,6 +1,8 @@
-//! Whether all motion of a group stays on one line.
+//! Whether all motion of a group stays on one line, and how far rounding may push it off.
 
-use super::problem::{Group, Problem};
+use super::group::Group;
+use super::lengths::Bounds;
+use super::mode::Mode;
 use super::vector::{across, norm, unit};
 use nalgebra::Vector3;
 
@@ -18,13 +20,12 @@ pub(super) struct Line {
     pub off: Off,
 }
 
-/// u'' = pull - rate u', from 0 at this velocity.
+/// A mode without stiffness in every direction, from 0 at this velocity.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Drift {
+    pub mode: Mode,
     pub velocity: Vector3<f64>,
     pub pull: Vector3<f64>,
-    /// Drag over mass, 1/s.
-    pub rate: f64,
 }
 
 impl Drift {
@@ -50,13 +51,12 @@ impl Off {
 
 impl Line {
     /// None if motion leaves the line by more than the rounding of the scene's numbers.
-    pub fn of(problem: &Problem, group: &Group) -> Option<Self> {
-        let velocities: Vec<_> = group.free.iter().map(|&i| problem.velocity(i)).collect();
-        let pulls: Vec<_> = group.free.iter().map(|&i| problem.constant(i)).collect();
-        let ends = group.links.iter().flat_map(|l| l.spring.ends);
+    pub fn of(group: &Group) -> Option<Self> {
+        let velocities: Vec<_> = group.bodies.iter().map(|b| b.velocity).collect();
+        let pulls: Vec<_> = group.bodies.iter().map(|b| b.constant).collect();
+        let ends = group.links.iter().flat_map(|link| link.at);
         let points: Vec<_> = ends
-            .chain(group.free.iter().copied())
-            .map(|i| problem.position(i))
+            .chain(group.bodies.iter().map(|b| b.position))
             .collect();
         let origin = *points.first()?;
         let apart: Vec<_> = points.iter().map(|p| p - origin).collect();
@@ -70,40 +70,34 @@ impl Line {
         if position > ROUNDING * extent {
             return None;
         }
-        let anchored = group.is_anchored();
+        let anchored = group.links.iter().any(|l| l.ends.contains(&None));
         let (velocity, off_velocity) = common(&velocities, along, direction, anchored)?;
         let (pull, off_pull) = common(&pulls, along, direction, anchored)?;
-        let mut drift = Drift {
-            velocity,
-            pull,
-            rate: 0.0,
+        let mut line = Self {
+            direction,
+            drift: Drift {
+                velocity,
+                pull,
+                ..Drift::default()
+            },
+            off: Off {
+                position,
+                velocity: off_velocity,
+                pull: off_pull,
+            },
         };
-        let mut off = Off {
-            position,
-            velocity: off_velocity,
-            pull: off_pull,
-        };
-        if !drift.is_still() {
-            let particles = &problem.scene.particles;
-            let rates: Vec<f64> = group
-                .free
-                .iter()
-                .map(|&i| particles[i].drag / particles[i].mass)
-                .collect();
-            let high = rates.iter().copied().fold(0.0, f64::max);
-            let low = rates.iter().copied().fold(high, f64::min);
+        if !line.drift.is_still() {
+            let rates = || group.bodies.iter().map(|b| b.drag / b.mass);
+            let high = rates().fold(0.0, f64::max);
+            let low = rates().fold(high, f64::min);
             if high - low > ROUNDING * high {
                 return None;
             }
-            drift.rate = high;
-            let gained = norm(pull) * problem.until.min(1.0 / high);
-            off.pull += (high - low) * (norm(velocity) + gained);
+            line.drift.mode.g = 0.5 * high;
+            let gained = norm(pull) * group.until.min(1.0 / high);
+            line.off.pull += (high - low) * (norm(velocity) + gained);
         }
-        Some(Self {
-            direction,
-            drift,
-            off,
-        })
+        Some(line)
     }
 }
 
@@ -136,4 +130,70 @@ fn common(
     let first = *vectors.first().filter(|_| !anchored)?;
     let together = off(first);
     (together <= ROUNDING * most).then(|| (first - direction * first.dot(&direction), together))
+}
+
+/// Growth of small offsets across a line of springs.
+///
+/// Across the line a spring under tension N acts like one of stiffness N / l, which changes as the
+/// spring works, so that offsets may grow: by compression, or as the swing of a pendulum of springs
+/// is pumped. With all stiffness over mass between `low` and `high`, and any reference c > 0,
+/// |y'|² + c |y|² grows no faster than at twice max(high - c, c - low) / 2 √c.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sideways {
+    off: Off,
+    /// Largest over smallest mass norm of a unit offset.
+    spread: f64,
+    /// Bounds on the stiffness across the line over the mass, 1/s².
+    low: f64,
+    high: f64,
+}
+
+impl Sideways {
+    /// None where a damper without a shortest length makes the stiffness unbounded. `lengths` are of the
+    /// springs with a rest length, in order.
+    pub fn new(group: &Group, off: Off, lengths: &[Bounds]) -> Option<Self> {
+        let masses = || group.bodies.iter().map(|b| b.mass);
+        // Of each particle, by Gershgorin's rows.
+        let (mut low, mut high) = (vec![0.0; masses().len()], vec![0.0; masses().len()]);
+        let mut lengths = lengths.iter();
+        for link in &group.links {
+            let (spring, damping) = (link.spring, link.axial_damping);
+            let own = link.has_rest_length().then(|| lengths.next()).flatten();
+            let (least, most) = match own {
+                Some(b) => {
+                    let pull = |l: f64| spring.stiffness * (1.0 - spring.rest_length / l);
+                    let damper = damping * b.fastest / b.shortest;
+                    (pull(b.shortest) - damper, pull(b.longest) + damper)
+                }
+                None if damping > 0.0 => return None,
+                None => (spring.stiffness, spring.stiffness),
+            };
+            // A row's diagonal, and as much beside it where the other end moves too.
+            let free: Vec<usize> = link.ends.into_iter().flatten().collect();
+            for &i in &free {
+                low[i] += free.len() as f64 * least.min(0.0) / group.bodies[i].mass;
+                high[i] += free.len() as f64 * most.max(0.0) / group.bodies[i].mass;
+            }
+        }
+        let lightest = masses().fold(f64::INFINITY, f64::min);
+        Some(Self {
+            off,
+            spread: (masses().sum::<f64>() / lightest).sqrt(),
+            low: low.into_iter().fold(0.0, f64::min),
+            high: high.into_iter().fold(0.0, f64::max),
+        })
+    }
+
+    /// No particle is farther off the line in [0, t], m.
+    pub fn bound(&self, t: f64) -> f64 {
+        let Self { low, high, off, .. } = *self;
+        if t == 0.0 {
+            return self.spread * off.position;
+        }
+        let c = (0.5 * (low + high)).max(-low).max(1.0 / (t * t));
+        let rate = (high - c).max(c - low) / (2.0 * c.sqrt());
+        let start = off.position.hypot((off.velocity + off.pull * t) / c.sqrt());
+        // Twice, for terms of second order in the offset.
+        2.0 * self.spread * start * (rate * t).exp()
+    }
 }

@@ -7,41 +7,30 @@
 //! either would show a fault in the other.
 
 mod elliptic;
-mod jacobi;
+mod group;
 mod lengths;
 mod line;
 mod mode;
 mod modes;
 mod part;
 mod pendulum;
-mod problem;
-mod reduce;
-mod sideways;
 mod vector;
 mod words;
 
 pub use pendulum::Pendulum;
 
-use super::{Motion, States};
+use super::{Motion, States, Truth, TruthKind};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
+use group::groups;
 use part::Part;
-use problem::Problem;
 
 /// Ids of the effects the forms account for. Any other effect in a scene means no closed form.
 const KNOWN: &[&str] = &["gravity", "springs", "drag", "wind"];
 
-/// A closed form that applies.
-pub struct Found {
-    /// What it is, such as `parabola`.
-    pub method: String,
-    /// Why it applies to this scene.
-    pub reason: String,
-    pub motion: Box<dyn Motion>,
-}
-
-/// The form that holds for this scene up to `until` seconds, if one does.
-pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Found> {
+/// The form that holds for this scene up to `until` seconds, if one does: what it is, such as
+/// `parabola`, and why it applies.
+pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth> {
     let known = system
         .effects()
         .iter()
@@ -50,29 +39,29 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Found>
     if !(known && forward) {
         return None;
     }
-    let problem = Problem::new(scene, until);
-    let parts: Option<Vec<Part>> = problem
-        .groups()
-        .iter()
-        .map(|group| reduce::reduce(&problem, group))
-        .collect();
-    let parts = parts?;
+    let start = ParticleSystem::initial_state(scene);
+    let groups = groups(scene, &start, until);
+    let parts: Vec<Part> = groups.iter().map(Part::of).collect::<Option<_>>()?;
     let mut methods = each_once(parts.iter().map(|p| p.method.as_str()));
     let mut reasons = each_once(parts.iter().map(|p| p.reason.as_str()));
     if parts.is_empty() {
         methods.push("rest");
         reasons.push("nothing is free to move");
     }
-    Some(Found {
-        method: methods.join(" and "),
-        reason: reasons.join("; "),
-        motion: Box::new(Modal {
-            farthest: problem.start.x.iter().fold(0.0, |m, x| m.max(x.abs())),
-            size: problem.size,
-            x: problem.start.x,
-            v: problem.start.v,
-            parts,
-        }),
+    let (method, reason) = (methods.join(" and "), reasons.join("; "));
+    let motion = Modal {
+        farthest: start.x.iter().fold(0.0, |m, x| m.max(x.abs())),
+        x: start.x,
+        v: start.v,
+        parts,
+    };
+    Some(Truth {
+        kind: TruthKind::ClosedForm,
+        method: Some(method),
+        reason,
+        horizon: until,
+        error_bound: motion.error_bar(until),
+        motion: Some(Box::new(motion)),
     })
 }
 
@@ -95,7 +84,6 @@ fn each_once<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 struct Modal {
     x: Vec<f64>,
     v: Vec<f64>,
-    size: f64,
     /// Largest coordinate, m.
     farthest: f64,
     parts: Vec<Part>,
@@ -120,7 +108,7 @@ impl Motion for Modal {
     }
 
     fn error_bar(&self, t: f64) -> f64 {
-        let bars = self.parts.iter().map(|p| p.error_bar(t, self.size));
+        let bars = self.parts.iter().map(|p| p.error_bar(t));
         // A position is a sum with the start, which may lie far from the origin.
         bars.fold(0.0, f64::max) + f64::EPSILON * self.farthest
     }

@@ -4,10 +4,27 @@
 ///
 /// g below w swings, at w is critical, above it creeps; w = 0 is drag alone and both 0 free fall.
 /// Not to be confused with a damping ratio, which is g / w.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Mode {
     pub w: f64,
     pub g: f64,
+}
+
+/// How a mode starts: at 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Start {
+    pub velocity: f64,
+    /// Acceleration without damping, which stays: r.
+    pub pull: f64,
+}
+
+impl Start {
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            velocity: factor * self.velocity,
+            pull: factor * self.pull,
+        }
+    }
 }
 
 /// What a mode does from rest, at one time.
@@ -22,14 +39,14 @@ pub(super) struct Response {
 }
 
 impl Response {
-    /// Position of a mode that starts at 0 with this velocity, under this acceleration.
-    pub fn position(&self, velocity: f64, pull: f64) -> f64 {
-        velocity * self.impulse + pull * self.step
+    /// The position of a mode with this start.
+    pub fn position(&self, start: Start) -> f64 {
+        start.velocity * self.impulse + start.pull * self.step
     }
 
     /// Its velocity, less the one it started with.
-    pub fn gained(&self, velocity: f64, pull: f64) -> f64 {
-        velocity * self.slowing + pull * self.impulse
+    pub fn gained(&self, start: Start) -> f64 {
+        start.velocity * self.slowing + start.pull * self.impulse
     }
 }
 
@@ -104,31 +121,35 @@ impl Mode {
             .min(settled / self.w / self.w)
     }
 
-    /// No speed in [0, t] is larger, from this velocity under this acceleration.
+    /// No speed in [0, t] is larger.
     ///
     /// The mode's energy never grows, which bounds it at once; the other bound serves w = 0.
-    pub fn speed_bound(&self, velocity: f64, pull: f64, t: f64) -> f64 {
+    pub fn speed_bound(&self, start: Start, t: f64) -> f64 {
+        let Start { velocity, pull } = start;
         let growing = velocity.abs() + pull.abs() * self.impulse_bound(t);
         growing.min(velocity.hypot(pull / self.w))
     }
 
     /// No acceleration in [0, t] is larger; it obeys the mode's equation itself.
-    pub fn acceleration_bound(&self, velocity: f64, pull: f64, t: f64) -> f64 {
-        let start = pull - 2.0 * self.g * velocity;
+    pub fn acceleration_bound(&self, start: Start, t: f64) -> f64 {
+        let Start { velocity, pull } = start;
+        let first = pull - 2.0 * self.g * velocity;
         let restoring = self.w * self.w * velocity;
-        let growing = start.abs() + restoring.abs() * self.impulse_bound(t);
-        growing.min(start.hypot(self.w * velocity))
+        let growing = first.abs() + restoring.abs() * self.impulse_bound(t);
+        growing.min(first.hypot(self.w * velocity))
     }
 
     /// No position in [0, t] is farther from the start.
-    pub fn travel_bound(&self, velocity: f64, pull: f64, t: f64) -> f64 {
+    pub fn travel_bound(&self, start: Start, t: f64) -> f64 {
+        let Start { velocity, pull } = start;
         let apart = velocity.abs() * self.impulse_bound(t) + pull.abs() * self.step_bound(t);
         let rest = pull / self.w / self.w;
         apart.min(rest.abs() + rest.hypot(velocity / self.w))
     }
 
     /// No position in [0, t] is lower than this, with the start at 0.
-    pub fn lowest(&self, velocity: f64, pull: f64, t: f64) -> f64 {
+    pub fn lowest(&self, start: Start, t: f64) -> f64 {
+        let Start { velocity, pull } = start;
         let apart = -velocity.abs() * self.impulse_bound(t) + pull.min(0.0) * self.step_bound(t);
         let rest = pull / self.w / self.w;
         apart.max(rest - rest.hypot(velocity / self.w))
@@ -224,22 +245,26 @@ mod tests {
                 .iter()
                 .flat_map(|&s| [0.3, 2.0, 20.0].map(|t| (s, t)))
             {
+                let start = Start {
+                    velocity: v,
+                    pull: r,
+                };
                 let (mut speed, mut change, mut travel, mut low) =
                     (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
                 for k in 0..=2000 {
                     let response = mode.response(until * f64::from(k) / 2000.0);
-                    let x = response.position(v, r);
-                    let now = v + response.gained(v, r);
+                    let x = response.position(start);
+                    let now = v + response.gained(start);
                     speed = speed.max(now.abs());
                     change = change.max((r - w * w * x - 2.0 * g * now).abs());
                     travel = travel.max(x.abs());
                     low = low.min(x);
                 }
                 let bounds = [
-                    (speed, mode.speed_bound(v, r, until)),
-                    (change, mode.acceleration_bound(v, r, until)),
-                    (travel, mode.travel_bound(v, r, until)),
-                    (-low, -mode.lowest(v, r, until)),
+                    (speed, mode.speed_bound(start, until)),
+                    (change, mode.acceleration_bound(start, until)),
+                    (travel, mode.travel_bound(start, until)),
+                    (-low, -mode.lowest(start, until)),
                 ];
                 for (met, (found, bound)) in met.iter_mut().zip(bounds) {
                     // Rounding of values up to 1e3.

@@ -1,38 +1,141 @@
-//! The motion of one group: its modes along one axis or three, and its error bar.
+//! One group's motion, where its forces are linear all along: its modes along one axis or three, and
+//! its error bar.
 
-use super::line::Drift;
-use super::mode::{Mode, Response};
+use super::group::{Body, Group, Link};
+use super::lengths::{Length, bounds};
+use super::line::{Drift, Line, Sideways};
+use super::mode::{Mode, Response, Start};
 use super::modes::Modes;
-use super::sideways::Sideways;
 use super::vector::norm;
+use super::words;
 use nalgebra::Vector3;
+
+/// A length has to stay above this share of the scene's size.
+const CLOSEST: f64 = 1e-9;
+
+/// Rounding may push particles off their line by this share of the scene's size.
+const ASIDE: f64 = 1e-9;
 
 /// What the modes do along one axis.
 #[derive(Debug, Clone)]
-pub(super) struct Axis {
+struct Axis {
     /// Unit vector.
-    pub direction: Vector3<f64>,
-    /// Initial velocity of each mode.
-    pub velocity: Vec<f64>,
-    /// Initial acceleration of each mode, without damping.
-    pub pull: Vec<f64>,
+    direction: Vector3<f64>,
+    /// Of each mode.
+    starts: Vec<Start>,
 }
 
-/// One group's motion: x(t) = x(0) + axes times modes + drift.
+/// x(t) = x(0) + axes times modes + drift.
 #[derive(Debug, Clone)]
 pub(super) struct Part {
     /// Scene ids of the free particles.
-    pub particles: Vec<usize>,
-    pub modes: Modes,
-    pub axes: Vec<Axis>,
-    pub drift: Drift,
+    particles: Vec<usize>,
+    modes: Modes,
+    axes: Vec<Axis>,
+    drift: Drift,
     /// Growth of what rounding leaves across a line, if it leaves anything.
-    pub sideways: Option<Sideways>,
+    sideways: Option<Sideways>,
+    /// The scene's size, m.
+    size: f64,
     pub method: String,
     pub reason: String,
 }
 
 impl Part {
+    /// The group's motion, if it has a closed form.
+    pub fn of(group: &Group) -> Option<Self> {
+        if group.is_linear() {
+            Self::in_space(group)
+        } else {
+            Self::on_line(group)
+        }
+    }
+
+    /// All three axes move alike and apart from each other.
+    fn in_space(group: &Group) -> Option<Self> {
+        let modes = Modes::new(group)?;
+        let axes = [0, 1, 2].map(|c| {
+            let tension = |link: &Link| link.spring.stiffness * link.between()[c];
+            Axis::new(group, &modes, Vector3::ith(c, 1.0), tension)
+        });
+        let words = words::in_space(group, &modes.modes);
+        Some(Self::new(
+            group,
+            modes,
+            axes.to_vec(),
+            Drift::default(),
+            words,
+        ))
+    }
+
+    /// One axis, along a line that may move sideways as a whole.
+    fn on_line(group: &Group) -> Option<Self> {
+        let line = Line::of(group)?;
+        let modes = Modes::new(group)?;
+        // On which side of its first end a spring's second end lies; 0 where they coincide.
+        let side = |link: &Link| link.between().dot(&line.direction);
+        let bound = || group.links.iter().filter(|link| link.has_rest_length());
+        if bound().any(|link| side(link) == 0.0) {
+            return None;
+        }
+        let sign = |link: &Link| if side(link) < 0.0 { -1.0 } else { 1.0 };
+        let tension = |link: &Link| {
+            let stretch = norm(link.between()) - link.spring.rest_length;
+            link.spring.stiffness * stretch * sign(link)
+        };
+        let along = Axis::new(group, &modes, line.direction, tension);
+        // Springs are linear only while their ends do not pass each other.
+        let lengths: Vec<Length> = bound()
+            .map(|link| Length {
+                start: norm(link.between()),
+                stretch: modes
+                    .stretches(link)
+                    .iter()
+                    .map(|s| sign(link) * s)
+                    .collect(),
+            })
+            .collect();
+        let both = modes
+            .modes
+            .iter()
+            .copied()
+            .zip(along.starts.iter().copied());
+        let both: Vec<(Mode, Start)> = both.collect();
+        let mut part = Self::new(group, modes, vec![along], line.drift, Default::default());
+        let closest = (CLOSEST * part.size).max(4.0 * part.error_bar(group.until));
+        let lengths = bounds(&both, &lengths, group.until, closest)?;
+        if !line.off.is_none() {
+            let sideways = Sideways::new(group, line.off, &lengths)?;
+            let stays = sideways.bound(group.until) <= ASIDE * part.size;
+            if !stays {
+                return None;
+            }
+            part.sideways = Some(sideways);
+        }
+        let shortest = lengths.iter().map(|b| b.shortest).reduce(f64::min);
+        (part.method, part.reason) = words::on_line(group, &part.modes.modes, shortest);
+        Some(part)
+    }
+
+    fn new(
+        group: &Group,
+        modes: Modes,
+        axes: Vec<Axis>,
+        drift: Drift,
+        (method, reason): (String, String),
+    ) -> Self {
+        Self {
+            particles: group.bodies.iter().map(|b| b.id).collect(),
+            modes,
+            axes,
+            drift,
+            sideways: None,
+            size: group.size,
+            method,
+            reason,
+        }
+    }
+
     /// Adds displacements and gained velocities at `t` to flat vectors of the scene.
     pub fn add(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
         let n = self.particles.len();
@@ -41,10 +144,8 @@ impl Part {
         for axis in &self.axes {
             moved.fill(0.0);
             gained.fill(0.0);
-            for (j, response) in responses.iter().enumerate() {
-                let (velocity, pull) = (axis.velocity[j], axis.pull[j]);
-                let position = response.position(velocity, pull);
-                let speed = response.gained(velocity, pull);
+            for (j, (response, &start)) in responses.iter().zip(&axis.starts).enumerate() {
+                let (position, speed) = (response.position(start), response.gained(start));
                 for (i, shape) in self.modes.shape(j).iter().enumerate() {
                     moved[i] += shape * position;
                     gained[i] += shape * speed;
@@ -58,12 +159,15 @@ impl Part {
             }
         }
         if !self.drift.is_still() {
-            let response = drifting(&self.drift).response(t);
+            let response = self.drift.mode.response(t);
             for particle in &self.particles {
                 for c in 0..3 {
-                    let (velocity, pull) = (self.drift.velocity[c], self.drift.pull[c]);
-                    x[3 * particle + c] += response.position(velocity, pull);
-                    v[3 * particle + c] += response.gained(velocity, pull);
+                    let start = Start {
+                        velocity: self.drift.velocity[c],
+                        pull: self.drift.pull[c],
+                    };
+                    x[3 * particle + c] += response.position(start);
+                    v[3 * particle + c] += response.gained(start);
                 }
             }
         }
@@ -73,14 +177,17 @@ impl Part {
     /// creeps back alone.
     fn reach(&self, t: f64) -> (f64, f64) {
         let n = self.particles.len();
-        let (mut all, mut swing) = (vec![0.0_f64; n], vec![0.0_f64; n]);
-        let drift = drifting(&self.drift);
-        let drifted = self.drift.velocity * drift.impulse_bound(t);
-        all.fill(norm(drifted) + norm(self.drift.pull) * drift.step_bound(t));
+        let Drift {
+            mode,
+            velocity,
+            pull,
+        } = &self.drift;
+        let drifted = norm(velocity * mode.impulse_bound(t)) + norm(*pull) * mode.step_bound(t);
+        let (mut all, mut swing) = (vec![drifted; n], vec![0.0_f64; n]);
         for axis in &self.axes {
             let (mut each, mut swinging) = (vec![0.0; n], vec![0.0; n]);
-            for (j, mode) in self.modes.modes.iter().enumerate() {
-                let bound = mode.travel_bound(axis.velocity[j], axis.pull[j], t);
+            for (j, (mode, start)) in self.modes.modes.iter().zip(&axis.starts).enumerate() {
+                let bound = mode.travel_bound(*start, t);
                 for (i, shape) in self.modes.shape(j).iter().enumerate() {
                     each[i] += shape.abs() * bound;
                     if mode.w > 0.0 {
@@ -102,48 +209,61 @@ impl Part {
     /// 16 eps (1 + w t) times the scene's size or the distance travelled, where that is larger. The
     /// 1 covers each sum; w t covers the phase, which a rounded frequency moves at eps of the
     /// fastest w. Phase counts for what swings, and as long as it does: damped modes forget it.
-    pub fn error_bar(&self, t: f64, size: f64) -> f64 {
+    pub fn error_bar(&self, t: f64) -> f64 {
         let (all, swing) = self.reach(t);
-        let mut phase = 0.0_f64;
-        let mut slowest = f64::INFINITY;
-        let mut speed = 0.0_f64;
-        for mode in &self.modes.modes {
-            slowest = slowest.min(mode.fastest());
-            if mode.w > 0.0 {
-                phase = phase.max(t.min(1.0 / mode.g.min(mode.w)));
-            }
-        }
-        for axis in &self.axes {
-            for (j, mode) in self.modes.modes.iter().enumerate() {
-                speed = speed.hypot(mode.speed_bound(axis.velocity[j], axis.pull[j], t));
-            }
-        }
-        let fastest = self.modes.modes.iter().map(|m| m.w).fold(0.0, f64::max);
-        let lightest = self
-            .modes
-            .masses()
-            .iter()
-            .copied()
-            .fold(f64::INFINITY, f64::min);
+        let modes = || self.modes.modes.iter();
+        let slowest = modes().map(|m| m.fastest()).fold(f64::INFINITY, f64::min);
+        let fastest = modes().map(|m| m.w).fold(0.0, f64::max);
+        let swinging = modes().filter(|m| m.w > 0.0);
+        let phase = swinging
+            .map(|m| t.min(1.0 / m.g.min(m.w)))
+            .fold(0.0, f64::max);
+        let starts = self.axes.iter().flat_map(|axis| modes().zip(&axis.starts));
+        let speeds = starts.map(|(mode, start)| mode.speed_bound(*start, t));
+        let speed = speeds.fold(0.0, f64::hypot);
         // Damping left between the modes pushes like leak times speed.
-        let pushed = self.modes.leak * speed / lightest.sqrt() * t * t.min(1.0 / slowest);
+        let pushed =
+            self.modes.leak * speed / self.modes.lightest.sqrt() * t * t.min(1.0 / slowest);
         // A slow mode that stiff springs under tension push by their rounding may be off by more than
         // it swings, one mode alone may not.
         let swinging = if self.particles.len() == 1 {
             swing
         } else {
-            size.max(swing)
+            self.size.max(swing)
         };
         let rate = 16.0 * f64::EPSILON * fastest + self.modes.spread;
         let sideways = self.sideways.as_ref().map_or(0.0, |s| s.bound(t));
-        16.0 * f64::EPSILON * size.max(all) + rate * phase * swinging + pushed + sideways
+        16.0 * f64::EPSILON * self.size.max(all) + rate * phase * swinging + pushed + sideways
     }
 }
 
-/// The sideways motion as a mode without stiffness.
-fn drifting(drift: &Drift) -> Mode {
-    Mode {
-        w: 0.0,
-        g: 0.5 * drift.rate,
+impl Axis {
+    /// The modes' start along `direction`. `tension` is the force on a spring's first end there, N.
+    fn new(
+        group: &Group,
+        modes: &Modes,
+        direction: Vector3<f64>,
+        tension: impl Fn(&Link) -> f64,
+    ) -> Self {
+        let along = |of: fn(&Body) -> Vector3<f64>| -> Vec<f64> {
+            let bodies = group.bodies.iter();
+            bodies.map(|b| b.mass * of(b).dot(&direction)).collect()
+        };
+        let velocities = modes.of_forces(&along(|b| b.velocity));
+        let mut pulls = modes.of_forces(&along(|b| b.constant));
+        for link in &group.links {
+            let force = tension(link);
+            for (pull, stretch) in pulls.iter_mut().zip(modes.stretches(link)) {
+                // Both ends at once: on a mode that hardly stretches the spring they cancel here.
+                *pull -= force * stretch;
+            }
+        }
+        let starts = velocities.into_iter().zip(pulls);
+        Self {
+            direction,
+            starts: starts
+                .map(|(velocity, pull)| Start { velocity, pull })
+                .collect(),
+        }
     }
 }

@@ -21,7 +21,8 @@ pub struct Pendulum {
     length: f64,
     /// w, rad/s.
     w: f64,
-    round: Round,
+    /// None where it swings; where it passes the top, 1 or -1 with the sign of its angular velocity.
+    round: Option<f64>,
     /// k, over 1 where the pendulum goes round.
     energy: f64,
     /// How many times larger the rounding of 1 - k² is than of a product: where it nears 0, its two
@@ -29,14 +30,6 @@ pub struct Pendulum {
     cancelled: f64,
     modulus: Modulus,
     start: Jacobi,
-}
-
-/// Whether it passes the top, and which way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Round {
-    No,
-    Forward,
-    Backward,
 }
 
 /// Components that should be 0 may be this share of the vector: a few roundings of the file's
@@ -70,16 +63,12 @@ impl Pendulum {
             } else {
                 (0.0, 1.0)
             };
-            (Round::No, Modulus { k, complement }, Jacobi { sn, cn, dn })
+            (None, Modulus { k, complement }, Jacobi { sn, cn, dn })
         } else {
             let (k, complement) = (1.0 / energy, complement / energy);
             let (sn, cn, dn) = (sin, cos, r.abs() / energy);
-            let way = if r > 0.0 {
-                Round::Forward
-            } else {
-                Round::Backward
-            };
-            (way, Modulus { k, complement }, Jacobi { sn, cn, dn })
+            let jacobi = Jacobi { sn, cn, dn };
+            (Some(r.signum()), Modulus { k, complement }, jacobi)
         };
         Some(Self {
             pivot: Vector3::zeros(),
@@ -139,8 +128,8 @@ impl Pendulum {
     pub fn period(&self) -> f64 {
         let quarter = self.modulus.quarter_period();
         match self.round {
-            Round::No => 4.0 * quarter / self.w,
-            _ => 2.0 * quarter / (self.energy * self.w),
+            None => 4.0 * quarter / self.w,
+            Some(_) => 2.0 * quarter / (self.energy * self.w),
         }
     }
 
@@ -160,16 +149,11 @@ impl Pendulum {
     /// Sine and cosine of half the angle, and the angular velocity.
     fn half(&self, t: f64) -> (f64, f64, f64) {
         let Self { w, energy, .. } = *self;
-        let u = match self.round {
-            Round::No => w * t,
-            Round::Forward => energy * w * t,
-            Round::Backward => -energy * w * t,
-        };
+        let u = self.round.map_or(1.0, |way| way * energy) * w * t;
         let Jacobi { sn, cn, dn } = self.start.plus(&self.modulus.at(u), &self.modulus);
         match self.round {
-            Round::No => (energy * sn, dn, 2.0 * w * energy * cn),
-            Round::Forward => (sn, cn, 2.0 * w * energy * dn),
-            Round::Backward => (sn, cn, -2.0 * w * energy * dn),
+            None => (energy * sn, dn, 2.0 * w * energy * cn),
+            Some(way) => (sn, cn, way * 2.0 * w * energy * dn),
         }
     }
 }

@@ -1,78 +1,61 @@
 //! What a closed form is called, and why it applies.
 
+use super::group::Group;
 use super::line::Line;
 use super::mode::Mode;
-use super::modes::Modes;
-use super::problem::{Group, Problem};
 
 /// Method and reason of a group whose forces are linear everywhere.
-pub(super) fn in_space(problem: &Problem, group: &Group, modes: &Modes) -> (String, String) {
-    let one = modes
-        .modes
-        .first()
-        .copied()
-        .filter(|_| modes.modes.len() == 1);
-    if let (Some(mode), true) = (one, group.links.is_empty()) {
-        return alone(mode);
+pub(super) fn in_space(group: &Group, modes: &[Mode]) -> (String, String) {
+    if let ([mode], []) = (modes, &group.links[..]) {
+        let (method, reason) = if mode.g > 0.0 {
+            (
+                "fall with linear drag",
+                "a free particle under constant forces and linear drag",
+            )
+        } else {
+            ("parabola", "a free particle under constant forces alone")
+        };
+        return (method.to_owned(), reason.to_owned());
     }
-    let line = one.and_then(|_| Line::of(problem, group));
-    let on_line = line.is_some_and(|l| l.off.is_none());
-    let where_ = if on_line { "in line" } else { "in space" };
-    let subject = subject(group);
+    let on_line = modes.len() == 1 && Line::of(group).is_some_and(|l| l.off.is_none());
     let of = if group.links.len() == 1 {
         "whose rest length is 0"
     } else {
         "of rest length 0"
     };
     let reason = format!(
-        "{subject} {of}: the force is linear everywhere{}",
-        damping(group, modes)
+        "{} {of}: the force is linear everywhere{}",
+        subject(group),
+        damping(modes)
     );
+    let where_ = if on_line { "in line" } else { "in space" };
     (method(group, modes, where_), reason)
 }
 
 /// Method and reason of a group that moves on one line; `shortest` is what its springs with a rest
 /// length do not fall below.
-pub(super) fn on_line(group: &Group, modes: &Modes, shortest: Option<f64>) -> (String, String) {
-    let while_ = match (shortest, group.links.len()) {
-        (None, _) => ", where the force is linear".to_owned(),
-        (Some(l), 1) => format!(
-            ": the force is linear while the spring's length stays above {} m",
-            below(l)
-        ),
-        (Some(l), _) => format!(
-            ": the forces are linear while every length stays above {} m",
-            below(l)
-        ),
-    };
-    let moving = if group.links.len() == 1 {
-        "moving along it"
+pub(super) fn on_line(group: &Group, modes: &[Mode], shortest: Option<f64>) -> (String, String) {
+    let (moving, stays) = if group.links.len() == 1 {
+        (
+            "moving along it",
+            "force is linear while the spring's length stays",
+        )
     } else {
-        "all on one line"
+        (
+            "all on one line",
+            "forces are linear while every length stays",
+        )
     };
-    let reason = format!(
-        "{}, {moving}{while_}{}",
-        subject(group),
-        damping(group, modes)
-    );
+    let while_ = match shortest {
+        None => ", where the force is linear".to_owned(),
+        Some(length) => format!(": the {stays} above {} m", below(length)),
+    };
+    let reason = format!("{}, {moving}{while_}{}", subject(group), damping(modes));
     (method(group, modes, "in line"), reason)
 }
 
-/// A particle without springs.
-fn alone(mode: Mode) -> (String, String) {
-    let (method, reason) = if mode.g > 0.0 {
-        (
-            "fall with linear drag",
-            "a free particle under constant forces and linear drag",
-        )
-    } else {
-        ("parabola", "a free particle under constant forces alone")
-    };
-    (method.to_owned(), reason.to_owned())
-}
-
 fn subject(group: &Group) -> String {
-    let particles = match group.free.len() {
+    let particles = match group.bodies.len() {
         1 => "one free particle".to_owned(),
         n => format!("{n} free particles"),
     };
@@ -82,8 +65,8 @@ fn subject(group: &Group) -> String {
     }
 }
 
-fn method(group: &Group, modes: &Modes, where_: &str) -> String {
-    match modes.modes.as_slice() {
+fn method(group: &Group, modes: &[Mode], where_: &str) -> String {
+    match modes {
         [mode] => format!("oscillator {where_}, {}", regime(*mode)),
         [mode, _] if group.links.len() == 1 => {
             format!("two bodies on one spring, {}", regime(*mode))
@@ -92,9 +75,8 @@ fn method(group: &Group, modes: &Modes, where_: &str) -> String {
     }
 }
 
-fn damping(group: &Group, modes: &Modes) -> &'static str {
-    let damped = modes.modes.iter().any(|m| m.g > 0.0);
-    if damped && group.free.len() > 1 {
+fn damping(modes: &[Mode]) -> &'static str {
+    if modes.len() > 1 && modes.iter().any(|m| m.g > 0.0) {
         ", and damping keeps the modes apart"
     } else {
         ""

@@ -21,18 +21,11 @@ pub struct Gragg {
     a: Vec<f64>,
     x: Vec<f64>,
     v: Vec<f64>,
-    /// The sequence's last two points.
-    before: Offset,
-    now: Offset,
-    /// The lowest diagonal of Neville's scheme.
-    diagonal: Vec<Offset>,
-}
-
-/// Differences from x + t v, m, and from v, m/s.
-#[derive(Clone, Default)]
-struct Offset {
-    x: Vec<f64>,
-    v: Vec<f64>,
+    /// The sequence's last two points, as the differences of all positions (m), then velocities (m/s).
+    before: Vec<f64>,
+    now: Vec<f64>,
+    /// The lowest diagonal of Neville's scheme, of such points.
+    diagonal: Vec<Vec<f64>>,
 }
 
 impl Default for Gragg {
@@ -45,48 +38,44 @@ impl Gragg {
     /// With other numbers of substeps, even and ascending.
     pub fn with(substeps: &[u32]) -> Self {
         let factor = |i: u32, j: u32| 1.0 / ((f64::from(j) / f64::from(i)).powi(2) - 1.0);
-        let rows = substeps.iter().enumerate();
+        let row = |(row, &j)| {
+            let before = substeps[..row].iter().rev();
+            before.map(|&i| factor(i, j)).collect()
+        };
         Self {
             substeps: substeps.to_vec(),
-            factors: rows
-                .map(|(row, &j)| {
-                    substeps[..row]
-                        .iter()
-                        .rev()
-                        .map(|&i| factor(i, j))
-                        .collect()
-                })
-                .collect(),
+            factors: substeps.iter().enumerate().map(row).collect(),
             first: Vec::new(),
             a: Vec::new(),
             x: Vec::new(),
             v: Vec::new(),
-            before: Offset::default(),
-            now: Offset::default(),
-            diagonal: vec![Offset::default(); substeps.len()],
+            before: Vec::new(),
+            now: Vec::new(),
+            diagonal: vec![Vec::new(); substeps.len()],
         }
     }
 
     /// Leaves the end of `n` substeps of `h / n` in `now`.
     fn midpoints(&mut self, system: &dyn System, t: f64, h: f64, n: u32, state: &Precise) {
         let h = h / f64::from(n);
-        self.before.x.fill(0.0);
-        self.before.v.fill(0.0);
-        self.now.x.fill(0.0);
-        for (v, a) in self.now.v.iter_mut().zip(&self.first) {
+        let dim = state.x.len();
+        self.before.fill(0.0);
+        self.now[..dim].fill(0.0);
+        for (v, a) in self.now[dim..].iter_mut().zip(&self.first) {
             *v = h * a;
         }
         for m in 1..n {
             let elapsed = f64::from(m) * h;
-            for at in 0..state.x.len() {
-                let drift = elapsed * state.v[at] + self.now.x[at];
+            let (now_x, now_v) = self.now.split_at(dim);
+            for at in 0..dim {
+                let drift = elapsed * state.v[at] + now_x[at];
                 self.x[at] = state.x[at] + (state.x_low[at] + drift);
-                self.v[at] = state.v[at] + (state.v_low[at] + self.now.v[at]);
+                self.v[at] = state.v[at] + (state.v_low[at] + now_v[at]);
             }
             system.acceleration(t + elapsed, &self.x, &self.v, &mut self.a);
-            for at in 0..state.x.len() {
-                self.before.x[at] += 2.0 * h * self.now.v[at];
-                self.before.v[at] += 2.0 * h * self.a[at];
+            let slopes = now_v.iter().chain(&self.a);
+            for (before, slope) in self.before.iter_mut().zip(slopes) {
+                *before += 2.0 * h * slope;
             }
             std::mem::swap(&mut self.before, &mut self.now);
         }
@@ -96,14 +85,11 @@ impl Gragg {
     fn extrapolate(&mut self, row: usize) {
         let (above, rest) = self.diagonal.split_at_mut(row);
         let Some(new) = rest.first_mut() else { return };
-        new.x.copy_from_slice(&self.now.x);
-        new.v.copy_from_slice(&self.now.v);
+        new.copy_from_slice(&self.now);
         let mut better = new;
         for (older, factor) in above.iter_mut().rev().zip(&self.factors[row]) {
-            for (old, new) in [(&mut older.x, &better.x), (&mut older.v, &better.v)] {
-                for (old, new) in old.iter_mut().zip(new) {
-                    *old = new + factor * (new - *old);
-                }
+            for (old, new) in older.iter_mut().zip(&*better) {
+                *old = new + factor * (new - *old);
             }
             better = older;
         }
@@ -116,10 +102,9 @@ impl Stepper for Gragg {
         for buffer in [&mut self.first, &mut self.a, &mut self.x, &mut self.v] {
             fit(buffer, dim);
         }
-        let offsets = [&mut self.before, &mut self.now];
-        for offset in offsets.into_iter().chain(&mut self.diagonal) {
-            fit(&mut offset.x, dim);
-            fit(&mut offset.v, dim);
+        let points = [&mut self.before, &mut self.now];
+        for point in points.into_iter().chain(&mut self.diagonal) {
+            fit(point, 2 * dim);
         }
         system.acceleration(t, &state.x, &state.v, &mut self.first);
         for row in 0..self.substeps.len() {
@@ -132,7 +117,7 @@ impl Stepper for Gragg {
         };
         for at in 0..dim {
             let drift = h * (state.v[at] + state.v_low[at]);
-            state.add(at, drift + best.x[at], best.v[at]);
+            state.add(at, drift + best[at], best[dim + at]);
         }
     }
 

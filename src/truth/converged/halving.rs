@@ -1,11 +1,11 @@
 //! Halving the steps until two independent estimates agree.
 
-use super::NotConverged;
 use super::level::{LOST, Level};
 use super::mesh::Mesh;
 use super::rate::fastest_rate;
 use super::reference::STEPS;
 use super::stepper::Precise;
+use super::{NotConverged, thousands};
 use crate::physics::{State, System};
 
 /// Bytes of kept states.
@@ -27,17 +27,6 @@ const SMOOTH: f64 = 4.0;
 /// Halvings of single steps may go on this many times without bringing the estimates closer: a
 /// collision has to be resolved first.
 const PATIENCE: u32 = 16;
-
-/// What is asked for.
-#[derive(Clone, Copy)]
-pub(super) struct Wanted {
-    /// Seconds.
-    pub until: f64,
-    /// The scene's size, m; 0 if it has none.
-    pub size: f64,
-    /// Force evaluations times coordinates.
-    pub budget: u64,
-}
 
 /// The level to use, and how well it is known. Lists have an entry for each instant of the level's
 /// mesh and never fall.
@@ -66,27 +55,36 @@ pub(super) enum Ended {
 }
 
 /// Takes as many steps as the fastest rate asks for; then halves those with too large an error of
-/// their own; and once there are none, all.
+/// their own; and once there are none, all. Time is in seconds, the size in m, 0 if it has none; the
+/// budget counts force evaluations times coordinates.
 ///
 /// # Errors
 /// When the budget does not allow even the first, or forces are not finite.
 pub(super) fn halve(
     system: &(dyn System + Sync),
     start: &State,
-    wanted: Wanted,
+    until: f64,
+    size: f64,
+    budget: u64,
 ) -> Result<Halved, NotConverged> {
     let dim = system.dim() as u64;
-    let rate = fastest_rate(system, start, wanted.size).ok_or_else(NotConverged::not_finite)?;
+    let rate = fastest_rate(system, start, size).ok_or_else(not_finite)?;
     let start = Precise::from(start);
     let most = instants(system.dim());
     let [per_piece, at_the_end] = Level::costs().map(|cost| cost * dim);
 
-    let pieces = first_pieces(rate, wanted.until);
+    let pieces = first_pieces(rate, until);
     let first_cost = (per_piece + at_the_end).saturating_mul(pieces);
-    if first_cost > wanted.budget {
-        return Err(NotConverged::too_fast(rate, pieces, first_cost, wanted));
+    if first_cost > budget {
+        return Err(NotConverged::new(format!(
+            "the fastest motion, {rate:.1e} /s over {until} s, takes at least {} steps of an \
+             explicit method: {:.1e} coordinates of forces, where {:.1e} are allowed",
+            thousands(pieces.saturating_mul(u64::from(STEPS))),
+            first_cost as f64,
+            budget as f64
+        )));
     }
-    let mut mesh = Mesh::uniform(wanted.until, pieces, most);
+    let mut mesh = Mesh::uniform(until, pieces, most);
     let mut all = true;
     let mut progress = Progress::default();
     let mut spent = 0_u64;
@@ -95,12 +93,12 @@ pub(super) fn halve(
     let ended = loop {
         let pieces = mesh.pieces() as u64;
         let cost = (per_piece + at_the_end).saturating_mul(pieces);
-        if spent.saturating_add(cost) > wanted.budget {
+        if spent.saturating_add(cost) > budget {
             break Ended::Spent;
         }
         spent += per_piece * pieces;
         let level = Level::new(system, &start, mesh);
-        let size = level.size_or(wanted.size);
+        let size = level.size_or(size);
         let target = level.target(size);
         let (next, next_all) = level.halved(size, most);
         mesh = next;
@@ -120,9 +118,9 @@ pub(super) fn halve(
         all = next_all;
     };
     let Some(mut level) = best else {
-        return Err(NotConverged::not_finite());
+        return Err(not_finite());
     };
-    let size = level.size_or(wanted.size);
+    let size = level.size_or(size);
     // Larger steps tell what rounding does as well, unless they are too large to follow the motion.
     let with = coarser.filter(|coarser| coarser.gap() < LOST * size);
     let with = with.as_ref().unwrap_or(&level);
@@ -146,6 +144,10 @@ pub(super) fn halve(
         ended,
         level,
     })
+}
+
+fn not_finite() -> NotConverged {
+    NotConverged::new("the forces at the start are not finite")
 }
 
 /// Whether it is still worth going on.

@@ -1,115 +1,43 @@
 //! What a scene's motion depends on, as one number.
 
 use super::{BUDGET, VERSION};
-use crate::scene::{Axis, DampingModel, GravitationalPair, Particle, Scene, Solver, Spring, Wind};
+use crate::scene::model::PARTS;
+use crate::scene::{Scene, Value};
 use sha2::{Digest, Sha256};
 
 /// The SHA-256 of everything that decides the motion and its reference up to `until`, s, as lower-case
 /// hexadecimal digits: equal for equal motions whatever they are called and however they are stepped.
+/// The [rows](crate::scene::model::Row) of the scene say what decides the motion.
 ///
 /// Numbers count by their bits, so -0 is not 0: a motion computed twice, never a wrong one.
 pub fn key(scene: &Scene, until: f64) -> String {
-    // Every field is named, here and below, so that none can be forgotten.
-    let Scene {
-        name: _,
-        description: _,
-        file: _,
-        solver,
-        duration: _,
-        up,
-        damping_model,
-        plot: _,
-        particles,
-        springs,
-        gravitational,
-        wind,
-        expect: _,
-    } = scene;
-    let Solver {
-        method: _,
-        timestep: _,
-        gravity,
-        tolerance: _,
-    } = solver;
-    let mut content = Content(Sha256::new());
-    content.integers([u64::from(VERSION), BUDGET]);
-    content.numbers([until, *gravity]);
-    content.integers([match up {
-        Axis::X => 0,
-        Axis::Y => 1,
-        Axis::Z => 2,
-    }]);
-    content.integers([match damping_model {
-        DampingModel::Axial => 0,
-        DampingModel::Isotropic => 1,
-    }]);
-    content.length(particles.len());
-    for particle in particles {
-        let Particle {
-            position,
-            velocity,
-            fixed,
-            mass,
-            radius: _,
-            drag,
-        } = particle;
-        content.numbers(*position);
-        content.numbers(*velocity);
-        content.integers([u64::from(*fixed)]);
-        content.numbers([*mass, *drag]);
+    let mut hash = Sha256::new();
+    let mut add = |number: u64| hash.update(number.to_le_bytes());
+    for number in [u64::from(VERSION), BUDGET, until.to_bits()] {
+        add(number);
     }
-    content.length(springs.len());
-    for spring in springs {
-        let Spring {
-            ends,
-            stiffness,
-            cubic,
-            damping,
-            rest_length,
-        } = spring;
-        content.integers(ends.map(|end| end as u64));
-        content.numbers([*stiffness, *cubic, *damping, *rest_length]);
-    }
-    content.length(gravitational.len());
-    for pair in gravitational {
-        let GravitationalPair { ends, g } = pair;
-        content.integers(ends.map(|end| end as u64));
-        content.numbers([*g]);
-    }
-    content.length(wind.iter().len());
-    if let Some(Wind {
-        direction,
-        strength,
-    }) = wind
-    {
-        content.numbers(*direction);
-        content.numbers([*strength]);
-    }
-    hexadecimal(&content.0.finalize())
-}
-
-/// Digits of bytes, high half first.
-fn hexadecimal(bytes: &[u8]) -> String {
-    let digit = |half: u8| char::from_digit(u32::from(half), 16).unwrap_or('0');
-    let digits = bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]);
-    digits.map(digit).collect()
-}
-
-/// A hash fed with numbers of eight bytes each; lists are preceded by their length.
-struct Content(Sha256);
-
-impl Content {
-    fn integers<const N: usize>(&mut self, values: [u64; N]) {
-        for value in values {
-            self.0.update(value.to_le_bytes());
+    for part in PARTS {
+        let count = (part.count)(scene);
+        for row in part.rows.iter().filter(|row| row.flat.is_some()) {
+            add(count as u64);
+            for at in 0..count {
+                // A 1 before each component and a 0 after the last, so that an absent value differs from 0.
+                for value in row.values(scene, at) {
+                    add(1);
+                    match value {
+                        Value::Number(x) => add(x.to_bits()),
+                        Value::Id(id) => add(id as u64),
+                        Value::Flag(flag) => add(u64::from(flag)),
+                        Value::Text(text) => {
+                            add(text.len() as u64);
+                            text.bytes().for_each(|byte| add(u64::from(byte)));
+                        }
+                    }
+                }
+                add(0);
+            }
         }
     }
-
-    fn numbers<const N: usize>(&mut self, values: [f64; N]) {
-        self.integers(values.map(f64::to_bits));
-    }
-
-    fn length(&mut self, items: usize) {
-        self.integers([items as u64]);
-    }
+    let digest = hash.finalize();
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -2,10 +2,7 @@
 
 use super::dormand_prince::DormandPrince;
 use super::gragg::Gragg;
-use super::growth::OFFSET;
 use super::mesh::Mesh;
-use super::noise::{MAGNIFIED, Noisy};
-use super::rate::scatter;
 use super::reference::STEPS;
 use super::stepper::{Precise, Stepper, integrate};
 use crate::physics::System;
@@ -17,10 +14,6 @@ const TARGET: f64 = 1e-13;
 
 /// So have those closer than this many units of rounding of the largest coordinate.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
-
-/// The bar is this many times what stands between the estimates and what rounding may do: two errors
-/// of one kind and one sign differ by less than either.
-const CAUTION: f64 = 3.0;
 
 /// Estimates that differ by this share of the size have lost the motion.
 pub(super) const LOST: f64 = 0.1;
@@ -38,31 +31,19 @@ pub(super) struct Level {
 impl Level {
     pub fn new(system: &(dyn System + Sync), start: &Precise, mesh: Mesh) -> Self {
         let mut errors = vec![[0.0_f64; 2]; mesh.pieces()];
+        let note = |piece: usize, h: f64, method: &DormandPrince| {
+            for (most, error) in errors[piece].iter_mut().zip(method.local_error(h)) {
+                // What is not finite needs halving too.
+                *most = if error.is_finite() {
+                    most.max(error)
+                } else {
+                    f64::INFINITY
+                };
+            }
+        };
         let (first, second) = rayon::join(
-            || {
-                let mut method = DormandPrince::default();
-                integrate(
-                    &mut method,
-                    system,
-                    start,
-                    &mesh,
-                    STEPS,
-                    |piece, h, method| {
-                        for (most, error) in errors[piece].iter_mut().zip(method.local_error(h)) {
-                            // What is not finite needs halving too.
-                            *most = if error.is_finite() {
-                                most.max(error)
-                            } else {
-                                f64::INFINITY
-                            };
-                        }
-                    },
-                )
-            },
-            || {
-                let mut method = Gragg::default();
-                integrate(&mut method, system, start, &mesh, 1, |_, _, _| {})
-            },
+            || integrate(DormandPrince::default(), system, start, &mesh, STEPS, note),
+            || integrate(Gragg::default(), system, start, &mesh, 1, |_, _, _| {}),
         );
         Self {
             gaps: apart(&first, &second),
@@ -106,55 +87,10 @@ impl Level {
         [first + Gragg::default().evaluations(), (2 + 3) * first]
     }
 
-    /// The largest distance of the first estimate from the second, and from a third, itself at half
-    /// the steps, up to each instant, m. Two that meet by chance, as they may once one growing mode
-    /// is all that is left of their errors, rarely meet the third as well.
-    pub fn gaps_of_three(&self, system: &(dyn System + Sync), start: &Precise) -> Vec<f64> {
-        let third = self.again(system, start, 2 * STEPS);
-        let gaps = apart(&self.first, &third).into_iter().zip(&self.gaps);
-        gaps.map(|(third, second)| third.max(*second)).collect()
-    }
-
-    /// How far a motion that starts beside this one has parted from it up to each instant, in units of
-    /// their distance at the start: at least 1, infinite where one is not finite.
-    pub fn amplification(
-        &self,
-        system: &(dyn System + Sync),
-        start: &Precise,
-        size: f64,
-    ) -> Vec<f64> {
-        // Every free coordinate is moved, each by a fixed fraction of the offset.
-        let mut beside = start.clone();
-        let coordinates = beside.x.iter_mut().zip(system.inverse_mass()).enumerate();
-        for (at, (x, inverse_mass)) in coordinates {
-            if *inverse_mass > 0.0 {
-                *x += OFFSET * size * scatter(at);
-            }
-        }
-        let mut distances = apart(&self.first, &self.again(system, &beside, STEPS));
-        let first = distances.first().copied().unwrap_or(0.0);
-        for distance in &mut distances {
-            *distance = if first > 0.0 { *distance / first } else { 1.0 };
-        }
-        distances
-    }
-
-    /// How far rounding may have led the first estimate astray up to each instant, m: the farther of
-    /// two motions with magnified rounding, scaled back.
-    pub fn rounding(&self, system: &(dyn System + Sync), start: &Precise) -> Vec<f64> {
-        let astray = |seed| {
-            let noisy = Noisy::new(system, seed);
-            apart(&self.first, &self.again(&noisy, start, STEPS))
-        };
-        let (one, other) = rayon::join(|| astray(1), || astray(2));
-        let farther = one.iter().zip(&other).map(|(a, b)| a.max(*b));
-        farther.map(|distance| distance / MAGNIFIED).collect()
-    }
-
     /// The first estimate of another system, from another start or with other steps.
-    fn again(&self, system: &dyn System, start: &Precise, each: u32) -> States {
-        let mut method = DormandPrince::default();
-        integrate(&mut method, system, start, &self.mesh, each, |_, _, _| {})
+    pub fn again(&self, system: &dyn System, start: &Precise, each: u32) -> States {
+        let method = DormandPrince::default();
+        integrate(method, system, start, &self.mesh, each, |_, _, _| {})
     }
 
     /// Values at the instants of a coarser level, each up to that instant, at those of this one.
@@ -164,15 +100,6 @@ impl Level {
         let up_to = |k: usize| coarse.get(k.div_ceil(ratio)).or(coarse.last());
         (0..=instants)
             .map(|k| up_to(k).copied().unwrap_or(f64::INFINITY))
-            .collect()
-    }
-
-    /// The error bar at each instant, m, where rounding may have led the motion astray so far, m.
-    pub fn bars(&self, rounding: &[f64]) -> Vec<f64> {
-        let instants = 0..=self.mesh.intervals();
-        let magnitudes = running_largest(instants.map(|k| largest(self.first.x(k))));
-        let off = self.gaps.iter().zip(rounding).zip(magnitudes);
-        off.map(|((gap, rounding), m)| CAUTION * (gap + rounding) + f64::EPSILON * m)
             .collect()
     }
 
@@ -207,6 +134,11 @@ impl Level {
         distances.filter(|d| d.is_finite()).fold(0.0, f64::max)
     }
 
+    /// Steps of the reference.
+    pub fn steps(&self) -> u64 {
+        self.mesh.pieces() as u64 * u64::from(STEPS)
+    }
+
     /// Estimates closer than this, m, have converged.
     pub fn target(&self, size: f64) -> f64 {
         (TARGET * size).max(ROUNDING * largest(&self.first.x))
@@ -219,18 +151,18 @@ impl Level {
 }
 
 /// The largest finite magnitude.
-fn largest(values: &[f64]) -> f64 {
+pub(super) fn largest(values: &[f64]) -> f64 {
     let magnitudes = values.iter().map(|c| c.abs());
     magnitudes.filter(|c| c.is_finite()).fold(0.0, f64::max)
 }
 
 /// How far apart two motions of the same mesh have been up to each instant, m.
-fn apart(a: &States, b: &States) -> Vec<f64> {
+pub(super) fn apart(a: &States, b: &States) -> Vec<f64> {
     running_largest((0..a.len()).map(|k| farthest(a.x(k), b.x(k))))
 }
 
 /// Each element the largest so far.
-fn running_largest(values: impl Iterator<Item = f64>) -> Vec<f64> {
+pub(super) fn running_largest(values: impl Iterator<Item = f64>) -> Vec<f64> {
     let largest = values.scan(0.0, |most: &mut f64, value| {
         *most = most.max(value);
         Some(*most)

@@ -10,20 +10,18 @@
 //!
 //! ```text
 //! rate -> mesh -> two estimates -> halving -> bars -> horizon
-//!                  precise sums     noise, growth     reference (states at any time) <-> saved
+//!                  precise sums     noise, growth     reference: states at any time, kept as bytes
 //! ```
 
+mod bars;
 mod dormand_prince;
 mod gragg;
-mod growth;
 mod halving;
 mod key;
 mod level;
 mod mesh;
-mod noise;
 mod rate;
 mod reference;
-mod saved;
 mod stepper;
 
 pub use dormand_prince::{DORMAND_PRINCE_8, DormandPrince};
@@ -35,9 +33,9 @@ pub use stepper::{Precise, Stepper};
 use super::Store;
 use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use halving::{Ended, Halved, Wanted, halve};
-use level::Level;
-use reference::{Record, STEPS};
+use halving::{Ended, Halved, halve};
+use reference::Record;
+use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -52,8 +50,17 @@ pub const HORIZON: f64 = 1e-6;
 
 /// A converged reference and what is known of it.
 pub struct Converged {
+    pub known: Known,
+    pub motion: Reference,
+}
+
+/// What is known of a converged reference.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Known {
     /// Both estimates and their steps.
     pub method: String,
+    /// How well the estimates agree and what ends the horizon.
+    pub reason: String,
     /// The last time, s, at which the error bar is below [`HORIZON`] times the size.
     pub horizon: f64,
     /// The error bar at the horizon, its largest up to there, m.
@@ -61,15 +68,12 @@ pub struct Converged {
     /// The rate at which neighbouring motions part, 1/s; None where they do not part exponentially,
     /// or not for long enough to tell.
     pub growth: Option<f64>,
-    /// How well the estimates agree and what ends the horizon.
-    pub reason: String,
     /// Force evaluations times coordinates that were spent.
     pub spent: u64,
-    pub motion: Reference,
 }
 
 /// There is no converged reference, and why.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 #[error("{reason}")]
 pub struct NotConverged {
     pub reason: String,
@@ -97,34 +101,52 @@ pub fn converge(
             "there is no time to cover, no state that fits, or no size",
         ));
     }
-    let wanted = Wanted {
-        until,
-        size,
-        budget,
-    };
-    let halved = halve(&**system, start, wanted)?;
+    let halved = halve(&**system, start, until, size, budget)?;
     let Halved {
         level, size, bars, ..
     } = &halved;
     let limit = HORIZON * size;
     let within = bars.iter().take_while(|bar| **bar <= limit).count();
     if within < 2 {
-        return Err(NotConverged::apart(&halved, limit));
+        return Err(NotConverged::new(format!(
+            "independent estimates of {} steps differ by more than {limit:.1e} m from the start; {}",
+            thousands(level.steps()),
+            match halved.ended {
+                Ended::Spent => TOO_MUCH,
+                _ => "smaller steps do not bring them together",
+            }
+        )));
     }
     let horizon = level.mesh.time(within - 1).min(until);
-    let growth = growth::growth_rate(&halved.amplification, &level.mesh);
+    let growth = bars::growth_rate(&halved.amplification, &level.mesh);
+    let mut reason = format!(
+        "independent estimates agree within {:.1e} m",
+        level.gaps[within - 1]
+    );
+    if horizon < until {
+        let _ = match (growth, halved.ended) {
+            (Some(rate), _) => write!(reason, "; neighbours part at {rate:.2} /s"),
+            (None, Ended::Spent) => write!(reason, "; {TOO_MUCH}"),
+            (None, _) => write!(
+                reason,
+                "; beyond it smaller steps do not bring them together"
+            ),
+        };
+    }
     Ok(Converged {
-        method: format!(
-            "Dormand-Prince 8 with {} steps, against Gragg extrapolation of order {} with {}",
-            thousands(steps_of(level)),
-            2 * SUBSTEPS.len(),
-            thousands(level.mesh.pieces())
-        ),
-        horizon,
-        error_bound: bars[within - 1],
-        growth,
-        reason: reason(&halved, within, horizon, until, growth),
-        spent: halved.spent,
+        known: Known {
+            method: format!(
+                "Dormand-Prince 8 with {} steps, against Gragg extrapolation of order {} with {}",
+                thousands(level.steps()),
+                2 * SUBSTEPS.len(),
+                thousands(level.mesh.pieces())
+            ),
+            reason,
+            horizon,
+            error_bound: bars[within - 1],
+            growth,
+            spent: halved.spent,
+        },
         motion: Reference {
             system: Arc::clone(system),
             record: Record {
@@ -135,6 +157,9 @@ pub fn converge(
         },
     })
 }
+
+/// What more would have been needed.
+const TOO_MUCH: &str = "smaller steps would cost more than allowed";
 
 /// The converged reference of a scene and the system built from it, from the store or anew within
 /// [`BUDGET`]. What was found, and that nothing was found, is saved under the scene's [`key`]; a
@@ -151,28 +176,15 @@ pub fn find(
     let name = key(scene, until);
     let system: SharedSystem = Arc::new(system.clone());
     let saved = store.load(&name);
-    if let Some(found) = saved.and_then(|b| saved::decode(&b, &name, &system, until)) {
+    if let Some(found) = saved.and_then(|b| reference::decode(&b, &name, &system, until)) {
         return found;
     }
     let start = ParticleSystem::initial_state(scene);
     let found = converge(&system, &start, until, scene.size(), BUDGET);
-    if let Some(bytes) = saved::encode(&found, &name) {
+    if let Some(bytes) = reference::encode(&found, &name) {
         store.save(&name, &bytes);
     }
     found
-}
-
-fn reason(halved: &Halved, within: usize, horizon: f64, until: f64, growth: Option<f64>) -> String {
-    let gap = halved.level.gaps[within - 1];
-    let mut text = format!("independent estimates agree within {gap:.1e} m");
-    if horizon < until {
-        let _ = match (growth, halved.ended) {
-            (Some(rate), _) => write!(text, "; neighbours part at {rate:.2} /s"),
-            (None, Ended::Spent) => write!(text, "; smaller steps would cost more than allowed"),
-            (None, _) => write!(text, "; beyond it smaller steps do not bring them together"),
-        };
-    }
-    text
 }
 
 impl NotConverged {
@@ -181,41 +193,6 @@ impl NotConverged {
             reason: reason.into(),
         }
     }
-
-    fn not_finite() -> Self {
-        Self::new("the forces at the start are not finite")
-    }
-
-    /// The first steps alone would exceed the budget.
-    fn too_fast(rate: f64, pieces: u64, cost: u64, wanted: Wanted) -> Self {
-        Self::new(format!(
-            "the fastest motion, {rate:.1e} /s over {} s, takes at least {} steps of an explicit \
-             method: {:.1e} coordinates of forces, where {:.1e} are allowed",
-            wanted.until,
-            thousands(pieces.saturating_mul(u64::from(STEPS))),
-            cost as f64,
-            wanted.budget as f64
-        ))
-    }
-
-    /// The best level's estimates are farther apart than the horizon allows from the first instant.
-    fn apart(halved: &Halved, limit: f64) -> Self {
-        let Halved { level, ended, .. } = halved;
-        let more = match ended {
-            Ended::Spent => "smaller steps would cost more than allowed",
-            _ => "smaller steps do not bring them together",
-        };
-        Self::new(format!(
-            "independent estimates of {} steps differ by more than {limit:.1e} m from the start; \
-             {more}",
-            thousands(steps_of(level))
-        ))
-    }
-}
-
-/// Steps of the reference.
-fn steps_of(level: &Level) -> u64 {
-    level.mesh.pieces() as u64 * u64::from(STEPS)
 }
 
 /// 16384 as `16,384`.

@@ -1,12 +1,15 @@
-//! A converged reference as a motion: states at any time, from kept ones by the same method.
+//! A converged reference as a motion: states at any time, from kept ones by the same method. And as
+//! bytes: what a [`Store`](crate::truth::Store) keeps.
 
 use super::dormand_prince::DormandPrince;
 use super::mesh::Mesh;
 use super::stepper::{Precise, Stepper};
+use super::{Converged, Known, NotConverged, VERSION};
 use crate::physics::System;
 use crate::truth::{Motion, States};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::sync::Arc;
 
 /// Steps of the reference through each piece of its mesh, to one of the other estimate: both then
@@ -133,4 +136,46 @@ impl Motion for Reference {
         let kept = (0..bars.len()).map(|k| mesh.time(k));
         kept.take_while(|t| *t < until).chain([until]).collect()
     }
+}
+
+/// Version, key, and what was found: in postcard's format, followed by their SHA-256.
+type Kept = (u32, String, Result<(Known, Record), NotConverged>);
+
+/// Length of the checksum.
+const CHECKSUM: usize = 32;
+
+/// What was found under this key, or why nothing was. None if it cannot be written down.
+pub(super) fn encode(found: &Result<Converged, NotConverged>, key: &str) -> Option<Vec<u8>> {
+    let found = found.as_ref().map(|f| (&f.known, &f.motion.record));
+    let mut bytes = postcard::to_allocvec(&(VERSION, key, found)).ok()?;
+    let checksum = Sha256::digest(&bytes);
+    bytes.extend_from_slice(&checksum);
+    Some(bytes)
+}
+
+/// None if these are not the bytes of this key, version and system, whole to the last byte and
+/// unchanged.
+pub(super) fn decode(
+    bytes: &[u8],
+    key: &str,
+    system: &SharedSystem,
+    until: f64,
+) -> Option<Result<Converged, NotConverged>> {
+    let (content, checksum) = bytes.split_at_checked(bytes.len().checked_sub(CHECKSUM)?)?;
+    if Sha256::digest(content).as_slice() != checksum {
+        return None;
+    }
+    let ((version, name, found), rest): (Kept, _) = postcard::take_from_bytes(content).ok()?;
+    if version != VERSION || name != key || !rest.is_empty() {
+        return None;
+    }
+    let (known, record) = match found {
+        Ok(found) => found,
+        Err(not) => return Some(Err(not)),
+    };
+    record.fits(system.dim(), until).then(|| {
+        let system = Arc::clone(system);
+        let motion = Reference { system, record };
+        Ok(Converged { known, motion })
+    })
 }

@@ -78,11 +78,10 @@ pub(super) fn fit(buffer: &mut Vec<f64>, n: usize) {
 }
 
 /// Integrates from the start with `each` steps through every piece of the mesh and keeps the states where
-/// its intervals meet. `after` is told which piece each step went through, and its
-/// length, s. From the first state that is
-/// not finite on, all are NaN.
+/// its intervals meet. `after` is told which piece each step went through, and its length, s. From the
+/// first state that is not finite on, all are NaN.
 pub(super) fn integrate<S: Stepper>(
-    stepper: &mut S,
+    mut stepper: S,
     system: &dyn System,
     start: &Precise,
     mesh: &Mesh,
@@ -103,7 +102,7 @@ pub(super) fn integrate<S: Stepper>(
                 part.length * interval,
             );
             stepper.step(system, t, h, &mut state);
-            after(first + step / each as usize, h, stepper);
+            after(first + step / each as usize, h, &stepper);
         }
         if !state.is_finite() {
             samples.x.resize(instants * dim, f64::NAN);

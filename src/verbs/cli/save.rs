@@ -2,8 +2,7 @@
 
 use super::output::{Place, temporary};
 use crate::physics::State;
-use crate::solvers::Observer;
-use crate::trajectory::{CsvWriter, NpzWriter, SaveError};
+use crate::trajectory::{CsvWriter, NpzWriter, Observer, SaveError};
 use crate::verbs::host::{Label, Saver};
 use std::fs::File;
 use std::io::BufWriter;

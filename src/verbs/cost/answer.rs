@@ -7,7 +7,7 @@ use crate::scene::Scene;
 use crate::solvers::Kind;
 use crate::solvers::Solver;
 use crate::truth::TruthKind;
-use crate::verbs::cost::rank::{self, Judged};
+use crate::verbs::cost::rank;
 use crate::verbs::cost::{Cost, CostCurve};
 
 pub fn answer(
@@ -22,7 +22,7 @@ pub fn answer(
         .zip(swept)
         .map(|(sweep, swept)| curve(sweep, swept))
         .collect();
-    let target = |&error: &f64| rank::target(&curves, error, &judged(errors, error));
+    let target = |&error: &f64| rank::target(&curves, error, unjudged(errors, error));
     Cost {
         duration_s: scene.duration,
         horizon_s: errors.floor().map(|_| errors.truth.horizon),
@@ -64,16 +64,16 @@ fn explanation(solver: &Solver) -> Option<String> {
     })
 }
 
-/// Whether the truth can tell who is within this error, m.
-fn judged(errors: &Errors, error: f64) -> Judged {
+/// Why the truth cannot tell who is within this error, m.
+fn unjudged(errors: &Errors, error: f64) -> Option<String> {
     match errors.floor() {
-        None if errors.truth.kind == TruthKind::None => Judged::No(format!(
+        None if errors.truth.kind == TruthKind::None => Some(format!(
             "no truth to hold errors against: {}",
             errors.truth.reason
         )),
         Some(floor) if error < floor => {
-            Judged::No(format!("below the truth's own floor of {floor:.1e} m"))
+            Some(format!("below the truth's own floor of {floor:.1e} m"))
         }
-        _ => Judged::Yes,
+        _ => None,
     }
 }

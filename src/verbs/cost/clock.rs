@@ -2,7 +2,8 @@
 
 use super::sweep::{Ground, Sweep, Swept};
 use crate::solvers::Status;
-use crate::solvers::{Run, Setting, Solver, Unwatched};
+use crate::solvers::{Run, Setting, Solver};
+use crate::trajectory::Unwatched;
 use crate::verbs::clock::WallTime;
 use crate::verbs::clock::spread;
 use std::time::Instant;

@@ -13,18 +13,13 @@ use std::cmp::Ordering;
 /// work of, one of them less. Of equal ones all are kept. Work is counted, so the answer is the same in
 /// every run.
 pub fn pareto(points: &[CostPoint]) -> Vec<usize> {
-    let kept: Vec<(usize, f64, u64)> = points
-        .iter()
-        .enumerate()
-        .filter_map(|(at, point)| Some((at, point.error_m?, point.work())))
-        .collect();
-    let beaten = |&(_, error, work): &(usize, f64, u64)| {
-        kept.iter().any(|&(_, other, less)| {
-            other <= error && less <= work && (other < error || less < work)
-        })
+    let known = |at: &usize| Some((points[*at].error_m?, points[*at].work()));
+    let beaten = |(error, work): (f64, u64)| {
+        let mut others = points.iter().filter_map(|p| Some((p.error_m?, p.work())));
+        others.any(|other| other.0 <= error && other.1 <= work && other != (error, work))
     };
-    let front = kept.iter().filter(|point| !beaten(point));
-    front.map(|(at, ..)| *at).collect()
+    let kept = |at: &usize| known(at).is_some_and(|own| !beaten(own));
+    (0..points.len()).filter(kept).collect()
 }
 
 /// Points a slope is fitted through at least.
@@ -152,31 +147,22 @@ pub fn reach(points: &[CostPoint], target: f64) -> Result<usize, Misses> {
     })
 }
 
-/// Whether errors can be held against a target at all.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Judged {
-    /// Against a truth good enough.
-    Yes,
-    /// Why nobody can be said to reach it.
-    No(String),
-}
-
 /// Extrapolating farther than this is guessing; so is a line that hardly falls.
 const MOST_STEPS: f64 = 1e4;
 const SLOWEST: f64 = 0.5;
 
-/// The answer for one target, m, over all curves.
-pub fn target(curves: &[CostCurve], error: f64, judged: &Judged) -> CostTarget {
+/// The answer for one target, m, over all curves; only the reason where there is one why errors cannot be
+/// held against the target at all.
+pub fn target(curves: &[CostCurve], error: f64, unjudged: Option<String>) -> CostTarget {
     let mut answer = CostTarget {
         error_m: error,
         cheapest: None,
         fewest_evaluations: None,
         ranking: Vec::new(),
         reference: Vec::new(),
-        reason: None,
+        reason: unjudged,
     };
-    if let Judged::No(reason) = judged {
-        answer.reason = Some(reason.clone());
+    if answer.reason.is_some() {
         return answer;
     }
     let ranks = |ranked: bool| {
@@ -189,17 +175,11 @@ pub fn target(curves: &[CostCurve], error: f64, judged: &Judged) -> CostTarget {
     answer.reference = ranks(false).collect();
     // Stable: equal and untimed ones stay in the order of the curves.
     answer.ranking.sort_by(cheaper);
-    let reached = || {
-        answer
-            .ranking
-            .iter()
-            .filter_map(|rank| rank.reached.as_ref())
-    };
-    let cheapest = reached().next().cloned();
-    let counted = reached().filter_map(|r| Some((r.force_evaluations?, r)));
-    let fewest = counted.min_by_key(|(evaluations, _)| *evaluations);
-    answer.fewest_evaluations = fewest.map(|(_, reached)| reached.clone());
-    let least = cheapest.as_ref().and_then(|c| c.wall_median_s);
+    let reached = answer.ranking.iter().filter_map(|r| r.reached.as_ref());
+    answer.cheapest = reached.clone().next().cloned();
+    let counted = reached.filter(|r| r.force_evaluations.is_some());
+    answer.fewest_evaluations = counted.min_by_key(|r| r.force_evaluations).cloned();
+    let least = answer.cheapest.as_ref().and_then(|c| c.wall_median_s);
     for rank in answer.ranking.iter_mut().chain(&mut answer.reference) {
         let own = rank.reached.as_ref().and_then(|r| r.wall_median_s);
         let ratio = own.zip(least).map(|(own, least)| own / least);
@@ -210,31 +190,38 @@ pub fn target(curves: &[CostCurve], error: f64, judged: &Judged) -> CostTarget {
         let ratio = ratio.map(|((wall, more), least)| wall.median * more / least);
         rank.extrapolated_wall_ratio = ratio.filter(|ratio| ratio.is_finite());
     }
-    answer.cheapest = cheapest;
     answer
 }
 
 fn rank(curve: &CostCurve, error: f64) -> CostRank {
-    let found = reach(&curve.points, error);
-    let reached = found.as_ref().ok().and_then(|at| curve.points.get(*at));
-    CostRank {
+    let mut rank = CostRank {
         engine: curve.engine.clone(),
-        reached: reached.map(|point| CostReached {
-            engine: curve.engine.clone(),
-            timestep: point.timestep,
-            tolerance: point.tolerance,
-            error_m: point.error_m.unwrap_or(error),
-            wall_median_s: point.wall_s.as_ref().map(|wall| wall.median),
-            force_evaluations: point.force_evaluations,
-        }),
+        reached: None,
         wall_ratio: None,
-        more_steps: found
-            .as_ref()
-            .err()
-            .and_then(|m| more_steps(curve, m, error)),
+        more_steps: None,
         extrapolated_wall_ratio: None,
-        reason: found.err().map(|misses| why(curve, &misses)),
+        reason: None,
+    };
+    match reach(&curve.points, error) {
+        Ok(at) => {
+            let point = &curve.points[at];
+            rank.reached = Some(CostReached {
+                engine: curve.engine.clone(),
+                timestep: point.timestep,
+                tolerance: point.tolerance,
+                error_m: point.error_m.unwrap_or(error),
+                wall_median_s: point.wall_s.as_ref().map(|wall| wall.median),
+                force_evaluations: point.force_evaluations,
+            });
+        }
+        Err(misses) => {
+            if let Misses::Nearest(nearest) = misses {
+                rank.more_steps = more_steps(curve, nearest, error);
+            }
+            rank.reason = Some(why(curve, &misses));
+        }
     }
+    rank
 }
 
 fn why(curve: &CostCurve, misses: &Misses) -> String {
@@ -251,10 +238,7 @@ fn why(curve: &CostCurve, misses: &Misses) -> String {
 }
 
 /// What the curve's slope promises beyond its finest setting, where that is still on its line.
-fn more_steps(curve: &CostCurve, misses: &Misses, target: f64) -> Option<f64> {
-    let Misses::Nearest(nearest) = misses else {
-        return None;
-    };
+fn more_steps(curve: &CostCurve, nearest: f64, target: f64) -> Option<f64> {
     let order = curve.observed_order.filter(|order| *order > SLOWEST)?;
     let on_line = curve.slope_points.last() == Some(&curve.points.len().checked_sub(1)?);
     let times = (nearest / target).powf(1.0 / order);
@@ -265,15 +249,13 @@ fn more_steps(curve: &CostCurve, misses: &Misses, target: f64) -> Option<f64> {
 fn cheaper(a: &CostRank, b: &CostRank) -> Ordering {
     let key = |rank: &CostRank| {
         let reached = rank.reached.as_ref();
-        let time = reached
-            .and_then(|r| r.wall_median_s)
-            .unwrap_or(f64::INFINITY);
-        let count = reached
-            .and_then(|r| r.force_evaluations)
-            .unwrap_or(u64::MAX);
-        (reached.is_none(), time, count)
+        let time = reached.and_then(|r| r.wall_median_s);
+        let count = reached.and_then(|r| r.force_evaluations);
+        (
+            reached.is_none(),
+            time.unwrap_or(f64::INFINITY),
+            count.unwrap_or(u64::MAX),
+        )
     };
-    let (a, b) = (key(a), key(b));
-    let times = || a.1.total_cmp(&b.1);
-    a.0.cmp(&b.0).then_with(times).then_with(|| a.2.cmp(&b.2))
+    key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal)
 }

@@ -1,7 +1,8 @@
 //! States of a run at some instants, few enough to be kept of every run of a sweep.
 
 use crate::physics::{State, Work};
-use crate::solvers::{Observer, Setting};
+use crate::solvers::Setting;
+use crate::trajectory::Observer;
 
 /// States of a run at some instants, the start and the end among them.
 #[derive(Debug, Clone, Default)]

@@ -4,7 +4,7 @@ use super::CostChoice;
 use super::errors::Errors;
 use super::sampler::{Sampler, Samples};
 use super::{price, settings};
-use crate::measure::stability::Linearised;
+use crate::measure::stability::{Effort, Linearised};
 use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
 use crate::solvers::{Counts, Ended, Limits, Run, Setting, Solver};
@@ -54,7 +54,7 @@ pub fn plan(scene: &Scene, system: &ParticleSystem, choice: &CostChoice) -> Vec<
     let solvers: Vec<&Solver> = choice.solvers.iter().filter(swept).collect();
     let share = choice.budget_s / solvers.len().max(1) as f64;
     let start = ParticleSystem::initial_state(scene);
-    let linearised = Linearised::brief(system, start.t, &start.x, &start.v);
+    let linearised = Linearised::new(system, &start, Effort::BRIEF);
     let sweep = |solver: &Solver| {
         let coarsest = settings::coarsest(scene, &linearised, solver);
         let each = price::of_step(scene, system, solver, &coarsest);

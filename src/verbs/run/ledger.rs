@@ -2,7 +2,6 @@
 
 use super::plan::Plan;
 use super::ran::Run;
-use crate::measure::twin;
 use crate::measure::{Check, CheckStatus};
 use crate::physics::ParticleSystem;
 use crate::physics::effects::Effect;
@@ -77,27 +76,6 @@ fn cost(effect: &dyn Effect, x: &[f64], v: &[f64]) -> f64 {
         start.elapsed().as_secs_f64() * 1e9 / f64::from(calls)
     };
     (0..3).map(|_| batch(&mut f)).fold(f64::INFINITY, f64::min)
-}
-
-/// The twin proof on a few steps of the scene itself, as checks.
-pub fn twin_proof(scene: &Scene) -> Vec<Check> {
-    twin::prove(scene, scene.solver.timestep)
-        .into_iter()
-        .map(|proof| Check {
-            id: proof.id.to_owned(),
-            subject: proof.subject.to_owned(),
-            status: match proof.status {
-                twin::Status::Pass => CheckStatus::Pass,
-                twin::Status::Fail => CheckStatus::Fail,
-                twin::Status::Inconclusive => CheckStatus::Inconclusive,
-                twin::Status::Skip => CheckStatus::Skip,
-            },
-            measured: proof.measured.filter(|m| m.is_finite()),
-            bound: Some(proof.bound).filter(|b| b.is_finite()),
-            derivation: proof.derivation,
-            message: proof.message,
-        })
-        .collect()
 }
 
 /// Says why errors have no relative size in a scene without an energy scale.

@@ -112,7 +112,7 @@ impl Plan<'_> {
         if !self.prove || self.only_records() {
             Vec::new()
         } else {
-            ledger::twin_proof(self.scene)
+            measure::twin::prove(self.scene, self.scene.solver.timestep)
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::physics::{ParticleSystem, Power, State, System};
 use crate::solvers::Status;
 use crate::solvers::external::{Program, Recording, Task};
 use crate::solvers::{Counts, Limits};
-use crate::trajectory::{Precision, RowRecorder, Rows};
+use crate::trajectory::{Precision, Rows, Trajectory};
 use crate::verbs::clock::WallTime;
 use crate::verbs::host::Host;
 
@@ -53,8 +53,7 @@ fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Run {
         start: &start,
         system: task.system,
     };
-    let mut recorder = RowRecorder::new(&rows, task.steps);
-    let mut end = None;
+    let (mut work, mut diverged, mut end) = (Vec::new(), false, None);
     let mut state = start.clone();
     for k in 0..rows.len() {
         replay.advance(k, &mut state);
@@ -62,13 +61,12 @@ fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Run {
         // An engine's bad position is in its next velocity; rows need not hang together.
         let lost = || (!finite).then(|| "a position is no longer finite".to_owned());
         if let Some(reason) = limits.exceeded(&state).or_else(lost) {
-            if finite {
-                recorder.observe_diverged(k, &state);
-            }
+            diverged = finite;
+            work.extend(finite.then_some(state.work));
             end = Some((rows.steps[k], reason));
             break;
         }
-        recorder.observe(k, &state);
+        work.push(state.work);
     }
     let last = rows.steps.last().copied().unwrap_or(0);
     let (status, reason, steps) = match end {
@@ -87,7 +85,7 @@ fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Run {
         status,
         reason,
         steps,
-        trajectory: recorder.finish(),
+        trajectory: Trajectory::of_rows(&rows, &work, task.steps, diverged),
         counts: Counts::default(),
         wall: seconds.map(|seconds| WallTime {
             min: seconds,

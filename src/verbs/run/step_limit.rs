@@ -1,7 +1,7 @@
 //! Is a timestep beyond what its method is stable at, here?
 
 use super::plan::{Case, Plan};
-use crate::measure::stability::{Limit, Linearised, Prediction};
+use crate::measure::stability::{Effort, Limit, Linearised, Prediction};
 use crate::physics::ParticleSystem;
 
 /// The scene linearised about its start, if anybody here has a limit.
@@ -18,7 +18,7 @@ impl StepLimits {
             .any(|case| case.solver.as_method().is_some());
         Self(wanted.then(|| {
             let start = ParticleSystem::initial_state(plan.scene);
-            Linearised::brief(&plan.system, start.t, &start.x, &start.v)
+            Linearised::new(&plan.system, &start, Effort::BRIEF)
         }))
     }
 

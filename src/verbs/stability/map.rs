@@ -3,7 +3,7 @@
 use super::rows::{as_keys, predicted, start};
 use super::vary::{COUNT, Range, Vary};
 use crate::measure::stability::Cell;
-use crate::measure::stability::{Linearised, classify};
+use crate::measure::stability::{Effort, Linearised, classify};
 use crate::physics::ParticleSystem;
 use crate::scene::{Scene, limits};
 use crate::solvers::{Solver, Tally};
@@ -160,7 +160,7 @@ impl Cells<'_> {
 fn linearised(scene: &Scene) -> Linearised {
     let system = ParticleSystem::new(scene);
     let start = ParticleSystem::initial_state(scene);
-    Linearised::at(&system, start.t, &start.x, &start.v)
+    Linearised::new(&system, &start, Effort::FULL)
 }
 
 /// From a decade below to a decade above the limits most methods have: of each value the median over

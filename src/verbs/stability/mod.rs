@@ -16,15 +16,13 @@ pub use admissible::NotAdmissible;
 pub(super) use figures::FIGURES;
 pub use map::{BudgetError, MapPlan};
 pub(super) use text::{page, view};
-pub use vary::{COUNT, Range, RangeError, Vary, VaryError};
+pub use vary::{COUNT, Range, Vary, VaryError};
 
 pub use args::{Args, stability};
-pub use result::{
-    Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow, TightestLimit,
-};
+pub use result::{Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow};
 
 use crate::measure;
-use crate::measure::stability::{Linearised, is_linear};
+use crate::measure::stability::{Effort, Linearised, is_linear};
 use crate::physics::ParticleSystem;
 use crate::report::{Header, TruthFacts};
 use crate::scene::Scene;
@@ -81,7 +79,7 @@ impl StabilityPlan<'_> {
         };
         let system = ParticleSystem::new(scene);
         let start = ParticleSystem::initial_state(scene);
-        let linearised = Linearised::at(&system, start.t, &start.x, &start.v);
+        let linearised = Linearised::new(&system, &start, Effort::FULL);
         let linear = is_linear(scene);
         let path = path::of(self, &system, &linearised, linear);
         let asked = Asked {
@@ -104,11 +102,7 @@ impl StabilityPlan<'_> {
             horizon_s: path.until,
             timestep_s: self.timestep,
             linear,
-            excluded: linearised
-                .excluded()
-                .iter()
-                .map(|excluded| excluded.what.clone())
-                .collect(),
+            excluded: linearised.excluded().to_vec(),
             rows,
             map,
             admissible: pair,

@@ -5,7 +5,8 @@ use crate::integrators::Method;
 use crate::measure;
 use crate::measure::stability::{Along, Linearised};
 use crate::physics::{ParticleSystem, State};
-use crate::solvers::{Limits, Observer, Setting, Solver};
+use crate::solvers::{Limits, Setting, Solver};
+use crate::trajectory::Observer;
 
 /// States kept of a path.
 const STATES: u64 = 100;

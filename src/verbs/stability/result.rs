@@ -1,6 +1,6 @@
 //! How large a step may be, as data.
 
-use crate::measure::stability::Cell;
+use crate::measure::stability::{Cell, TightestLimit};
 use crate::solvers::Kind;
 use serde::{Deserialize, Serialize};
 
@@ -84,13 +84,6 @@ impl StabilityRow {
         // A limit is known to a thousandth of itself.
         self.limit().map(|limit| timestep <= limit * 1.001)
     }
-}
-
-/// Where along the trajectory the predicted limit is smallest.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct TightestLimit {
-    pub limit_s: f64,
-    pub t_s: f64,
 }
 
 /// What becomes of a run at each of several timesteps, as one quantity of the scene varies.

@@ -2,13 +2,14 @@
 
 use super::{Asked, explain};
 use crate::integrators::Method;
-use crate::measure::stability::{Limit, Linearised, Measured, Prediction, Tightest, measure};
+use crate::measure::stability::TightestLimit;
+use crate::measure::stability::{Limit, Linearised, Measured, Prediction, measure};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::Kind;
 use crate::solvers::{Run, Setting, Solver, Tally, Unsupported};
 use crate::verbs::host::Host;
-use crate::verbs::stability::{StabilityRow, TightestLimit};
+use crate::verbs::stability::StabilityRow;
 use std::sync::Arc;
 
 /// Work the search for one limit may take, in particles passed over: some ten seconds. A probe takes
@@ -96,10 +97,7 @@ pub fn row(asked: &Asked, solver: &Solver, host: &dyn Host) -> StabilityRow {
         measured_growth_per_s: None,
         smooth_below_s: None,
         measured_smooth_below_s: None,
-        tightest: tightest.map(|tightest| TightestLimit {
-            limit_s: tightest.limit_s,
-            t_s: tightest.t_s,
-        }),
+        tightest,
         reason: None,
         remarks: Vec::new(),
     };
@@ -142,11 +140,11 @@ pub fn predicted(linearised: &Linearised, solver: &Solver, timestep: f64) -> Opt
     Some(prediction)
 }
 
-fn tightest(asked: &Asked, solver: &Solver) -> Option<Tightest> {
+fn tightest(asked: &Asked, solver: &Solver) -> Option<TightestLimit> {
     let (method, substeps) = follows(solver)?;
     let tightest = asked.path.along.as_ref()?.tightest(method)?;
     let limit_s = tightest.limit_s * substeps;
-    (limit_s.is_finite() && tightest.t_s.is_finite()).then_some(Tightest {
+    (limit_s.is_finite() && tightest.t_s.is_finite()).then_some(TightestLimit {
         limit_s,
         ..tightest
     })

@@ -1,7 +1,10 @@
 //! `springs.stiffness=1e2..1e8:24`: what a map varies, from where to where, in how many values.
 
-use crate::scene::limits::{self, Quantity};
-use crate::scene::{Scene, suggest};
+use crate::scene::limits::Quantity;
+use crate::scene::model::{Kind, PARTICLES, PARTS, Part, Row};
+use crate::scene::words::nearest;
+use crate::scene::{Scene, Value};
+use std::fmt;
 use std::str::FromStr;
 
 /// Values where the text does not say how many.
@@ -9,115 +12,10 @@ pub const COUNT: usize = 24;
 /// More than this would be a picture nobody can read.
 const MOST: usize = 200;
 
-/// A quantity of particles or springs that a map can vary.
-struct Key {
-    /// As the command line writes it; of one member `list[index].field`.
-    id: &'static str,
-    quantity: Quantity,
-    /// Members there are.
-    count: fn(&Scene) -> usize,
-    /// Whether it means anything of this member.
-    free: fn(&Scene, usize) -> bool,
-    set: fn(&mut Scene, usize, f64),
-}
-
-const SPRING: Key = Key {
-    id: "",
-    quantity: limits::STIFFNESS,
-    count: |scene| scene.springs.len(),
-    free: |_, _| true,
-    set: |_, _, _| {},
-};
-
-const PARTICLE: Key = Key {
-    quantity: limits::MASS,
-    count: |scene| scene.particles.len(),
-    free: |scene, at| scene.particles.get(at).is_some_and(|p| !p.fixed),
-    ..SPRING
-};
-
-/// Sets a field of one member of a list.
-macro_rules! set {
-    ($list:ident, $field:ident) => {
-        |scene, at, value| {
-            if let Some(member) = scene.$list.get_mut(at) {
-                member.$field = value;
-            }
-        }
-    };
-}
-
-/// Everything that can be varied. A field of the scene becomes one more row.
-static KEYS: &[Key] = &[
-    Key {
-        id: "springs.stiffness",
-        set: set!(springs, stiffness),
-        ..SPRING
-    },
-    Key {
-        id: "springs.damping",
-        quantity: limits::DAMPING,
-        set: set!(springs, damping),
-        ..SPRING
-    },
-    Key {
-        id: "springs.rest_length",
-        quantity: limits::REST_LENGTH,
-        set: set!(springs, rest_length),
-        ..SPRING
-    },
-    Key {
-        id: "particles.mass",
-        set: set!(particles, mass),
-        ..PARTICLE
-    },
-    Key {
-        id: "particles.drag",
-        quantity: limits::DRAG,
-        set: set!(particles, drag),
-        ..PARTICLE
-    },
-];
-
 /// Why a text varies nothing.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum VaryError {
-    #[error("expected KEY=A..B or KEY=A..B:N, found `{0}`")]
-    NoRange(String),
-    #[error("unknown key `{key}`{hint}; known: {known}, and of one member such as {example}")]
-    Unknown {
-        key: String,
-        /// Empty, or ` (did you mean ...?)`.
-        hint: String,
-        known: String,
-        example: &'static str,
-    },
-    #[error("{key}: {message}")]
-    Member { key: String, message: String },
-    #[error("{key}: {why}")]
-    Range { key: String, why: RangeError },
-    #[error("{key}: expected values from {low:e} to {high:e} ({unit}), found {found}")]
-    Bounds {
-        key: String,
-        low: f64,
-        high: f64,
-        unit: &'static str,
-        found: f64,
-    },
-}
-
-/// Why a text is no range.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RangeError {
-    #[error("expected A..B or A..B:N, found `{0}`")]
-    Form(String),
-    #[error("expected a finite number, found `{0}`")]
-    Number(String),
-    #[error("expected a range that rises, found {0} to {1}")]
-    Order(f64, f64),
-    #[error("expected 2 to {MOST} values, found `{0}`")]
-    Count(String),
-}
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct VaryError(String);
 
 /// `A..B` or `A..B:N`, A below B.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -131,10 +29,10 @@ pub struct Range {
 }
 
 impl FromStr for Range {
-    type Err = RangeError;
+    type Err = VaryError;
 
-    fn from_str(text: &str) -> Result<Self, RangeError> {
-        let form = || RangeError::Form(text.to_owned());
+    fn from_str(text: &str) -> Result<Self, VaryError> {
+        let form = || VaryError(format!("expected A..B or A..B:N, found `{text}`"));
         let (low, rest) = text.split_once("..").ok_or_else(form)?;
         let (high, count) = match rest.split_once(':') {
             Some((high, count)) => (high, Some(count)),
@@ -142,17 +40,16 @@ impl FromStr for Range {
         };
         let number = |text: &str| {
             let number = text.trim().parse::<f64>().ok().filter(|n| n.is_finite());
-            number.ok_or_else(|| RangeError::Number(text.to_owned()))
+            number.ok_or_else(|| VaryError(format!("expected a finite number, found `{text}`")))
         };
         let (low, high) = (number(low)?, number(high)?);
         if low >= high {
-            return Err(RangeError::Order(low, high));
+            let message = format!("expected a range that rises, found {low} to {high}");
+            return Err(VaryError(message));
         }
         let count = count.map_or(Ok(COUNT), |count| {
-            let parsed = count.trim().parse::<usize>().ok();
-            parsed
-                .filter(|n| (2..=MOST).contains(n))
-                .ok_or_else(|| RangeError::Count(count.to_owned()))
+            let parsed = count.trim().parse().ok().filter(|n| (2..=MOST).contains(n));
+            parsed.ok_or_else(|| VaryError(format!("expected 2 to {MOST} values, found `{count}`")))
         })?;
         Ok(Self { low, high, count })
     }
@@ -177,20 +74,72 @@ impl Range {
     }
 }
 
-/// One quantity of a scene and the values it takes.
-#[derive(Clone)]
-pub struct Vary {
-    key: &'static Key,
-    /// One member; None for all that are free.
+/// A number of the scene that has a say in the motion, of one member of its part or of all.
+#[derive(Debug, Clone, Copy)]
+struct Key {
+    part: &'static Part,
+    row: &'static Row,
+    quantity: Quantity,
     member: Option<usize>,
-    /// Ascending.
-    pub values: Vec<f64>,
 }
 
-impl std::fmt::Debug for Vary {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Vary").field("id", &self.id()).finish()
+/// Every key there is, of all members.
+fn keys() -> impl Iterator<Item = Key> {
+    let of = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
+    let number = |(part, row): (_, &'static Row)| match row.kind {
+        Kind::Number(quantity) if row.flat.is_some() => Some(Key {
+            part,
+            row,
+            quantity,
+            member: None,
+        }),
+        _ => None,
+    };
+    PARTS.into_iter().flat_map(of).filter_map(number)
+}
+
+impl Key {
+    /// `springs.stiffness`; `springs[3].stiffness` is the same of one member, where there is a list.
+    fn find(id: &str) -> Result<Key, VaryError> {
+        let (list, rest) = id.split_once('[').unwrap_or((id, ""));
+        let (index, field) = rest.split_once(']').unwrap_or(("", rest));
+        let plain = format!("{list}{field}");
+        let member = index.parse().ok();
+        let found = keys().find(|key| {
+            key.to_string() == plain && (plain == id || key.part.list && member.is_some())
+        });
+        found.map(|key| Key { member, ..key }).ok_or_else(|| {
+            let known: Vec<String> = keys().map(|key| key.to_string()).collect();
+            let words: Vec<&str> = known.iter().map(String::as_str).collect();
+            let hint = nearest(&plain, &words).map(|near| format!(" (did you mean `{near}`?)"));
+            VaryError(format!(
+                "unknown key `{id}`{}; known: {}, and of one member such as springs[3].stiffness \
+                 or particles[1].mass",
+                hint.unwrap_or_default(),
+                known.join(", ")
+            ))
+        })
     }
+
+    /// Whether it means anything of this member: what is fixed neither has inertia nor drags.
+    fn free(&self, scene: &Scene, at: usize) -> bool {
+        self.part.key != PARTICLES.key || scene.particles.get(at).is_some_and(|p| !p.fixed)
+    }
+}
+
+impl fmt::Display for Key {
+    /// As the command line writes it: `springs.stiffness`, `particles[1].mass`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.part.path(self.member, self.row.key))
+    }
+}
+
+/// One quantity of a scene and the values it takes.
+#[derive(Debug, Clone)]
+pub struct Vary {
+    key: Key,
+    /// Ascending.
+    pub values: Vec<f64>,
 }
 
 impl Vary {
@@ -202,55 +151,37 @@ impl Vary {
     pub fn parse(text: &str, scene: &Scene) -> Result<Self, VaryError> {
         let (id, range) = text
             .split_once('=')
-            .ok_or_else(|| VaryError::NoRange(text.to_owned()))?;
-        let (key, member) = find(id)?;
-        let refuse = |message: String| {
-            Err(VaryError::Member {
-                key: id.to_owned(),
-                message,
-            })
-        };
-        let count = (key.count)(scene);
-        match member {
+            .ok_or_else(|| VaryError(format!("expected KEY=A..B or KEY=A..B:N, found `{text}`")))?;
+        let refused = |why: String| VaryError(format!("{id}: {why}"));
+        let key = Key::find(id)?;
+        let count = (key.part.count)(scene);
+        match key.member {
             Some(at) if at >= count => {
-                return refuse(format!("the scene has {count} of these, from 0"));
+                return Err(refused(format!("the scene has {count} of these, from 0")));
             }
-            Some(at) if !(key.free)(scene, at) => {
-                return refuse(format!("particle {at} is fixed: it changes nothing"));
+            Some(at) if !key.free(scene, at) => {
+                return Err(refused(format!(
+                    "particle {at} is fixed: it changes nothing"
+                )));
             }
-            None if count == 0 => return refuse("the scene has none".to_owned()),
+            None if count == 0 => return Err(refused("the scene has none".into())),
             _ => {}
         }
-        let range: Range = range.parse().map_err(|why| VaryError::Range {
-            key: id.to_owned(),
-            why,
-        })?;
+        let range: Range = range.parse().map_err(|VaryError(why)| refused(why))?;
         let Quantity { low, high, unit } = key.quantity;
-        if let Some(&found) = [range.low, range.high]
-            .iter()
-            .find(|end| !(low..=high).contains(*end))
-        {
-            return Err(VaryError::Bounds {
-                key: id.to_owned(),
-                low,
-                high,
-                unit,
-                found,
-            });
+        let outside = |end: &f64| !(low..=high).contains(end);
+        if let Some(found) = [range.low, range.high].into_iter().find(outside) {
+            return Err(refused(format!(
+                "expected values from {low:e} to {high:e} ({unit}), found {found}"
+            )));
         }
-        Ok(Self {
-            key,
-            member,
-            values: range.values(),
-        })
+        let values = range.values();
+        Ok(Self { key, values })
     }
 
     /// As the command line writes it: `springs.stiffness`, `particles[1].mass`.
     pub fn id(&self) -> String {
-        match (self.member, self.key.id.split_once('.')) {
-            (Some(at), Some((list, field))) => format!("{list}[{at}].{field}"),
-            _ => self.key.id.to_owned(),
-        }
+        self.key.to_string()
     }
 
     /// Of the values.
@@ -260,40 +191,14 @@ impl Vary {
 
     /// The scene with this value, in the one member or in all that are free.
     pub fn apply(&self, scene: &Scene, value: f64) -> Scene {
+        let Key {
+            part, row, member, ..
+        } = self.key;
+        let members = member.map_or(0..(part.count)(scene), |at| at..at + 1);
         let mut varied = scene.clone();
-        match self.member {
-            Some(at) => (self.key.set)(&mut varied, at, value),
-            None => {
-                for at in (0..(self.key.count)(scene)).filter(|at| (self.key.free)(scene, *at)) {
-                    (self.key.set)(&mut varied, at, value);
-                }
-            }
+        for at in members.filter(|at| self.key.free(scene, *at)) {
+            (row.set)(&mut varied, at, 0, Value::Number(value));
         }
         varied
     }
-}
-
-/// The key and the member `list[index].field` names.
-fn find(id: &str) -> Result<(&'static Key, Option<usize>), VaryError> {
-    let (plain, member) = match id
-        .split_once('[')
-        .map(|(list, rest)| (list, rest.split_once(']')))
-    {
-        Some((list, Some((index, field)))) => match index.parse() {
-            Ok(index) => (format!("{list}{field}"), Some(index)),
-            Err(_) => (id.to_owned(), None),
-        },
-        _ => (id.to_owned(), None),
-    };
-    let known: Vec<&str> = KEYS.iter().map(|key| key.id).collect();
-    let key = KEYS.iter().find(|key| key.id == plain);
-    key.map(|key| (key, member)).ok_or_else(|| {
-        let near = suggest::nearest(&plain, &known);
-        VaryError::Unknown {
-            key: id.to_owned(),
-            hint: near.map_or(String::new(), |near| format!(" (did you mean `{near}`?)")),
-            known: known.join(", "),
-            example: "springs[3].stiffness or particles[1].mass",
-        }
-    })
 }

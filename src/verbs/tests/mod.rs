@@ -219,7 +219,7 @@ fn pictures() {
 
 /// Everything reports are made of.
 mod data {
-    pub use crate::measure::stability::Cell;
+    pub use crate::measure::stability::{Cell, TightestLimit};
     pub use crate::measure::{Check, CheckStatus, Deviation, Energy, EnergyClass, Spread};
     pub use crate::report::{EffectUse, Header, SceneFacts, TruthFacts};
     pub use crate::solvers::{Kind, Status};
@@ -231,7 +231,7 @@ mod data {
     };
     pub use crate::verbs::run::{Curves, Figures, Outcome, PlotAxis, Work};
     pub use crate::verbs::stability::{
-        Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow, TightestLimit,
+        Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow,
     };
     pub use crate::verbs::{Beside, Body, Report, Series};
 }

@@ -1,7 +1,7 @@
 //! Odd but right: what a scene may look like, and what it then means.
 
 use super::{complete, parse, shipped};
-use springcheck::scene::{self, Axis, DampingModel, Expectation, Scene, Wanted, Whom};
+use springcheck::scene::{self, Axis, DampingModel, Expectation, Scene, Scope, Wanted};
 use springcheck::verbs;
 
 fn accepted(text: &str) -> Scene {
@@ -147,25 +147,25 @@ fn expectations_are_read_in_order() {
          identified.decisive: true\n    deviation_m.rapier.max: {below: 1}\n  rk4: \
          {identified.method: rk4}",
     );
-    let one = |whom, key: &str, wanted| Expectation {
-        whom,
+    let one = |scope, key: &str, wanted| Expectation {
+        scope,
         key: key.to_owned(),
         wanted,
     };
     let words = |words: &[&str]| Wanted::Words(words.iter().map(|w| (*w).to_owned()).collect());
-    let engine = |id: &str| Whom::Engine(id.to_owned());
+    let engine = |id: &str| Scope::Engine(id.to_owned());
     let bounds = |above, below| Wanted::Bounds { above, below };
     let expected = [
-        one(Whom::All, "status", words(&["completed", "diverged"])),
-        one(Whom::All, "reason", Wanted::Contains("particle 1".into())),
+        one(Scope::All, "status", words(&["completed", "diverged"])),
+        one(Scope::All, "reason", Wanted::Contains("particle 1".into())),
         one(
             engine("rapier-forces"),
             "energy.drift_per_s",
             bounds(Some(-1.0), Some(2e-3)),
         ),
-        one(Whom::Rest, "identified.decisive", words(&["true"])),
+        one(Scope::Rest, "identified.decisive", words(&["true"])),
         one(
-            Whom::Rest,
+            Scope::Rest,
             "deviation_m.rapier.max",
             bounds(None, Some(1.0)),
         ),

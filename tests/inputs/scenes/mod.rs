@@ -2,6 +2,7 @@
 
 mod accepted;
 mod refused;
+mod table;
 mod upset;
 
 use crate::testkit::scenes::{files, folders};

@@ -2,8 +2,7 @@
 
 use super::{CHAIN, expected, scene};
 use springcheck::physics::State;
-use springcheck::solvers::Observer;
-use springcheck::trajectory::{self, CsvWriter, NpzWriter, Precision, Rows};
+use springcheck::trajectory::{self, CsvWriter, NpzWriter, Observer, Precision, Rows};
 use std::io::Cursor;
 
 const STEPS: u64 = 50;

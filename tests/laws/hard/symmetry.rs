@@ -120,7 +120,7 @@ fn both_units_expect_the_same() {
     let [tiny, huge] = ["units_tiny", "units_huge"].map(scene);
     assert_eq!(tiny.expect.len(), huge.expect.len());
     for (tiny, huge) in tiny.expect.iter().zip(&huge.expect) {
-        assert_eq!((&tiny.whom, &tiny.key), (&huge.whom, &huge.key));
+        assert_eq!((&tiny.scope, &tiny.key), (&huge.scope, &huge.key));
         let unit = if tiny.key == "position_error_m.max" {
             1e18
         } else {

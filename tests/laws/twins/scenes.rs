@@ -11,8 +11,7 @@ pub fn empty(name: &str) -> Scene {
         solver: Solver {
             method: "symplectic_euler".to_owned(),
             timestep: 5e-4,
-            gravity: -9.81,
-            ..scenes::empty().solver
+            ..Solver::default()
         },
         duration: 1.0,
         ..scenes::empty()

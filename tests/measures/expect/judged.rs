@@ -3,7 +3,7 @@
 use super::{oscillator, run};
 use springcheck::integrators;
 use springcheck::measure::{Check, CheckStatus};
-use springcheck::scene::{Expectation, Scene, Wanted, Whom};
+use springcheck::scene::{Expectation, Scene, Scope, Wanted};
 use springcheck::solvers::rapier;
 use springcheck::truth::Demand;
 use springcheck::verbs::names;
@@ -185,7 +185,7 @@ fn a_status_says_what_led_to_it() {
     );
 }
 
-/// Whom each word is about, and which key wins.
+/// What each word is about, and which key wins.
 #[test]
 fn all_rest_and_own_lines() {
     let (_, report, checks) = judged(
@@ -251,7 +251,7 @@ fn what_is_left_out_changes_no_key() {
     let mut moved = 0;
     for key in &names().keys {
         scene.expect = vec![Expectation {
-            whom: Whom::Engine("rk4".into()),
+            scope: Scope::Engine("rk4".into()),
             key: key.path.clone(),
             wanted: Wanted::Contains("x".into()),
         }];

@@ -195,17 +195,16 @@ fn the_particle_is_found_among_two_hundred() {
             velocity: [0.0, 0.1 * (i % 5) as f64, 0.0],
             fixed: i == 0,
             mass: 0.1 + 0.001 * i as f64,
-            radius: 0.1,
-            drag: 0.0,
+            ..Particle::default()
         })
         .collect();
     scene.springs = (0..199)
         .map(|i| Spring {
             ends: [i, i + 1],
             stiffness: 40.0,
-            cubic: 0.0,
             damping: 0.2,
             rest_length: 0.08,
+            ..Spring::default()
         })
         .collect();
     scene.solver.timestep = 1e-3;

@@ -38,7 +38,7 @@ fn holds(name: &str, many: usize, width: f64, make: &Make) -> Result<(), String>
     for _ in 0..many {
         let scene = make(&mut random);
         let found = form(&scene, UNTIL).ok_or("no form")?;
-        all = all.max(worst(&scene, found.motion.as_ref()));
+        all = all.max(worst(&scene, found.motion().expect("a motion")));
     }
     match all {
         _ if all >= 1.0 => Err(format!("{name}: {all} bars")),
@@ -159,7 +159,13 @@ fn other_scenes_leave_the_bar() {
         wrong(&mut other);
         let own = form(&scene, UNTIL).expect("a form");
         let other = form(&other, UNTIL).expect("a form");
-        assert!(worst(&scene, own.motion.as_ref()) < 1.0, "{name}");
-        assert!(worst(&scene, other.motion.as_ref()) > 1.0, "{name}: passes");
+        assert!(
+            worst(&scene, own.motion().expect("a motion")) < 1.0,
+            "{name}"
+        );
+        assert!(
+            worst(&scene, other.motion().expect("a motion")) > 1.0,
+            "{name}: passes"
+        );
     }
 }

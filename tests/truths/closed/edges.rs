@@ -26,9 +26,13 @@ fn rounding_across_the_line_is_in_the_bar() {
         let ulp = 1e6 * f64::EPSILON / 2.0;
         let offset = (1e6 + ulp) - 1e6;
         let scene = beside(1e6, offset, rest, speed);
-        let aside = form(&scene, until).expect("a form").motion.error_bar(until);
+        let aside = form(&scene, until)
+            .expect("a form")
+            .motion()
+            .expect("a motion")
+            .error_bar(until);
         let straight = form(&beside(1e6, 0.0, rest, speed), until).expect("a form");
-        let bar = aside - straight.motion.error_bar(until);
+        let bar = aside - straight.motion().expect("a motion").error_bar(until);
         // The same about the origin, where doubles resolve it.
         let near = beside(0.0, offset, rest, speed);
         let mut state: State = ParticleSystem::initial_state(&near);
@@ -71,13 +75,15 @@ fn rings_have_modes() {
     };
     for n in [5, 6, 9] {
         let scene = ring([0.3, 1.1], n);
-        let motion = form(&scene, 3.0).expect("modes").motion;
+        let truth = form(&scene, 3.0).expect("modes");
+        let motion = truth.motion().expect("a motion");
         for t in [0.1, 1.0, 3.0] {
             let exact: Vec<f64> = exact::states(&scene, t).0.iter().map(|x| x.0).collect();
             let off = distance(&exact, motion.states(&[t]).x(0)) / motion.error_bar(t);
             assert!(off < 1.0, "{n}, {t}: {off}");
             let other = form(&ring([0.3, 1.1 + 1e-6], n), 3.0);
-            let other = other.expect("modes").motion;
+            let truth = other.expect("modes");
+            let other = truth.motion().expect("a motion");
             assert!(distance(&exact, other.states(&[t]).x(0)) > motion.error_bar(t));
         }
     }
@@ -117,11 +123,13 @@ fn extremes_stay_numbers() {
             continue;
         };
         forms += 1;
-        let states = found
-            .motion
-            .states(&[0.0, 1e-9 * until, 0.3 * until, until]);
+        let states =
+            found
+                .motion()
+                .expect("a motion")
+                .states(&[0.0, 1e-9 * until, 0.3 * until, until]);
         let finite = states.x.iter().chain(&states.v).all(|c| c.is_finite());
-        let bar = found.motion.error_bar(until);
+        let bar = found.motion().expect("a motion").error_bar(until);
         assert!(finite && bar.is_finite() && bar >= 0.0, "{case}: {scene:?}");
     }
     assert!(forms > 200, "{forms}");

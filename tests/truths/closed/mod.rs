@@ -12,9 +12,10 @@ mod pendulum;
 
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
-use springcheck::truth::closed::{Found, find};
+use springcheck::truth::Truth;
+use springcheck::truth::closed::find;
 
 /// The closed form of a scene up to `until`, if it has one.
-fn form(scene: &Scene, until: f64) -> Option<Found> {
+fn form(scene: &Scene, until: f64) -> Option<Truth> {
     find(scene, &ParticleSystem::new(scene), until)
 }

@@ -82,7 +82,7 @@ fn scenes() -> Vec<(&'static str, Scene, f64)> {
 fn closed_forms_obey_the_system() {
     for (name, scene, rate) in scenes() {
         let found = form(&scene, UNTIL).unwrap_or_else(|| panic!("{name}: none"));
-        if let Err(e) = obeys(&scene, found.motion.as_ref(), rate) {
+        if let Err(e) = obeys(&scene, found.motion().expect("a motion"), rate) {
             panic!("{name}: {e}");
         }
     }
@@ -162,7 +162,7 @@ fn forms_of_other_scenes_do_not() {
             let Some(found) = form(&other, UNTIL) else {
                 continue;
             };
-            let verdict = obeys(&scene, found.motion.as_ref(), rate);
+            let verdict = obeys(&scene, found.motion().expect("a motion"), rate);
             assert!(verdict.is_err(), "{name}: {fault} passes");
             killed[k] += 1;
         }
@@ -191,7 +191,7 @@ impl Motion for Twisted<'_> {
 fn a_wrong_clock_or_velocity_fails() {
     for (name, scene, rate) in scenes() {
         let found = form(&scene, UNTIL).expect(name);
-        let motion = found.motion.as_ref();
+        let motion = found.motion().expect("a motion");
         for (fault, twisted) in [
             ("late", Twisted(motion, |t| t * (1.0 - 1e-9), 1.0)),
             ("velocity", Twisted(motion, |t| t, 1.0 + 1e-9)),
@@ -209,11 +209,14 @@ fn a_wrong_clock_or_velocity_fails() {
 fn hanging_swings_by_m_g_over_k() {
     let scene = crate::testkit::scenes::shipped("pa1/scene01.yml");
     let found = form(&scene, 5.0).expect("a form");
-    assert_eq!(found.method, "oscillator in line, undamped");
+    assert_eq!(
+        found.method.as_deref(),
+        Some("oscillator in line, undamped")
+    );
     let amplitude = 0.2 * 9.81 / 20.0;
     let period = 2.0 * std::f64::consts::PI * (0.2_f64 / 20.0).sqrt();
     let times = [0.0, 0.25, 0.5, 0.75, 1.0].map(|turn| turn * period);
-    let states = found.motion.states(&times);
+    let states = found.motion().expect("a motion").states(&times);
     for (k, height) in [0.0, 1.0, 2.0, 1.0, 0.0].into_iter().enumerate() {
         let off = (states.x(k)[5] - (1.0 - height * amplitude)).abs();
         // One rounding of the position near 1.
@@ -226,8 +229,9 @@ fn hanging_swings_by_m_g_over_k() {
 #[test]
 fn the_damping_model_counts() {
     let mut scene = families::isotropic(&mut Random(4), 3.0, 0.3);
-    let motion = form(&scene, UNTIL).expect("a form").motion;
+    let truth = form(&scene, UNTIL).expect("a form");
+    let motion = truth.motion().expect("a motion");
     scene.damping_model = DampingModel::Axial;
     assert!(form(&scene, UNTIL).is_none());
-    assert!(obeys(&scene, motion.as_ref(), 4.0).is_err());
+    assert!(obeys(&scene, motion, 4.0).is_err());
 }

@@ -66,16 +66,21 @@ fn seen(found: &Result<Converged, NotConverged>) -> (Vec<String>, Vec<u64>) {
         Err(none) => (vec![none.reason.clone()], Vec::new()),
         Ok(c) => {
             let texts = vec![
-                c.method.clone(),
-                c.reason.clone(),
-                format!("{:?}", c.growth),
+                c.known.method.clone(),
+                c.known.reason.clone(),
+                format!("{:?}", c.known.growth),
             ];
             let times = times(UNTIL);
             let states = c.motion.states(&times);
             let bars = times.iter().map(|&t| c.motion.error_bar(t));
-            let numbers = [c.horizon, c.error_bound].into_iter().chain(bars);
+            let numbers = [c.known.horizon, c.known.error_bound]
+                .into_iter()
+                .chain(bars);
             let all = numbers.chain(states.x).chain(states.v);
-            (texts, all.map(f64::to_bits).chain([c.spent]).collect())
+            (
+                texts,
+                all.map(f64::to_bits).chain([c.known.spent]).collect(),
+            )
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Limits found by running a scene at many steps.
 
-mod growth;
 mod perturbation;
 mod probe;
 mod search;
@@ -8,15 +7,14 @@ mod setup;
 mod smooth;
 mod watched;
 
-use super::Limit;
-use super::matrix::Matrix;
+use super::{Limit, predicted};
 use crate::measure::energy_scale;
-use crate::physics::{Jacobian, Linearization, ParticleSystem, System, Triplets};
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
 use perturbation::Perturbation;
 use probe::{Budget, Fate, Watch, probe};
-use search::{Search, Stop};
+use search::Search;
 use serde::{Deserialize, Serialize};
 use setup::Setup;
 use watched::{ExcessEnergy, Runs};
@@ -78,96 +76,39 @@ pub fn measure(
     patience: u64,
     tick: &(dyn Fn(u64) + Sync),
 ) -> Measured {
-    let mut measured = Measured {
-        limit: Limit::Unknown(String::new()),
-        linear: false,
-        growth_per_s: None,
-        smooth_below_s: None,
-        steps: 0,
-        reason: None,
-    };
-    let unit = shortest(scene, system).unwrap_or(timestep);
-    let setup = match Setup::new(scene, system, make, 0.5 * unit, patience) {
+    let start = ParticleSystem::initial_state(scene);
+    let unit = predicted::shortest(system, &start).unwrap_or(timestep);
+    let mut setup = match Setup::new(scene, system, make, 0.5 * unit, patience, tick) {
         Ok(setup) => setup,
         Err(Unsupported { reason }) => {
-            measured.limit = Limit::Unknown(reason);
-            return measured;
+            return Measured {
+                limit: Limit::Unknown(reason),
+                linear: false,
+                growth_per_s: None,
+                smooth_below_s: None,
+                steps: 0,
+                reason: None,
+            };
         }
     };
-    measured.linear = setup.is_linear();
-    let mut budget = Budget::new(patience, tick);
-    let mut search = Search {
-        setup: &setup,
-        budget: &mut budget,
-        unit,
-        known: (None, None),
+    let near = near.filter(|near| *near > 0.0 && near.is_finite());
+    let (limit, reason) = Search::new(&mut setup, unit).limit(near, patience);
+    let growth = (limit == Limit::Never).then(|| setup.growth(timestep, unit));
+    let upto = match limit {
+        Limit::At(h) => Some(h),
+        _ => None,
     };
-    let found = search.limit(near.filter(|near| *near > 0.0 && near.is_finite()));
-    let known = search.known;
-    (measured.limit, measured.reason) = match found {
-        Ok(found) => (found.limit, Some(found.reason)),
-        Err(Stop::Unsupported(Unsupported { reason })) => (Limit::Unknown(reason), None),
-        Err(_) => unfinished(known, patience),
-    };
-    if measured.limit == Limit::Never {
-        let growth = setup.growth(timestep, unit, &mut budget);
-        measured.growth_per_s = growth.ok().flatten().filter(|growth| growth.is_finite());
+    let linear = setup.is_linear();
+    Measured {
+        growth_per_s: growth.flatten().filter(|growth| growth.is_finite()),
+        smooth_below_s: linear
+            .then(|| smooth::below(&mut setup, unit, upto))
+            .flatten(),
+        linear,
+        limit,
+        reason,
+        steps: setup.budget.taken,
     }
-    if measured.linear {
-        let upto = match measured.limit {
-            Limit::At(h) => Some(h),
-            _ => None,
-        };
-        measured.smooth_below_s = smooth::below(&setup, unit, upto, &mut budget);
-    }
-    measured.steps = budget.taken;
-    measured
-}
-
-/// A time, s, no longer than the shortest time scale of the forces about the start: from the row sums
-/// of the Jacobians (Gershgorin). None where no force depends on the state.
-fn shortest(scene: &Scene, system: &ParticleSystem) -> Option<f64> {
-    let start = ParticleSystem::initial_state(scene);
-    let mut jacobian = Jacobian::default();
-    system.jacobian(0.0, &start.x, &start.v, Linearization::Exact, &mut jacobian);
-    let weights = system.inverse_mass();
-    let largest = |triplets: &Triplets| {
-        let summed = Matrix::new(system.dim(), triplets.clone());
-        // In mass-weighted coordinates the matrix is symmetric and its rows are alike.
-        let scaled = |(row, column, value): (usize, usize, f64)| {
-            (row, column, value * (weights[row] * weights[column]).sqrt())
-        };
-        Matrix::new(system.dim(), summed.entries().map(scaled).collect()).norm()
-    };
-    let rate = largest(&jacobian.position)
-        .sqrt()
-        .max(largest(&jacobian.velocity));
-    (rate > 0.0 && rate.is_finite()).then(|| 1.0 / rate)
-}
-
-/// Relative width to which a limit is promised; the search goes on to half of it.
-const PROMISED: f64 = 1e-3;
-
-/// What is known when patience ends: a step found stable, and one found unstable.
-fn unfinished(known: (Option<f64>, Option<f64>), patience: u64) -> (Limit, Option<String>) {
-    let ended = format!("no closer within {patience} steps");
-    let why = match known {
-        (Some(low), Some(high)) if low < high && high - low <= PROMISED * low => {
-            return (Limit::At(low), Some(format!("unstable at {high:.4e} s")));
-        }
-        (Some(low), Some(high)) if low < high => {
-            let why = format!("between {low:.3e} s (stable) and {high:.3e} s (unstable), {ended}");
-            return (Limit::Between(low, high), Some(why));
-        }
-        (Some(low), _) => {
-            format!("stable at {low:.3e} s; larger steps were not tried, {ended}")
-        }
-        (None, Some(high)) => {
-            format!("unstable at {high:.3e} s; smaller steps were not tried, {ended}")
-        }
-        (None, None) => ended,
-    };
-    (Limit::Unknown(why), None)
 }
 
 /// Rise of ln(energy) over the second half of a map's run that counts as growth.
@@ -203,9 +144,10 @@ pub fn classify(
     let mut gauge = ExcessEnergy::new(&runs, system, &scene, scale, DIVERGED, late);
     let before = gauge.balance(&runs);
     let mut budget = Budget::new(u64::MAX, tick);
-    match probe(&mut runs, &mut gauge, watch, &mut budget).fate {
-        Fate::Grows { lost: true, .. } => Cell::Failed,
-        Fate::Grows { .. } => Cell::Growing,
+    let fate = probe(&mut runs, &mut gauge, watch, &mut budget).map(|probed| probed.fate);
+    match fate {
+        Some(Fate::Grows { lost: true, .. }) => Cell::Failed,
+        Some(Fate::Grows { .. }) => Cell::Growing,
         _ if gauge.late_balance() - before < -DISSIPATED * scale => Cell::Dissipating,
         _ => Cell::Stable,
     }

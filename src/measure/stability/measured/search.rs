@@ -1,26 +1,9 @@
 //! Where to probe next: from a guess to the first step that fails, to 5e-4 of itself.
 
-use super::growth::Maxima;
-use super::probe::{Budget, Fate, Probed};
-use super::setup::{STEPS, Setup};
+use super::probe::{Fate, Probed, span};
+use super::setup::{Found, STEPS, Setup, Stop};
 use crate::measure::stability::Limit;
 use crate::solvers::Unsupported;
-
-/// An answer.
-pub(super) struct Found {
-    pub limit: Limit,
-    /// How the first failing step fails, or how far was looked.
-    pub reason: String,
-}
-
-/// Why a search ends before a limit is bracketed.
-pub(super) enum Stop {
-    /// There is none to bracket.
-    Found(Found),
-    Unsupported(Unsupported),
-    /// The budget is spent.
-    Impatient,
-}
 
 /// A step and what became of it.
 #[derive(Clone)]
@@ -29,27 +12,18 @@ struct Tried {
     probed: Probed,
 }
 
-/// How larger steps are tried.
-struct Zone {
-    /// Times the guess.
-    upto: f64,
-    /// From one step to the next.
-    ratio: f64,
-    /// Times as a full probe.
-    shorter: u64,
-}
-
 /// One search.
 pub(super) struct Search<'a, 'b> {
-    pub setup: &'a Setup<'a>,
-    pub budget: &'a mut Budget<'b>,
+    setup: &'a mut Setup<'b>,
     /// The shortest time scale, s.
-    pub unit: f64,
+    unit: f64,
     /// The step found stable and the one found unstable, s, that a spent budget leaves behind.
-    pub known: (Option<f64>, Option<f64>),
+    known: (Option<f64>, Option<f64>),
 }
 
-/// The answer's relative width, half of what is promised.
+/// Relative width to which a limit is promised.
+const PROMISED: f64 = 1e-3;
+/// The answer's: half of that.
 const WIDTH: f64 = 5e-4;
 /// Largest step tried, in shortest time scales.
 const FAR: f64 = 1e6;
@@ -59,23 +33,12 @@ const SMALL: f64 = 1e-5;
 const BESIDE: f64 = 2e-3;
 /// Brief probes are so many times shorter: what fails far out or in a window fails soon.
 const BRIEF: u64 = 5;
-/// The farther from the guess, the coarser and the briefer.
-const ZONES: [Zone; 3] = [
-    Zone {
-        upto: 4.0,
-        ratio: 1.189_207_115_002_721,
-        shorter: BRIEF,
-    },
-    Zone {
-        upto: 32.0,
-        ratio: 2.0,
-        shorter: 2 * BRIEF,
-    },
-    Zone {
-        upto: f64::INFINITY,
-        ratio: 8.0,
-        shorter: 4 * BRIEF,
-    },
+/// How larger steps are tried: up to so many times the guess, by this ratio from one to the next, so many
+/// times as short as a full probe. The farther from the guess, the coarser and the briefer.
+const ZONES: [(f64, f64, u64); 3] = [
+    (4.0, 1.189_207_115_002_721, BRIEF),
+    (32.0, 2.0, 2 * BRIEF),
+    (f64::INFINITY, 8.0, 4 * BRIEF),
 ];
 /// Factors of √2 below the limit that are looked through for windows.
 const BELOW: i32 = 10;
@@ -84,20 +47,28 @@ const VISIBLE: f64 = 4.0;
 /// Growth rates that belong to one power of h have exponents this close.
 const SAME_POWER: f64 = 0.4;
 
-impl Search<'_, '_> {
-    /// `near` as in [`measure`](super::measure).
-    pub fn limit(&mut self, near: Option<f64>) -> Result<Found, Stop> {
-        let found = self
-            .bracket(near)
-            .and_then(|(stable, unstable)| self.within(stable, unstable));
-        let mut found = match found {
-            Ok(found) | Err(Stop::Found(found)) => found,
-            Err(stop) => return Err(stop),
-        };
-        if self.setup.steps < STEPS {
-            found.reason += &format!("; seen over {} steps at most", self.setup.steps);
+impl<'a, 'b> Search<'a, 'b> {
+    pub fn new(setup: &'a mut Setup<'b>, unit: f64) -> Self {
+        Self {
+            setup,
+            unit,
+            known: (None, None),
         }
-        Ok(found)
+    }
+
+    /// The limit and what there is to say of it. `near` and `patience` as in [`measure`](super::measure).
+    pub fn limit(&mut self, near: Option<f64>, patience: u64) -> (Limit, Option<String>) {
+        let bracket = self.bracket(near);
+        match bracket.and_then(|(stable, unstable)| self.within(stable, unstable)) {
+            Ok((limit, mut reason)) | Err(Stop::Found((limit, mut reason))) => {
+                if self.setup.steps < STEPS {
+                    reason += &format!("; seen over {} steps at most", self.setup.steps);
+                }
+                (limit, Some(reason))
+            }
+            Err(Stop::Unsupported(Unsupported { reason })) => (Limit::Unknown(reason), None),
+            Err(Stop::Impatient) => unfinished(self.known, patience),
+        }
     }
 
     /// A stable step and a larger one that is not.
@@ -121,13 +92,7 @@ impl Search<'_, '_> {
     }
 
     fn try_at(&mut self, h: f64, steps: u64, extensions: u32) -> Result<Tried, Stop> {
-        let probed = self
-            .setup
-            .probe(h, steps, extensions, self.budget)
-            .map_err(Stop::Unsupported)?;
-        if probed.fate == Fate::Impatient {
-            return Err(Stop::Impatient);
-        }
+        let probed = self.setup.probe(h, steps, extensions)?;
         Ok(Tried { h, probed })
     }
 
@@ -174,7 +139,7 @@ impl Search<'_, '_> {
     /// Whether rates fall like a power of the step, to one too small to be seen at the next.
     fn power_law(&self, unstable: &[Tried]) -> bool {
         let seen = VISIBLE * self.setup.clear();
-        power_law(unstable).is_some_and(|next| next * Maxima::span(self.setup.steps) < seen)
+        power_law(unstable).is_some_and(|next| next * span(self.setup.steps) < seen)
     }
 
     /// From a stable step to larger ones, until one is not.
@@ -183,11 +148,12 @@ impl Search<'_, '_> {
         let end = FAR * self.unit.max(0.1 * guess);
         let mut stable = first;
         while stable.h < end {
-            let zone = ZONES.iter().find(|zone| stable.h < zone.upto * guess);
-            let Some(zone) = zone else { break };
+            let zone = ZONES.iter().find(|(upto, ..)| stable.h < upto * guess);
+            let Some((_, ratio, shorter)) = zone else {
+                break;
+            };
             self.known = (Some(stable.h), None);
-            let h = stable.h * zone.ratio;
-            let tried = match self.try_at(h, self.setup.steps / zone.shorter, 0) {
+            let tried = match self.try_at(stable.h * ratio, self.setup.steps / shorter, 0) {
                 Err(Stop::Unsupported(Unsupported { reason })) => {
                     let ended = format!("; beyond it cannot run: {reason}");
                     return Err(unconditional(stable.h, &ended));
@@ -235,48 +201,81 @@ impl Search<'_, '_> {
     }
 
     fn bisect(&mut self, stable: Tried, unstable: Tried) -> Result<Found, Stop> {
-        let (mut low, mut high) = (stable.h, unstable);
-        while high.h - low > WIDTH * low {
-            // Halves ratios while they are large.
-            let h = if high.h > 2.0 * low {
-                (low * high.h).sqrt()
-            } else {
-                0.5 * (low + high.h)
-            };
-            self.known = (Some(low), Some(high.h));
+        let (first, mut failing) = (stable.h, unstable);
+        self.known = (Some(first), Some(failing.h));
+        let low = bisect(first, failing.h, |h| -> Result<bool, Stop> {
             let tried = self.full(h)?;
             if tried.probed.unstable() {
-                high = tried;
-            } else {
-                low = h;
+                self.known.1 = Some(h);
+                failing = tried;
+                return Ok(false);
             }
-        }
-        let why = match high.probed.fate {
+            self.known.0 = Some(h);
+            Ok(true)
+        })?;
+        let why = match failing.probed.fate {
             Fate::Grows { why, .. } => why,
             _ => String::new(),
         };
-        Ok(Found {
-            limit: Limit::At(low),
-            reason: format!("at {:.4e} s {why}", high.h),
-        })
+        Ok((Limit::At(low), format!("at {:.4e} s {why}", failing.h)))
     }
 }
 
+/// The largest step found at which something holds that does so at `low` and not at `high`: to [`WIDTH`].
+pub(super) fn bisect<E>(
+    mut low: f64,
+    mut high: f64,
+    mut holds: impl FnMut(f64) -> Result<bool, E>,
+) -> Result<f64, E> {
+    while high - low > WIDTH * low {
+        // Halves ratios while they are large.
+        let h = if high > 2.0 * low {
+            (low * high).sqrt()
+        } else {
+            0.5 * (low + high)
+        };
+        if holds(h)? {
+            low = h;
+        } else {
+            high = h;
+        }
+    }
+    Ok(low)
+}
+
+/// What is known when patience ends: a step found stable, and one found unstable.
+fn unfinished(known: (Option<f64>, Option<f64>), patience: u64) -> (Limit, Option<String>) {
+    let ended = format!("no closer within {patience} steps");
+    let why = match known {
+        (Some(low), Some(high)) if low < high && high - low <= PROMISED * low => {
+            return (Limit::At(low), Some(format!("unstable at {high:.4e} s")));
+        }
+        (Some(low), Some(high)) if low < high => {
+            let why = format!("between {low:.3e} s (stable) and {high:.3e} s (unstable), {ended}");
+            return (Limit::Between(low, high), Some(why));
+        }
+        (Some(low), _) => {
+            format!("stable at {low:.3e} s; larger steps were not tried, {ended}")
+        }
+        (None, Some(high)) => {
+            format!("unstable at {high:.3e} s; smaller steps were not tried, {ended}")
+        }
+        (None, None) => ended,
+    };
+    (Limit::Unknown(why), None)
+}
+
 fn never(smallest: f64) -> Stop {
-    Stop::Found(Found {
-        limit: Limit::Never,
-        reason: format!(
-            "its energy grows at every step tried, down to {smallest:.2e} s, where it grows too \
-             slowly to see"
-        ),
-    })
+    let reason = format!(
+        "its energy grows at every step tried, down to {smallest:.2e} s, where it grows too slowly to \
+         see"
+    );
+    Stop::Found((Limit::Never, reason))
 }
 
 fn unconditional(largest: f64, ended: &str) -> Stop {
-    Stop::Found(Found {
-        limit: Limit::Unconditional,
-        reason: format!("stable at every step tried, up to {largest:.2e} s{ended}"),
-    })
+    let reason = format!("stable at every step tried, up to {largest:.2e} s{ended}");
+    Stop::Found((Limit::Unconditional, reason))
 }
 
 /// The rate at half the last step, if the last three go like one power of the step.

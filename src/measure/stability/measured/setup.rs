@@ -2,9 +2,10 @@
 
 use super::Make;
 use super::perturbation::Perturbation;
-use super::probe::{Budget, Fate, Probed, Watch, probe};
+use super::probe::{Budget, Probed, Watch, probe};
 use super::watched::{DifferenceEnergy, ExcessEnergy, Quadratic, Runs};
 use crate::measure::energy_scale;
+use crate::measure::stability::Limit;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::Unsupported;
@@ -45,16 +46,37 @@ pub(super) struct Setup<'a> {
     scale: f64,
     /// Steps of a full probe.
     pub steps: u64,
+    pub budget: Budget<'a>,
+}
+
+/// A limit, and in words how the first failing step fails, or how far was looked.
+pub(super) type Found = (Limit, String);
+
+/// Why a search ends before a limit is bracketed.
+pub(super) enum Stop {
+    /// There is none to bracket.
+    Found(Found),
+    Unsupported(Unsupported),
+    /// The budget is spent.
+    Impatient,
+}
+
+impl From<Unsupported> for Stop {
+    fn from(unsupported: Unsupported) -> Self {
+        Self::Unsupported(unsupported)
+    }
 }
 
 impl<'a> Setup<'a> {
-    /// `h`: a step well inside every limit, s. `patience` is in steps of the whole search.
+    /// `h`: a step well inside every limit, s. `patience` is in steps of the whole search; `tick` is called
+    /// with steps taken.
     pub fn new(
         scene: &'a Scene,
         system: &'a ParticleSystem,
         make: &'a Make<'a>,
         h: f64,
         patience: u64,
+        tick: &'a (dyn Fn(u64) + Sync),
     ) -> Result<Self, Unsupported> {
         let mut quadratic = Quadratic::new(system);
         let large = Perturbation::large(scene, system, &mut |dx| quadratic.potential(dx));
@@ -74,6 +96,7 @@ impl<'a> Setup<'a> {
             scale,
             // Two runs a probe where the map is linear.
             steps: (patience / PROBES / if linear { 2 } else { 1 }).clamp(FEWEST, STEPS),
+            budget: Budget::new(patience, tick),
         })
     }
 
@@ -92,28 +115,30 @@ impl<'a> Setup<'a> {
     }
 
     /// Is `h` stable, over `steps`?
-    pub fn probe(
-        &self,
-        h: f64,
-        steps: u64,
-        extensions: u32,
-        budget: &mut Budget,
-    ) -> Result<Probed, Unsupported> {
+    pub fn probe(&mut self, h: f64, steps: u64, extensions: u32) -> Result<Probed, Stop> {
         let watch = Watch {
             steps,
             extensions,
             clear: self.clear(),
         };
-        if let Some(quadratic) = &self.quadratic {
+        let probed = if self.is_linear() {
             let mut runs = self.pair(h, &self.perturbation)?;
-            return Ok(probe_pair(&mut runs, quadratic, watch, budget));
-        }
-        let scene = self.perturbation.apply(self.scene);
-        let mut runs = Runs::new(self.make, h, &[&scene])?;
-        let system = self.system.clone();
-        let never = f64::INFINITY;
-        let mut gauge = ExcessEnergy::new(&runs, system, &scene, self.scale, LOST, never);
-        Ok(probe(&mut runs, &mut gauge, watch, budget))
+            self.watch_pair(&mut runs, watch)
+        } else {
+            let scene = self.perturbation.apply(self.scene);
+            let mut runs = Runs::new(self.make, h, &[&scene])?;
+            let system = self.system.clone();
+            let never = f64::INFINITY;
+            let mut gauge = ExcessEnergy::new(&runs, system, &scene, self.scale, LOST, never);
+            probe(&mut runs, &mut gauge, watch, &mut self.budget)
+        };
+        probed.ok_or(Stop::Impatient)
+    }
+
+    /// Two runs of a linear map.
+    fn watch_pair(&mut self, runs: &mut Runs, watch: Watch) -> Option<Probed> {
+        let mut gauge = DifferenceEnergy::new(runs, self.quadratic.clone()?);
+        probe(runs, &mut gauge, watch, &mut self.budget)
     }
 
     /// Two runs at `h`, the second from a start perturbed by `shape`.
@@ -124,17 +149,9 @@ impl<'a> Setup<'a> {
     /// ln(amplitude) per second at `h`, once what grows fastest has outgrown the rest: that is
     /// brought about beforehand at `coarse`, where growth is steep. None where the map is not linear:
     /// what grows there changes its rate.
-    pub fn growth(
-        &self,
-        h: f64,
-        coarse: f64,
-        budget: &mut Budget,
-    ) -> Result<Option<f64>, Unsupported> {
-        let Some(quadratic) = &self.quadratic else {
-            return Ok(None);
-        };
-        let mut energy_of = quadratic.clone();
-        let wanted = energy_of.energy(&self.perturbation);
+    pub fn growth(&mut self, h: f64, coarse: f64) -> Option<f64> {
+        let mut quadratic = self.quadratic.clone()?;
+        let wanted = quadratic.energy(&self.perturbation);
         let mut shape = self.perturbation.clone();
         let mut watch = Watch {
             steps: self.steps,
@@ -142,11 +159,12 @@ impl<'a> Setup<'a> {
             clear: CLEAR_LINEAR,
         };
         for _ in 0..ROUNDS {
-            let mut runs = self.pair(coarse, &shape)?;
-            let probed = probe_pair(&mut runs, quadratic, watch, budget);
+            let mut runs = self.pair(coarse, &shape).ok()?;
+            let probed = self.watch_pair(&mut runs, watch);
             let grown = runs.difference(1);
-            let energy = energy_of.energy(&grown);
-            if !probed.unstable() || !energy.is_finite() || energy <= 0.0 {
+            let energy = quadratic.energy(&grown);
+            let grew = probed.is_some_and(|probed| probed.unstable());
+            if !grew || !energy.is_finite() || energy <= 0.0 {
                 break;
             }
             shape = grown.scaled((wanted / energy).sqrt());
@@ -155,17 +173,10 @@ impl<'a> Setup<'a> {
         let shape = shape.plus(&self.perturbation.scaled(TRACE));
         watch.steps = STEPS;
         watch.extensions = 2;
-        let mut runs = self.pair(h, &shape)?;
-        let probed = probe_pair(&mut runs, quadratic, watch, budget);
-        let rate = probed.rate.filter(|_| probed.fate != Fate::Impatient);
-        Ok(rate.map(|rate| 0.5 * rate / h))
+        let mut runs = self.pair(h, &shape).ok()?;
+        let rate = self.watch_pair(&mut runs, watch)?.rate?;
+        Some(0.5 * rate / h)
     }
-}
-
-/// Two runs of a linear map.
-fn probe_pair(runs: &mut Runs, quadratic: &Quadratic, watch: Watch, budget: &mut Budget) -> Probed {
-    let mut gauge = DifferenceEnergy::new(runs, quadratic.clone());
-    probe(runs, &mut gauge, watch, budget)
 }
 
 /// One rounding of the weights' potential energy, J.

@@ -1,9 +1,9 @@
 //! Up to which step nothing changes sign from one step to the next.
 
 use super::perturbation::Perturbation;
-use super::probe::Budget;
+use super::search::bisect;
 use super::setup::Setup;
-use crate::measure::stability::Linearised;
+use crate::measure::stability::{Effort, Linearised};
 use crate::physics::{ForceKinds, ParticleSystem, System};
 use crate::scene::Scene;
 
@@ -19,8 +19,6 @@ const MARGIN: f64 = 1e3;
 /// Squared sine from which differences are not parallel, and what it leaves of rounding in factors.
 const APART: f64 = 1e-8;
 const NOISE: f64 = 1e-6;
-/// Relative width of the answer.
-const WIDTH: f64 = 5e-4;
 /// Coordinates beyond which the true motion's spectrum is not looked at.
 const LARGEST: usize = 300;
 /// Steps beyond this many shortest time scales are not tried.
@@ -30,18 +28,15 @@ const FAR: f64 = 1e3;
 /// step, on a linear map, searched up to its limit `upto`; None where something oscillates in truth,
 /// nothing decays, the scene is too large, or, without a limit, no step up to a thousand of the
 /// shortest time scales `unit` changes sign.
-pub(super) fn below(
-    setup: &Setup,
-    unit: f64,
-    upto: Option<f64>,
-    budget: &mut Budget,
-) -> Option<f64> {
+pub(super) fn below(setup: &mut Setup, unit: f64, upto: Option<f64>) -> Option<f64> {
     let decays = setup.system.kinds().has(ForceKinds::DISSIPATIVE);
     if !decays || may_oscillate(setup.scene, setup.system) {
         return None;
     }
     let mut smooth = |h: f64| -> Option<bool> {
-        budget.spend((2 * ROUNDS * (DIFFERENCES + 2)) as u64, 0);
+        setup
+            .budget
+            .spend((2 * ROUNDS * (DIFFERENCES + 2)) as u64, 0);
         sign_kept(setup, h)
     };
     let end = upto.unwrap_or(FAR * unit);
@@ -61,15 +56,7 @@ pub(super) fn below(
         }
         low = high;
     }
-    while high - low > WIDTH * low {
-        let middle = 0.5 * (low + high);
-        if smooth(middle)? {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some(low)
+    bisect(low, high, |h| smooth(h).ok_or(())).ok()
 }
 
 /// Whether the mode that decays fastest keeps its sign in a step: whether its factor, told from
@@ -170,6 +157,6 @@ fn may_oscillate(scene: &Scene, system: &ParticleSystem) -> bool {
         return true;
     }
     let start = ParticleSystem::initial_state(scene);
-    let linearised = Linearised::at(system, start.t, &start.x, &start.v);
+    let linearised = Linearised::new(system, &start, Effort::FULL);
     linearised.is_unsure() || linearised.omega_max().is_some()
 }

@@ -11,7 +11,9 @@
 
 use super::Make;
 use super::perturbation::Perturbation;
+use super::probe::Probed;
 use crate::integrators::StepError;
+use crate::measure::scale::free_fall;
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
@@ -61,8 +63,11 @@ impl Runs {
 
 /// What is watched of runs.
 pub(super) trait Gauge {
-    /// Where the energy is now.
-    fn level(&mut self, runs: &Runs) -> Level;
+    /// Where the energy is after so many steps.
+    ///
+    /// # Errors
+    /// What became of the runs, where the energy leaves no other answer.
+    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed>;
 
     /// Whether what is watched is no larger than rounding.
     fn is_rounding(&mut self, _runs: &Runs) -> bool {
@@ -70,17 +75,12 @@ pub(super) trait Gauge {
     }
 }
 
-/// An energy, against its start or its scale, as a logarithm.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Level {
-    Log(f64),
+/// An energy against its start or its scale.
+pub(super) struct Level {
+    /// Its logarithm.
+    pub log: f64,
     /// Too high to stay there.
-    High(f64),
-    /// Past all bounds.
-    Exploded(f64),
-    /// Decayed to nothing.
-    Gone,
-    NotFinite,
+    pub high: bool,
 }
 
 /// K(dv) + the potential energy of dx under linear forces.
@@ -153,16 +153,17 @@ impl DifferenceEnergy {
 }
 
 impl Gauge for DifferenceEnergy {
-    fn level(&mut self, runs: &Runs) -> Level {
+    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed> {
         let energy = self.energy(runs) / self.start;
         if !energy.is_finite() {
-            Level::NotFinite
+            Err(Probed::not_finite(step))
         } else if energy < GONE {
-            Level::Gone
+            Err(Probed::decays())
         } else if energy > BLOWN_UP {
-            Level::Exploded(energy.ln())
+            Err(Probed::explodes(energy.ln(), step))
         } else {
-            Level::Log(energy.ln())
+            let (log, high) = (energy.ln(), false);
+            Ok(Level { log, high })
         }
     }
 
@@ -189,7 +190,7 @@ pub(super) struct ExcessEnergy {
     /// S, J.
     scale: f64,
     start: f64,
-    /// What gravity and wind give a free fall, J/s²: its energy is this times t².
+    /// See [`free_fall`], J/s².
     fall: f64,
     /// Times the scale beyond which a run is lost whatever it does next.
     bound: f64,
@@ -218,17 +219,11 @@ impl ExcessEnergy {
         bound: f64,
         late: f64,
     ) -> Self {
-        let wind = scene.wind.as_ref().map_or(0.0, |wind| wind.strength.abs());
-        let free = scene.particles.iter().filter(|p| !p.fixed);
-        let fall = free.map(|p| {
-            let a = scene.solver.gravity.abs() + wind / p.mass;
-            0.5 * p.mass * a * a
-        });
         Self {
             scale,
             start: energy_less_work(&system, runs.state(0)),
             system,
-            fall: fall.sum(),
+            fall: free_fall(scene),
             bound,
             late: (late, f64::NEG_INFINITY),
         }
@@ -252,28 +247,28 @@ fn energy_less_work(system: &ParticleSystem, state: &State) -> f64 {
 }
 
 impl Gauge for ExcessEnergy {
-    fn level(&mut self, runs: &Runs) -> Level {
+    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed> {
         let state = runs.state(0);
         let moving = self.system.kinetic(&state.v) + self.system.elastic(state.t, &state.x);
         let excess = energy_less_work(&self.system, state) - self.start;
         if !state.is_finite() || !excess.is_finite() || !moving.is_finite() {
-            return Level::NotFinite;
+            return Err(Probed::not_finite(step));
         }
         if state.t >= self.late.0 {
             self.late.1 = self.late.1.max(self.balance(runs));
         }
         let allowed = self.bound * self.scale + 1e3 * (self.fall * state.t * state.t);
         if moving > allowed {
-            return Level::Exploded((moving / self.scale).ln());
+            return Err(Probed::explodes((moving / self.scale).ln(), step));
         }
         let counted = if excess > 0.0 {
             (excess - NEGLIGIBLE * moving).max(0.0)
         } else {
             excess
         };
-        if counted > SATURATED * self.scale && counted > 0.1 * moving {
-            return Level::High((1.0 + counted / self.scale).ln());
-        }
-        Level::Log((1.0 + counted / self.scale).max(FLOOR).ln())
+        Ok(Level {
+            log: (1.0 + counted / self.scale).max(FLOOR).ln(),
+            high: counted > SATURATED * self.scale && counted > 0.1 * moving,
+        })
     }
 }

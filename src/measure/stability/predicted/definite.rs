@@ -12,10 +12,10 @@
 //! Each is a decreasing function of h but for a positive factor. What is unstable in truth (K < 0)
 //! leaves through μ = 1 and does not matter here.
 
-use super::krylov::{self, Nodes};
-use super::mode::Mode;
+use super::krylov;
 use super::parts::Part;
-use super::verdict::Verdict;
+use super::prediction::Prediction;
+use super::spectrum::Mode;
 use super::{Effort, Limit};
 use crate::integrators::{Amplification, DampingTreatment, Stage, bisect};
 
@@ -27,10 +27,15 @@ pub(super) enum Definite {
     Material,
 }
 
+/// Vectors an action of the damping's function takes at most.
+const INNER: usize = 80;
+/// Newton's iteration on the form squares its error.
+const ITERATIONS: usize = 40;
+
 impl Definite {
     /// None of methods with more than one kick, after merging neighbours, the step's last stage being
     /// the next one's neighbour. Textbook kicks do not merge.
-    pub(super) fn of(amplification: Amplification) -> Option<Self> {
+    pub fn of(amplification: Amplification) -> Option<Self> {
         let (stages, damping) = match amplification {
             Amplification::Rational(_) => return None,
             Amplification::MaterialImplicit => return Some(Self::Material),
@@ -48,7 +53,7 @@ impl Definite {
     }
 
     /// The limit of a mode damped by itself; None where there is none.
-    pub(super) fn limit_of(self, mode: Mode) -> Option<f64> {
+    pub fn limit_of(self, mode: Mode) -> Option<f64> {
         self.root(mode.stiffness, 0.0, &[(mode.damping, 1.0)])
     }
 
@@ -79,6 +84,86 @@ impl Definite {
             }
         }
     }
+
+    /// What a part allows, without growth: Newton's iteration on h, each time for the vector whose form is the
+    /// first to vanish. None where Lanczos does not converge. K, C and K' are taken for symmetric.
+    pub fn limit(self, part: &Part, effort: &Effort) -> Option<Prediction> {
+        let n = part.n();
+        let Part {
+            stiffness,
+            damping,
+            material,
+            ..
+        } = part;
+        let flows = self == Self::ExactFlow && damping.norm() > 0.0;
+        let damp = |x: &[f64], y: &mut [f64]| damping.product(x, y);
+        // A first vector: of the stiffness, or, where there is none, of the damping.
+        let stiff = |x: &[f64], y: &mut [f64]| {
+            stiffness.product(x, y);
+            if self == Self::Material {
+                material.add_product(-2.0, x, y);
+            }
+        };
+        let (largest, mut q) = krylov::top(n, &stiff, effort)?;
+        let rounding = 1e-13 * (stiffness.norm() + material.norm());
+        let mut found = Prediction::only(Limit::Unconditional);
+        if largest <= rounding {
+            if self != Self::Explicit || damping.norm() == 0.0 {
+                return Some(found);
+            }
+            q = krylov::top(n, &damp, effort)?.1;
+        }
+        let at_most = flows && n > effort.flow;
+        found.reason =
+            at_most.then(|| "at most: damping couples too many modes to look at all".to_owned());
+        let mut h = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let mode = Mode {
+                stiffness: stiffness.form(&q),
+                damping: damping.form(&q),
+            };
+            let nodes = if flows {
+                krylov::nodes(&damp, &q, INNER)?.nodes
+            } else {
+                vec![(mode.damping, 1.0)]
+            };
+            let Some(next) = self.root(mode.stiffness, material.form(&q), &nodes) else {
+                break;
+            };
+            let done = next >= h * (1.0 - 1e-13);
+            if next < h {
+                h = next;
+                found.limit = Limit::At(h);
+                found.binding = Some(mode);
+            }
+            if done || at_most {
+                break;
+            }
+            let product = |x: &[f64], y: &mut [f64]| {
+                y.fill(0.0);
+                stiffness.add_product(h * h, x, y);
+                if flows {
+                    if let Some(nodes) = krylov::nodes(&damp, x, INNER) {
+                        nodes.action(-1.0, &|c| flow(h * c), y);
+                    }
+                    return;
+                }
+                match self {
+                    Self::Explicit => damping.add_product(2.0 * h, x, y),
+                    Self::Material => {
+                        material.add_product(-2.0 * h * h, x, y);
+                        damping.add_product(-2.0 * h, x, y);
+                    }
+                    Self::ExactFlow => {}
+                }
+                for (y, x) in y.iter_mut().zip(x) {
+                    *y -= 4.0 * x;
+                }
+            };
+            q = krylov::top(n, &product, effort)?.1;
+        }
+        Some(found)
+    }
 }
 
 /// 2 u coth(u/2): 4 without damping.
@@ -88,95 +173,4 @@ fn flow(u: f64) -> f64 {
         return 4.0 + u * u / 3.0;
     }
     2.0 * u / (0.5 * u).tanh()
-}
-
-/// Vectors an action of the damping's function takes at most.
-const INNER: usize = 80;
-/// Newton's iteration on the form squares its error.
-const ITERATIONS: usize = 40;
-
-/// Of a unit vector: its stiffness, its stiffness along springs, and nodes of its damping.
-type Forms = (f64, f64, Vec<(f64, f64)>);
-
-/// What a part allows, without growth. None where Lanczos does not converge. K, C and K' are taken for symmetric.
-pub(super) fn limit(kind: Definite, part: &Part, effort: &Effort) -> Option<Verdict> {
-    let n = part.n();
-    let Part {
-        stiffness,
-        damping,
-        material,
-        ..
-    } = part;
-    let flows = kind == Definite::ExactFlow && damping.norm() > 0.0;
-    let damp = |x: &[f64], y: &mut [f64]| damping.product(x, y);
-    let forms = |q: &[f64]| -> Option<Forms> {
-        let nodes = if flows {
-            let Nodes { nodes, weights, .. } = krylov::nodes(&damp, q, INNER)?;
-            nodes.into_iter().zip(weights).collect()
-        } else {
-            vec![(damping.form(q), 1.0)]
-        };
-        Some((stiffness.form(q), material.form(q), nodes))
-    };
-    // A first vector: of the stiffness, or, where there is none, of the damping.
-    let stiff = |x: &[f64], y: &mut [f64]| {
-        stiffness.product(x, y);
-        if kind == Definite::Material {
-            material.add_product(-2.0, x, y);
-        }
-    };
-    let (largest, mut q) = krylov::top(n, &stiff, effort)?;
-    let rounding = 1e-13 * (stiffness.norm() + material.norm());
-    let mut found = Verdict::only(Limit::Unconditional);
-    if largest <= rounding {
-        if kind != Definite::Explicit || damping.norm() == 0.0 {
-            return Some(found);
-        }
-        q = krylov::top(n, &damp, effort)?.1;
-    }
-    let at_most = flows && n > effort.flow;
-    found.note =
-        at_most.then(|| "at most: damping couples too many modes to look at all".to_owned());
-    let mut h = f64::INFINITY;
-    for _ in 0..ITERATIONS {
-        let (k, m, nodes) = forms(&q)?;
-        let Some(next) = kind.root(k, m, &nodes) else {
-            break;
-        };
-        let done = next >= h * (1.0 - 1e-13);
-        if next < h {
-            h = next;
-            found.limit = Limit::At(h);
-            found.binding = Some(Mode {
-                stiffness: k,
-                damping: damping.form(&q),
-            });
-        }
-        if done || at_most {
-            break;
-        }
-        let product = |x: &[f64], y: &mut [f64]| {
-            y.fill(0.0);
-            stiffness.add_product(h * h, x, y);
-            if flows {
-                if let Some(nodes) = krylov::nodes(&damp, x, INNER) {
-                    nodes.action(-1.0, &|c| flow(h * c), y);
-                }
-                return;
-            }
-            match kind {
-                Definite::Explicit => damping.add_product(2.0 * h, x, y),
-                Definite::Material => {
-                    material.add_product(-2.0 * h * h, x, y);
-                    damping.add_product(-2.0 * h, x, y);
-                }
-                Definite::ExactFlow => {}
-            }
-            for (y, x) in y.iter_mut().zip(x) {
-                *y -= 4.0 * x;
-            }
-        };
-        q = krylov::top(n, &product, effort)?.1;
-    }
-    Some(found)
 }

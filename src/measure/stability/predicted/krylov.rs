@@ -5,8 +5,8 @@
 //! Large Eigenvalue Problems, 2nd ed., algorithms 6.2 and 6.5.)
 
 use super::Effort;
+use super::parts::{dot, norm};
 use crate::krylov::Space;
-use crate::measure::stability::matrix::{dot, norm};
 use faer::Mat;
 use nalgebra::Complex;
 
@@ -15,26 +15,17 @@ pub(super) type Product<'a> = &'a dyn Fn(&[f64], &mut [f64]);
 
 /// Up to this size a matrix is formed and solved whole.
 const SMALL: usize = 48;
-/// Residual of an estimate, relative to the spectrum; the eigenvalue is then good to its square, times the
-/// gap.
-const ESTIMATE: f64 = 1e-5;
 
 /// The largest eigenvalue (not magnitude) of a symmetric matrix and its unit vector. None where it
 /// does not converge.
 pub(super) fn top(n: usize, product: Product, effort: &Effort) -> Option<(f64, Vec<f64>)> {
-    let (value, vector, found) = restarted(n, product, effort, effort.found)?;
+    let (value, vector, found) = best(n, product, effort, effort.found)?;
     found.then_some((value, vector))
 }
 
-/// As [`top`], but the best there is where it does not converge: an eigenvalue from below.
-pub(super) fn top_estimate(n: usize, product: Product, effort: &Effort) -> Option<(f64, Vec<f64>)> {
-    let (value, vector, _) = restarted(n, product, effort, ESTIMATE)?;
-    Some((value, vector))
-}
-
-/// The top pair, by Lanczos begun anew from its best vector until the residual is at most `enough` of the
-/// spectrum's size; and whether it is.
-fn restarted(
+/// As [`top`], by Lanczos begun anew from its best vector until the residual is at most `enough` of the
+/// spectrum's size, and whether it is. Where it is not the eigenvalue is one from below.
+pub(super) fn best(
     n: usize,
     product: Product,
     effort: &Effort,
@@ -103,15 +94,29 @@ fn projected<D: Fn(&[f64], &[f64]) -> f64>(space: &Space<D>) -> Option<(Vec<f64>
     Some((values, eigen.U().to_owned()))
 }
 
-/// Nodes θ and weights w, summing to |q|², with qᵀ f(A) q = Σ w f(θ) exactly for polynomials f of a
-/// degree below twice their number (Golub, Meurant 1994); and what f(A) q needs: [`Nodes::action`].
+/// A function f of a symmetric matrix A at a vector q, from one Krylov space.
 pub(super) struct Nodes {
-    pub nodes: Vec<f64>,
-    /// Of each node, with the length of q.
-    pub weights: Vec<f64>,
+    /// θ and weights w, summing to |q|², with qᵀ f(A) q = Σ w f(θ) exactly for polynomials f of a degree
+    /// below twice their number (Golub, Meurant 1994).
+    pub nodes: Vec<(f64, f64)>,
     vectors: Mat<f64>,
     basis: Vec<Vec<f64>>,
     length: f64,
+}
+
+impl Nodes {
+    /// y += a f(A) q.
+    pub fn action(&self, a: f64, f: &dyn Fn(f64) -> f64, y: &mut [f64]) {
+        for (row, q) in self.basis.iter().enumerate() {
+            let terms = self.nodes.iter().enumerate();
+            let sum: f64 = terms
+                .map(|(k, (node, _))| self.vectors[(row, k)] * self.vectors[(0, k)] * f(*node))
+                .sum();
+            for (y, q) in y.iter_mut().zip(q) {
+                *y += a * self.length * sum * q;
+            }
+        }
+    }
 }
 
 /// Of a symmetric matrix and q: a space of at most `most` vectors.
@@ -125,45 +130,27 @@ pub(super) fn nodes(product: Product, q: &[f64], most: usize) -> Option<Nodes> {
         }
         space.extend()?;
     }
-    let (nodes, vectors) = projected(&space)?;
+    let (values, vectors) = projected(&space)?;
     let length = norm(q);
-    let first = |k: usize| length * length * vectors[(0, k)] * vectors[(0, k)];
+    let weight = |k: usize| length * length * vectors[(0, k)] * vectors[(0, k)];
+    let nodes = values.into_iter().enumerate();
     Some(Nodes {
-        weights: (0..nodes.len()).map(first).collect(),
-        nodes,
+        nodes: nodes.map(|(k, node)| (node, weight(k))).collect(),
         vectors,
         basis: space.basis,
         length,
     })
 }
 
-impl Nodes {
-    /// y += a f(A) q.
-    pub(super) fn action(&self, a: f64, f: &dyn Fn(f64) -> f64, y: &mut [f64]) {
-        for (row, q) in self.basis.iter().enumerate() {
-            let terms = self.nodes.iter().enumerate();
-            let sum: f64 = terms
-                .map(|(k, &node)| self.vectors[(row, k)] * self.vectors[(0, k)] * f(node))
-                .sum();
-            for (y, q) in y.iter_mut().zip(q) {
-                *y += a * self.length * sum * q;
-            }
-        }
-    }
-}
-
 /// Eigenvalues of largest magnitude of any real matrix, those with Im >= 0, largest first: down to
-/// `inner` times the largest, or as many as one space of the effort's size finds.
+/// `inner` times the largest, or as many as one space of the effort's size finds. None where one cannot be
+/// built.
 pub(super) fn outermost(
     n: usize,
     product: Product,
     inner: f64,
     effort: &Effort,
-) -> Vec<Complex<f64>> {
-    arnoldi(n, product, inner, effort).unwrap_or_default()
-}
-
-fn arnoldi(n: usize, product: Product, inner: f64, effort: &Effort) -> Option<Vec<Complex<f64>>> {
+) -> Option<Vec<Complex<f64>>> {
     let mut space = Space::new(unit(&noise(n))?, dot);
     let mut check = 32;
     loop {

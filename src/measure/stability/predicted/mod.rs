@@ -1,130 +1,89 @@
 //! Limits from theory: the scene linearised about a state, its modes, and what a step of a method does to
 //! each.
 
-mod coupled;
 mod definite;
 mod krylov;
-mod mode;
+mod maps;
 mod parts;
+mod prediction;
+mod regions;
 mod spectrum;
-mod verdict;
 
 use super::Limit;
-use crate::integrators::Method;
+use crate::integrators::{Amplification, Method};
 use crate::physics::{State, System};
 use crate::scene::{DampingModel, Scene};
-use spectrum::{Solved, Spectrum};
-use verdict::Verdict;
+pub use prediction::Prediction;
+use serde::{Deserialize, Serialize};
+use spectrum::{Known, Spectrum};
+
+/// Where along the trajectory the predicted limit is smallest.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct TightestLimit {
+    pub limit_s: f64,
+    pub t_s: f64,
+}
 
 /// x'' = -K x - C v about a state, mass-normalised, as its parts that do not couple.
 #[derive(Debug, Clone)]
 pub struct Linearised {
     /// Those with a spectrum.
-    parts: Vec<Solved>,
-    excluded: Vec<Excluded>,
-    omega_max: Option<f64>,
+    parts: Vec<Spectrum>,
+    excluded: Vec<String>,
     /// Why nothing, or not everything, can be said.
     failed: Option<&'static str>,
     effort: Effort,
 }
 
-/// Modes the prediction leaves out.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Excluded {
-    /// Such as `2 modes that grow in truth (compressed springs, attraction)`.
-    pub what: String,
-    pub count: usize,
-}
-
-/// What one method does to a linearised scene.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Prediction {
-    pub limit: Limit,
-    /// ln(spectral radius) / h of the amplitude at the timestep asked for, 1/s; at most 0 where it
-    /// is stable, 0 where nothing moves but freely. None where it would take the full spectrum of too
-    /// many coordinates.
-    pub growth_per_s: Option<f64>,
-    /// Where nothing oscillates (drag alone, overdamped modes): the largest step, s, up to which every
-    /// mode decays without changing sign from step to step; None where something oscillates in truth,
-    /// where no step is too large (`reason` says so), and for splittings where damping couples modes.
-    pub smooth_below_s: Option<f64>,
-    /// What there is to say in words: which mode binds, or why there is no limit.
-    pub reason: Option<String>,
-}
-
 impl Linearised {
-    /// About the state (t, x, v) of all particles, fixed ones included (3n coordinates).
+    /// About the state of all particles, fixed ones included (3n coordinates).
     ///
-    /// Not cheap: the full spectrum of up to 600 coordinates that couple.
-    pub fn at<S: System + ?Sized>(system: &S, t: f64, x: &[f64], v: &[f64]) -> Self {
-        Self::with(Effort::FULL, system, t, x, v)
-    }
-
-    /// With less care for large scenes: what a run can afford to be warned.
-    pub fn brief<S: System + ?Sized>(system: &S, t: f64, x: &[f64], v: &[f64]) -> Self {
-        Self::with(Effort::BRIEF, system, t, x, v)
-    }
-
-    /// With limits on the work of one's own.
-    pub fn with<S: System + ?Sized>(
-        effort: Effort,
-        system: &S,
-        t: f64,
-        x: &[f64],
-        v: &[f64],
-    ) -> Self {
+    /// Not cheap: at full effort the whole spectrum of up to 600 coordinates that couple.
+    pub fn new<S: System + ?Sized>(system: &S, state: &State, effort: Effort) -> Self {
         let mut linearised = Self {
             parts: Vec::new(),
             excluded: Vec::new(),
-            omega_max: None,
             failed: None,
             effort,
         };
-        let Some(parts) = parts::parts(system, t, x, v) else {
+        let Some(parts) = parts::parts(system, state) else {
             linearised.failed = Some("a derivative of the forces is not finite here");
             return linearised;
         };
         let (mut at_rest, mut unstable, mut uncounted) = (0, 0, 0);
         for part in parts {
-            let Some(solved) = spectrum::solve(part, &effort) else {
+            let Some(spectrum) = spectrum::solve(part, &effort) else {
                 linearised.failed = Some("the eigenvalues of the linearised scene do not converge");
                 continue;
             };
-            match solved.left_out {
+            let copies = spectrum.part.copies;
+            match spectrum.left_out {
                 Some(left_out) => {
-                    at_rest += solved.part.copies * left_out.at_rest;
-                    unstable += solved.part.copies * left_out.unstable;
+                    at_rest += copies * left_out.at_rest;
+                    unstable += copies * left_out.unstable;
                 }
-                None => uncounted += solved.part.copies * solved.part.n(),
+                None => uncounted += copies * spectrum.part.n(),
             }
-            linearised.parts.push(solved);
+            linearised.parts.push(spectrum);
         }
-        let omegas = linearised.parts.iter();
-        let omegas = omegas.filter_map(|solved| solved.spectrum.omega_max());
-        linearised.omega_max = omegas.max_by(f64::total_cmp);
-        let mut exclude = |count: usize, what: &str| {
-            if count > 0 {
-                linearised.excluded.push(Excluded {
-                    what: format!("{count} mode{} {what}", if count == 1 { "" } else { "s" }),
-                    count,
-                });
-            }
-        };
-        exclude(
-            at_rest,
-            "without restoring force (rigid motion, free particles)",
-        );
-        exclude(
-            unstable,
-            "that grow in truth (compressed springs, attraction)",
-        );
+        for (count, what) in [
+            (
+                at_rest,
+                "without restoring force (rigid motion, free particles)",
+            ),
+            (
+                unstable,
+                "that grow in truth (compressed springs, attraction)",
+            ),
+        ] {
+            let s = if count == 1 { "" } else { "s" };
+            let some = (count > 0).then(|| format!("{count} mode{s} {what}"));
+            linearised.excluded.extend(some);
+        }
         if uncounted > 0 {
-            linearised.excluded.push(Excluded {
-                what: format!(
-                    "modes that rest or grow in truth among {uncounted} coordinates, too many to count"
-                ),
-                count: 0,
-            });
+            linearised.excluded.push(format!(
+                "modes that rest or grow in truth among {uncounted} coordinates, too many to count"
+            ));
         }
         linearised
     }
@@ -132,66 +91,69 @@ impl Linearised {
     /// The largest angular frequency, rad/s; None where nothing oscillates, or nobody knows
     /// ([`Self::is_unsure`]).
     pub fn omega_max(&self) -> Option<f64> {
-        self.omega_max
+        let omegas = self.parts.iter().filter_map(Spectrum::omega_max);
+        omegas.max_by(f64::total_cmp)
     }
 
     /// Whether [`Self::omega_max`] is None because nobody knows.
     pub fn is_unsure(&self) -> bool {
-        let unknown = |solved: &Solved| matches!(solved.spectrum, Spectrum::Outermost { .. });
-        self.omega_max.is_none() && (self.failed.is_some() || self.parts.iter().any(unknown))
+        let unknown = |part: &Spectrum| matches!(part.known, Known::Outermost(_));
+        self.omega_max().is_none() && (self.failed.is_some() || self.parts.iter().any(unknown))
     }
 
     /// A bound on the rates of damping, 1/s: by row sums, no less than the largest.
     pub fn damping_max(&self) -> f64 {
-        let parts = self.parts.iter().map(|s| s.part.damping.norm());
-        parts.fold(0.0, f64::max)
+        let norms = self.parts.iter().map(|of| of.part.damping.norm());
+        norms.fold(0.0, f64::max)
     }
 
-    /// What the prediction leaves out, in words and numbers.
-    pub fn excluded(&self) -> &[Excluded] {
+    /// The modes the prediction leaves out, in words and numbers, such as `2 modes that grow in truth
+    /// (compressed springs, attraction)`.
+    pub fn excluded(&self) -> &[String] {
         &self.excluded
     }
 
     /// What `method` does to it: its limit, and its growth at `timestep`, s.
     pub fn predict(&self, method: &Method, timestep: f64) -> Prediction {
-        let verdict = self.verdict(method, timestep);
+        let parts = self
+            .parts
+            .iter()
+            .filter_map(|part| match method.amplification {
+                Amplification::Rational(rational) => regions::predict(&rational, part, timestep),
+                other => maps::predict(other, part, timestep, &self.effort),
+            });
+        let all = parts.chain(self.failed.map(Prediction::unknown));
+        let whole = all.reduce(Prediction::and);
         let (undamped, modes) = self.undamped();
-        Prediction {
-            reason: verdict.reason(undamped, modes),
-            limit: verdict.limit,
-            growth_per_s: verdict.growth.filter(|growth| growth.is_finite()),
-            smooth_below_s: verdict.smooth.filter(|smooth| smooth.is_finite()),
-        }
-    }
-
-    fn verdict(&self, method: &Method, timestep: f64) -> Verdict {
-        let parts = self.parts.iter().filter_map(|solved| {
-            verdict::part(method.amplification, solved, timestep, &self.effort)
-        });
-        let all = parts.chain(self.failed.map(Verdict::unknown));
-        all.reduce(Verdict::and).unwrap_or_else(Verdict::at_rest)
+        whole
+            .unwrap_or_else(Prediction::at_rest)
+            .explained(undamped, modes)
     }
 
     /// Modes that neither decay nor rest, and all that do not rest; zeros where nobody counted.
     fn undamped(&self) -> (usize, usize) {
         let mut counts = (0, 0);
-        for solved in &self.parts {
-            let (undamped, all) = match &solved.spectrum {
-                Spectrum::Modes(modes) => {
-                    let undamped = modes.iter().filter(|mode| mode.damping == 0.0);
-                    (undamped.count(), modes.len())
-                }
-                Spectrum::Roots(roots) => {
-                    let undamped = roots.iter().filter(|root| root.re == 0.0);
-                    (undamped.count(), roots.len())
-                }
-                Spectrum::Sampled(_) | Spectrum::Outermost { .. } => return (0, 0),
-            };
-            counts.0 += solved.part.copies * undamped;
-            counts.1 += solved.part.copies * all;
+        for Spectrum {
+            part, modes, known, ..
+        } in &self.parts
+        {
+            if !matches!(known, Known::All) {
+                return (0, 0);
+            }
+            let undamped = modes.iter().filter(|mode| mode.damping == 0.0).count();
+            counts.0 += part.copies * undamped;
+            counts.1 += part.copies * modes.len();
         }
         counts
     }
+}
+
+/// A time, s, no longer than the shortest time scale of the forces about a state: from the row sums of the
+/// Jacobians (Gershgorin). None where no force depends on the state.
+pub(super) fn shortest<S: System + ?Sized>(system: &S, state: &State) -> Option<f64> {
+    let parts = parts::parts(system, state)?;
+    let rate = parts.iter().map(|part| part.rate()).fold(0.0, f64::max);
+    (rate > 0.0 && rate.is_finite()).then(|| 1.0 / rate)
 }
 
 /// Sizes, in coordinates that couple, up to which things are done, and how far Krylov spaces go.
@@ -243,15 +205,6 @@ impl Effort {
     };
 }
 
-/// Where along a trajectory a limit is tightest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Tightest {
-    /// Seconds.
-    pub limit_s: f64,
-    /// When, s.
-    pub t_s: f64,
-}
-
 /// A trajectory linearised at some of its states; made once for all methods.
 #[derive(Debug, Clone)]
 pub struct Along {
@@ -279,21 +232,18 @@ impl Along {
         let states = places
             .into_iter()
             .filter_map(|at| states.get(at))
-            .map(|state| {
-                let State { t, x, v, .. } = state;
-                (*t, Linearised::with(Effort::BRIEF, system, *t, x, v))
-            })
+            .map(|state| (state.t, Linearised::new(system, state, Effort::BRIEF)))
             .collect();
         Self { states }
     }
 
     /// The least limit, and when. None where no state has one that is known: it is stable at every
     /// step, or at none.
-    pub fn tightest(&self, method: &Method) -> Option<Tightest> {
+    pub fn tightest(&self, method: &Method) -> Option<TightestLimit> {
         let limits = self.states.iter().filter_map(|(t_s, linearised)| {
             // Any timestep: growth is not asked for.
-            match linearised.verdict(method, 1.0).limit {
-                Limit::At(limit_s) => Some(Tightest { limit_s, t_s: *t_s }),
+            match linearised.predict(method, 1.0).limit {
+                Limit::At(limit_s) => Some(TightestLimit { limit_s, t_s: *t_s }),
                 _ => None,
             }
         });

@@ -1,7 +1,7 @@
 //! The mass-normalised matrices of x'' = -K x - C v, and the parts of them that do not couple.
 
-use crate::measure::stability::matrix::Matrix;
-use crate::physics::{Jacobian, Linearization, System, Triplets};
+use crate::physics::{Jacobian, Linearization, State, System, Triplets};
+use faer::Mat;
 use std::cmp::Ordering;
 
 /// Coordinates that couple with each other and with no others, such as all x of a chain along x.
@@ -25,6 +25,11 @@ impl Part {
         self.stiffness.n()
     }
 
+    /// A bound on the rates of its motion, 1/s.
+    pub fn rate(&self) -> f64 {
+        self.stiffness.norm().sqrt().max(self.damping.norm())
+    }
+
     fn matrices(&self) -> [&Matrix; 3] {
         [&self.stiffness, &self.damping, &self.material]
     }
@@ -40,20 +45,16 @@ impl Part {
 /// Entries of sums of a few forces agree with their mirror images to a few roundings.
 const SYMMETRIC: f64 = 1e-13;
 
-/// The scene's parts at (t, x, v), largest first, equal ones together; None where a derivative is not
+/// The scene's parts about a state, largest first, equal ones together; None where a derivative is not
 /// finite.
-pub(super) fn parts<S: System + ?Sized>(
-    system: &S,
-    t: f64,
-    x: &[f64],
-    v: &[f64],
-) -> Option<Vec<Part>> {
+pub(super) fn parts<S: System + ?Sized>(system: &S, state: &State) -> Option<Vec<Part>> {
+    let State { t, x, v, .. } = state;
     let inverse_mass = system.inverse_mass();
     let n = system.dim();
     let mut exact = Jacobian::default();
-    system.jacobian(t, x, v, Linearization::Exact, &mut exact);
+    system.jacobian(*t, x, v, Linearization::Exact, &mut exact);
     let mut material = Jacobian::default();
-    system.jacobian(t, x, v, Linearization::Material, &mut material);
+    system.jacobian(*t, x, v, Linearization::Material, &mut material);
     let scaled = |triplets: &Triplets| scaled(n, inverse_mass, triplets);
     let whole = [
         scaled(&exact.position)?,
@@ -93,8 +94,7 @@ fn scaled(n: usize, inverse_mass: &[f64], triplets: &Triplets) -> Option<Matrix>
     let sizes: Vec<f64> = (0..n).map(size).collect();
     let kept = matrix
         .entries()
-        .filter(|&(i, j, v)| v.abs() > f64::EPSILON * (sizes[i] * sizes[j]).sqrt())
-        .collect();
+        .filter(|&(i, j, v)| v.abs() > f64::EPSILON * (sizes[i] * sizes[j]).sqrt());
     Some(Matrix::new(n, kept))
 }
 
@@ -142,4 +142,132 @@ fn separate(whole: &[Matrix; 3], inverse_mass: &[f64]) -> Vec<Part> {
         }
     };
     members.iter().map(part).collect()
+}
+
+/// A square sparse matrix. Of each row its columns, ascending, and their entries.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Matrix {
+    rows: Vec<Vec<(usize, f64)>>,
+}
+
+impl Matrix {
+    /// Repeated places add up, in the order given.
+    pub fn new(n: usize, entries: impl IntoIterator<Item = (usize, usize, f64)>) -> Self {
+        let mut rows = vec![Vec::new(); n];
+        for (row, column, value) in entries {
+            rows[row].push((column, value));
+        }
+        for row in &mut rows {
+            row.sort_by_key(|&(column, _)| column);
+            row.dedup_by(|next, kept| {
+                let same = next.0 == kept.0;
+                if same {
+                    kept.1 += next.1;
+                }
+                same
+            });
+        }
+        Self { rows }
+    }
+
+    pub fn n(&self) -> usize {
+        self.rows.len()
+    }
+
+    pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let rows = self.rows.iter().enumerate();
+        rows.flat_map(|(row, entries)| entries.iter().map(move |&(column, v)| (row, column, v)))
+    }
+
+    /// By the number of their entries, then by these in turn.
+    pub fn order(&self, other: &Self) -> Ordering {
+        let values = |m: &Self| -> Vec<f64> { m.entries().map(|(.., value)| value).collect() };
+        let (own, others) = (values(self), values(other));
+        let values = own.partial_cmp(&others).unwrap_or(Ordering::Equal);
+        own.len().cmp(&others.len()).then(values)
+    }
+
+    /// The entry at this place, 0 where there is none.
+    pub fn at(&self, row: usize, column: usize) -> f64 {
+        let found = self.rows[row].iter().find(|entry| entry.0 == column);
+        found.map_or(0.0, |entry| entry.1)
+    }
+
+    /// The part of it over these coordinates, ascending, which couple with no others; `place` numbers
+    /// them 0, 1, ... .
+    pub fn part(&self, coordinates: &[usize], place: &[usize]) -> Self {
+        let renumbered = |&(column, value): &(usize, f64)| (place[column], value);
+        let row = |&row: &usize| self.rows[row].iter().map(renumbered).collect();
+        Self {
+            rows: coordinates.iter().map(row).collect(),
+        }
+    }
+
+    /// a A + b B.
+    pub fn combined(&self, a: f64, other: &Self, b: f64) -> Self {
+        let ours = self.entries().map(|(row, column, v)| (row, column, a * v));
+        let theirs = other.entries().map(|(row, column, v)| (row, column, b * v));
+        Self::new(self.n(), ours.chain(theirs))
+    }
+
+    fn transposed(&self) -> Self {
+        let turned = self.entries().map(|(row, column, v)| (column, row, v));
+        Self::new(self.n(), turned)
+    }
+
+    pub fn symmetric_part(&self) -> Self {
+        self.combined(0.5, &self.transposed(), 0.5)
+    }
+
+    /// Largest |A - Aᵀ|.
+    pub fn skewness(&self) -> f64 {
+        let difference = self.combined(1.0, &self.transposed(), -1.0);
+        difference.entries().fold(0.0, |m, (.., v)| m.max(v.abs()))
+    }
+
+    /// Largest sum of magnitudes in a row: no eigenvalue is larger.
+    pub fn norm(&self) -> f64 {
+        let sum = |row: &Vec<(usize, f64)>| row.iter().map(|(_, v)| v.abs()).sum();
+        self.rows.iter().map(sum).fold(0.0, f64::max)
+    }
+
+    /// y = A x.
+    pub fn product(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        self.add_product(1.0, x, y);
+    }
+
+    /// y += a A x.
+    pub fn add_product(&self, a: f64, x: &[f64], y: &mut [f64]) {
+        for (y, row) in y.iter_mut().zip(&self.rows) {
+            let mut sum = 0.0;
+            for &(column, value) in row {
+                sum += value * x[column];
+            }
+            *y += a * sum;
+        }
+    }
+
+    /// xᵀ A x.
+    pub fn form(&self, x: &[f64]) -> f64 {
+        let mut y = vec![0.0; x.len()];
+        self.add_product(1.0, x, &mut y);
+        dot(x, &y)
+    }
+
+    pub fn dense(&self) -> Mat<f64> {
+        let mut dense = Mat::zeros(self.n(), self.n());
+        for (row, column, value) in self.entries() {
+            dense[(row, column)] = value;
+        }
+        dense
+    }
+}
+
+pub(super) fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+pub(super) fn norm(x: &[f64]) -> f64 {
+    dot(x, x).sqrt()
 }

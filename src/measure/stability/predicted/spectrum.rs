@@ -1,28 +1,35 @@
-//! The modes of one part of a linearised scene.
+//! The modes of one part of a linearised scene: x'' = -κ x - c x' of each.
 
 use super::Effort;
 use super::krylov;
-use super::mode::Mode;
-use super::parts::Part;
-use crate::measure::stability::matrix::Matrix;
+use super::parts::{Matrix, Part};
 use faer::{Mat, Side};
 use nalgebra::Complex;
 
-/// What is known of a part's modes; those at rest and those unstable in truth are left out.
+/// A part and what is known of its modes; those at rest and those unstable in truth are left out.
 #[derive(Debug, Clone)]
-pub(super) enum Spectrum {
-    /// All, where damping acts on each mode by itself (C a combination of K and 1).
-    Modes(Vec<Mode>),
-    /// All eigenvalues with Im >= 0 of (x, v)' = (v, -K x - C v).
-    Roots(Vec<Complex<f64>>),
-    /// A sample of a large part's modes, damped by themselves, the last the stiffest.
-    Sampled(Vec<Mode>),
+pub(super) struct Spectrum {
+    pub part: Part,
+    /// Whether damping acts on each mode by itself (C a combination of K and 1).
+    pub proportional: bool,
+    /// Where it does the modes, ascending in stiffness; else one for each eigenvalue.
+    pub modes: Vec<Mode>,
+    /// Eigenvalues with Im >= 0 of (x, v)' = (v, -K x - C v), 1/s, and the mode each belongs to.
+    pub eigenvalues: Vec<(Complex<f64>, Mode)>,
+    pub known: Known,
+    /// None where nobody counted.
+    pub left_out: Option<LeftOut>,
+}
+
+/// How much of a spectrum is known.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Known {
+    All,
+    /// A sample of a large part's modes, the last the stiffest.
+    Sampled,
     /// A large part's outermost eigenvalues, the farthest first; the others lie within the last. None
     /// where they are too close together to be found.
-    Outermost {
-        roots: Vec<Complex<f64>>,
-        bound: Option<Bound>,
-    },
+    Outermost(Option<Bound>),
 }
 
 /// What is known without any eigenvalue.
@@ -34,28 +41,6 @@ pub(super) struct Bound {
     pub radius: f64,
 }
 
-impl Spectrum {
-    /// The largest frequency of what oscillates, rad/s.
-    pub(super) fn omega_max(&self) -> Option<f64> {
-        let fastest = |modes: &[Mode]| {
-            let oscillating = modes.iter().filter(|mode| mode.oscillates());
-            oscillating.map(|mode| mode.omega()).max_by(f64::total_cmp)
-        };
-        let fastest_root = |roots: &[Complex<f64>]| {
-            let oscillating = roots.iter().filter(|root| root.im > 0.0);
-            oscillating.map(|root| root.norm()).max_by(f64::total_cmp)
-        };
-        match self {
-            Self::Modes(modes) | Self::Sampled(modes) => fastest(modes),
-            Self::Roots(roots) => fastest_root(roots),
-            // Roots may be decays only, while others within them oscillate.
-            Self::Outermost { roots, bound } => {
-                fastest_root(roots).or_else(|| fastest(&[bound.as_ref()?.stiffest]))
-            }
-        }
-    }
-}
-
 /// Modes that are left out.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LeftOut {
@@ -65,13 +50,48 @@ pub(super) struct LeftOut {
     pub unstable: usize,
 }
 
-/// A part and its modes.
-#[derive(Debug, Clone)]
-pub(super) struct Solved {
-    pub part: Part,
-    pub spectrum: Spectrum,
-    /// None where nobody counted.
-    pub left_out: Option<LeftOut>,
+impl Spectrum {
+    fn of_modes(part: Part, modes: Vec<Mode>, known: Known, left_out: Option<LeftOut>) -> Self {
+        Self {
+            part,
+            proportional: true,
+            eigenvalues: modes.iter().flat_map(|mode| mode.eigenvalues()).collect(),
+            modes,
+            known,
+            left_out,
+        }
+    }
+
+    fn of_eigenvalues(
+        part: Part,
+        values: impl Iterator<Item = Complex<f64>>,
+        known: Known,
+        left_out: Option<LeftOut>,
+    ) -> Self {
+        let eigenvalues: Vec<_> = values.map(|value| (value, Mode::of(value))).collect();
+        Self {
+            part,
+            proportional: false,
+            modes: eigenvalues.iter().map(|(_, mode)| *mode).collect(),
+            eigenvalues,
+            known,
+            left_out,
+        }
+    }
+
+    /// The largest frequency of what oscillates, rad/s.
+    pub fn omega_max(&self) -> Option<f64> {
+        let oscillating = self.eigenvalues.iter().filter(|(value, _)| value.im > 0.0);
+        let fastest = oscillating.map(|(_, mode)| mode.omega());
+        let fastest = fastest.max_by(f64::total_cmp);
+        match self.known {
+            // Eigenvalues may be decays only, while others within them oscillate.
+            Known::Outermost(Some(Bound { stiffest, .. })) if stiffest.oscillates() => {
+                fastest.or(Some(stiffest.omega()))
+            }
+            _ => fastest,
+        }
+    }
 }
 
 /// Rates below this part of the largest cannot be told from 0 in the eigenvalues of an unsymmetric
@@ -85,24 +105,19 @@ const REAL: f64 = 1e-7;
 const SAMPLES: usize = 200;
 
 /// None where an eigensolver does not converge.
-pub(super) fn solve(part: Part, effort: &Effort) -> Option<Solved> {
+pub(super) fn solve(part: Part, effort: &Effort) -> Option<Spectrum> {
     let n = part.n();
-    let modal = part.symmetric.then(|| combination(&part)).flatten();
-    let (spectrum, left_out) = match modal {
-        Some(damping) if n <= effort.symmetric => modes(&part, damping)?,
-        Some(damping) => (sampled(&part, damping, effort)?, None),
-        None if n <= effort.unsymmetric => roots(&part)?,
-        None => (outermost(&part, effort), None),
-    };
-    Some(Solved {
-        part,
-        spectrum,
-        left_out,
-    })
+    let proportional = part.symmetric.then(|| proportional(&part)).flatten();
+    match proportional {
+        Some(damping) if n <= effort.symmetric => modes(part, damping),
+        Some(damping) => sampled(part, damping, effort),
+        None if n <= effort.unsymmetric => eigenvalues(part),
+        None => Some(outermost(part, effort)),
+    }
 }
 
 /// (a, b) with C = a K + b 1, if there are such: then each mode of K has a damping of its own.
-fn combination(part: &Part) -> Option<(f64, f64)> {
+fn proportional(part: &Part) -> Option<(f64, f64)> {
     let (k, c) = (&part.stiffness, &part.damping);
     let size = c.norm();
     if size == 0.0 {
@@ -116,7 +131,7 @@ fn combination(part: &Part) -> Option<(f64, f64)> {
     let largest = off.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
     let a = largest.map_or(0.0, |(i, j, value)| c.at(i, j) / value);
     let b = c.at(0, 0) - a * k.at(0, 0);
-    let identity = Matrix::new(k.n(), (0..k.n()).map(|i| (i, i, 1.0)).collect());
+    let identity = Matrix::new(k.n(), (0..k.n()).map(|i| (i, i, 1.0)));
     let left = c.combined(1.0, k, -a).combined(1.0, &identity, -b);
     (left.norm() <= 1e-12 * (size + a.abs() * k.norm())).then_some((a, b))
 }
@@ -142,11 +157,11 @@ fn damped(stiffness: f64, (a, b): (f64, f64)) -> Mode {
     }
 }
 
-fn modes(part: &Part, damping: (f64, f64)) -> Option<(Spectrum, Option<LeftOut>)> {
+fn modes(part: Part, damping: (f64, f64)) -> Option<Spectrum> {
     let zero = zero(part.n(), part.stiffness.norm());
     let mut left_out = LeftOut::default();
     let mut modes = Vec::new();
-    for stiffness in stiffnesses(part)? {
+    for stiffness in stiffnesses(&part)? {
         if stiffness < -zero {
             left_out.unstable += 1;
             continue;
@@ -161,14 +176,15 @@ fn modes(part: &Part, damping: (f64, f64)) -> Option<(Spectrum, Option<LeftOut>)
             modes.push(mode);
         }
     }
-    Some((Spectrum::Modes(modes), Some(left_out)))
+    Some(Spectrum::of_modes(part, modes, Known::All, Some(left_out)))
 }
 
-fn sampled(part: &Part, damping: (f64, f64), effort: &Effort) -> Option<Spectrum> {
+fn sampled(part: Part, damping: (f64, f64), effort: &Effort) -> Option<Spectrum> {
     let product = |x: &[f64], y: &mut [f64]| part.stiffness.product(x, y);
     let (stiffest, _) = krylov::top(part.n(), &product, effort)?;
     let sample = |i| damped(stiffest.max(0.0) * i as f64 / SAMPLES as f64, damping);
-    Some(Spectrum::Sampled((1..=SAMPLES).map(sample).collect()))
+    let modes = (1..=SAMPLES).map(sample).collect();
+    Some(Spectrum::of_modes(part, modes, Known::Sampled, None))
 }
 
 /// Of (s x, v): s balances the two halves.
@@ -177,9 +193,9 @@ fn balance(part: &Part) -> f64 {
     if k > 0.0 { k.sqrt() } else { c }
 }
 
-fn roots(part: &Part) -> Option<(Spectrum, Option<LeftOut>)> {
+fn eigenvalues(part: Part) -> Option<Spectrum> {
     let n = part.n();
-    let s = balance(part);
+    let s = balance(&part);
     let mut first_order = Mat::<f64>::zeros(2 * n, 2 * n);
     for i in 0..n {
         first_order[(i, n + i)] = s;
@@ -193,19 +209,23 @@ fn roots(part: &Part) -> Option<(Spectrum, Option<LeftOut>)> {
     let all = first_order.eigenvalues().ok()?;
     let all = all.into_iter().map(|z| Complex::new(z.re, z.im));
     let zero = zero(n, part.stiffness.norm());
-    let at_rest = stiffnesses(part)?
-        .iter()
-        .filter(|k| k.abs() <= zero)
-        .count();
+    let at_rest = stiffnesses(&part)?.into_iter();
+    let at_rest = at_rest.filter(|k| k.abs() <= zero).count();
     let largest = all.clone().map(|z| z.norm()).fold(0.0, f64::max);
     let moving = all.filter(|root| at_rest == 0 || root.norm() > DOUBLE_ZERO * largest);
     let settled = moving.filter_map(|root| settled(root, largest));
-    let (unstable, roots): (Vec<_>, _) = settled.partition(|root| root.re > 0.0);
+    let (unstable, stable): (Vec<_>, Vec<_>) = settled.partition(|root| root.re > 0.0);
     let left_out = LeftOut {
         at_rest,
         unstable: unstable.len(),
     };
-    Some((Spectrum::Roots(roots), Some(left_out)))
+    let stable = stable.into_iter();
+    Some(Spectrum::of_eigenvalues(
+        part,
+        stable,
+        Known::All,
+        Some(left_out),
+    ))
 }
 
 /// An eigenvalue without its rounding; None of the lower one of a pair.
@@ -225,9 +245,9 @@ fn settled(root: Complex<f64>, largest: f64) -> Option<Complex<f64>> {
 /// RK4's region is as long as its longest, 2.83, but for a twelfth.
 const INNER: f64 = 0.9;
 
-fn outermost(part: &Part, effort: &Effort) -> Spectrum {
+fn outermost(part: Part, effort: &Effort) -> Spectrum {
     let n = part.n();
-    let s = balance(part);
+    let s = balance(&part);
     let product = |x: &[f64], y: &mut [f64]| {
         let (position, velocity) = x.split_at(n);
         let (drift, kick) = y.split_at_mut(n);
@@ -239,17 +259,19 @@ fn outermost(part: &Part, effort: &Effort) -> Spectrum {
         part.damping.add_product(-1.0, velocity, kick);
     };
     let all = if n <= effort.outermost {
-        krylov::outermost(2 * n, &product, INNER, effort)
+        krylov::outermost(2 * n, &product, INNER, effort).unwrap_or_default()
     } else {
         Vec::new()
     };
     let largest = all.first().map_or(0.0, |root| root.norm());
     let settled = all.into_iter().filter_map(|root| settled(root, largest));
-    Spectrum::Outermost {
-        roots: settled.filter(|root| root.re <= 0.0).collect(),
-        bound: bound(part, effort),
-    }
+    let known = Known::Outermost(bound(&part, effort));
+    Spectrum::of_eigenvalues(part, settled.filter(|root| root.re <= 0.0), known, None)
 }
+
+/// Residual at which the stiffest vector will do, relative to the spectrum; the eigenvalue is then good to
+/// its square, times the gap.
+const ESTIMATE: f64 = 1e-5;
 
 /// The stiffest vector q as a mode (qᵀ K q, qᵀ C q), and a radius that holds all eigenvalues: one with
 /// the unit vector x is a root of λ² + (x* C x) λ + x* K x. Of symmetric K and C both forms are real,
@@ -257,7 +279,7 @@ fn outermost(part: &Part, effort: &Effort) -> Spectrum {
 fn bound(part: &Part, effort: &Effort) -> Option<Bound> {
     let stiff = part.stiffness.symmetric_part();
     let product = |x: &[f64], y: &mut [f64]| stiff.product(x, y);
-    let (stiffness, q) = krylov::top_estimate(part.n(), &product, effort)?;
+    let (stiffness, q, _) = krylov::best(part.n(), &product, effort, ESTIMATE)?;
     if stiffness <= 0.0 {
         return None;
     }
@@ -274,4 +296,96 @@ fn bound(part: &Part, effort: &Effort) -> Option<Bound> {
         0.5 * (c + (c * c + 4.0 * k).sqrt())
     };
     Some(Bound { stiffest, radius })
+}
+
+/// Its two eigenvalues are the roots of λ² + c λ + κ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Mode {
+    /// κ = ω², 1/s².
+    pub stiffness: f64,
+    /// c, 1/s.
+    pub damping: f64,
+}
+
+impl Mode {
+    /// The one an eigenvalue belongs to, or, of a real one, that decays as it does.
+    pub fn of(root: Complex<f64>) -> Self {
+        if root.im == 0.0 {
+            Self {
+                stiffness: 0.0,
+                damping: -root.re,
+            }
+        } else {
+            Self {
+                stiffness: root.norm_sqr(),
+                damping: -2.0 * root.re,
+            }
+        }
+    }
+
+    /// Its eigenvalues other than 0 with Im >= 0: two real ones, or one of a pair. Each with the mode.
+    pub fn eigenvalues(self) -> Vec<(Complex<f64>, Self)> {
+        let (k, half) = (self.stiffness, 0.5 * self.damping);
+        if self.oscillates() {
+            let value = Complex::new(-half, (k - half * half).max(0.0).sqrt());
+            return vec![(value, self)];
+        }
+        let far = -(half + (half * half - k).max(0.0).sqrt());
+        let near = if far == 0.0 { 0.0 } else { k / far };
+        let moving = [far, near].into_iter().filter(|rate| *rate != 0.0);
+        moving.map(|rate| (rate.into(), self)).collect()
+    }
+
+    /// Less than critically damped, by more than rounding.
+    pub fn oscillates(self) -> bool {
+        let half = 0.5 * self.damping;
+        self.stiffness > half * half * (1.0 + 1e-12)
+    }
+
+    /// Undamped angular frequency, rad/s.
+    pub fn omega(self) -> f64 {
+        self.stiffness.max(0.0).sqrt()
+    }
+
+    /// The larger of its two rates, 1/s.
+    pub fn rate(self) -> f64 {
+        self.omega().max(self.damping.abs())
+    }
+
+    /// `mode of 7.07 rad/s, damping ratio 0.1` or `decay at 2 1/s`.
+    pub fn words(self) -> String {
+        let omega = self.omega();
+        if omega == 0.0 {
+            return format!("decay at {} 1/s", shown(self.damping));
+        }
+        if self.damping == 0.0 {
+            return format!("undamped mode of {} rad/s", shown(omega));
+        }
+        let ratio = self.damping / (2.0 * omega);
+        format!(
+            "mode of {} rad/s, damping ratio {}",
+            shown(omega),
+            shown(ratio)
+        )
+    }
+}
+
+/// Three digits, without an exponent where that stays short.
+pub(super) fn shown(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude != 0.0 && !(1e-3..1e5).contains(&magnitude) {
+        return format!("{value:.2e}");
+    }
+    let before = if magnitude > 0.0 {
+        magnitude.log10().floor() as i32 + 1
+    } else {
+        1
+    };
+    let decimals = (3 - before).max(0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }

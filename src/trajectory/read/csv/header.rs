@@ -3,7 +3,7 @@
 use super::super::error::Wrong;
 use super::super::expected::Expected;
 use super::bare;
-use crate::scene::{shown::shorten, suggest};
+use crate::scene::words::{nearest, shorten};
 
 /// Where in a record the numbers stand.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,7 +69,7 @@ impl Columns {
     /// Whether these columns say all that this scene needs.
     fn check(&self, expected: &Expected) -> Result<(), Wrong> {
         if self.x.len() == 1 {
-            if self.id.is_some() || expected.free_axis().is_none() {
+            if self.id.is_some() || expected.free_axis.is_none() {
                 let message = "`x` alone is for a scene with one free particle that moves on one \
                                axis, without `id`";
                 return Err(Wrong::new(message, EXAMPLE));
@@ -95,7 +95,7 @@ fn unknown(name: &str) -> Wrong {
     }
     let message = format!("unknown column `{}`", shorten(name));
     let separator = [';', '\t', ' '].into_iter().find(|c| name.contains(*c));
-    let help = match (separator, suggest::nearest(name, &NAMES)) {
+    let help = match (separator, nearest(name, &NAMES)) {
         (Some(_), _) => "separate columns by commas".to_owned(),
         (None, Some(near)) => format!("did you mean `{near}`?"),
         (None, None) => format!("the columns are {}: remove others", NAMES[..8].join(", ")),

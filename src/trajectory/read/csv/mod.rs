@@ -5,18 +5,18 @@ mod header;
 use super::digits::Form;
 use super::error::{HALF, ReadError, Wrong, of_end, of_field, without_mark};
 use super::expected::Expected;
-use super::times::{self, Source, Times};
+use super::times::{self, Times};
 use super::{Numbers, Place, Table, limits};
-use crate::scene::shown::shorten;
+use crate::scene::words::shorten;
 use ::csv::{ByteRecord, ReaderBuilder};
 use header::Columns;
 
 /// Reads the text of a file. Quotes around single fields are taken off, but nothing inside quotes
 /// is protected: a number needs none.
-pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Table, ReadError> {
+pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError> {
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         let wrong = Wrong::new("this text is UTF-16", "save it as UTF-8");
-        return Err(wrong.at(file, Place::Text { line: 1, column: 1 }));
+        return Err(wrong.at(Place::Text { line: 1, column: 1 }));
     }
     let text = without_mark(bytes);
     let mut reader = ReaderBuilder::new()
@@ -32,7 +32,7 @@ pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Tabl
         let start = record.position().map_or(0, ::csv::Position::byte);
         let last = reader.position().byte() >= text.len() as u64;
         let first = record.get(0).unwrap_or_default().trim_ascii_start();
-        let fail = |(field, wrong): (usize, Wrong)| wrong.at(file, of_field(bytes, start, field));
+        let fail = |(field, wrong): (usize, Wrong)| wrong.at(of_field(bytes, start, field));
         if let Some(comment) = first.strip_prefix(b"#") {
             let fields = std::iter::once(comment).chain(record.iter().skip(1));
             commented = commented.or_else(|| Columns::new(fields, expected).ok());
@@ -60,7 +60,7 @@ pub(super) fn read(bytes: &[u8], file: &str, expected: &Expected) -> Result<Tabl
     };
     rows.ok_or_else(nothing)
         .and_then(Rows::finish)
-        .map_err(|wrong| wrong.at(file, of_end(bytes)))
+        .map_err(|wrong| wrong.at(of_end(bytes)))
 }
 
 /// The states read so far; the last may still lack particles.
@@ -123,12 +123,13 @@ impl<'a> Rows<'a> {
         self.complete("before the next time begins")?;
         let numbers = self.x.len() + self.v.len() + 6 * self.expected.particles();
         if numbers > limits::NUMBERS {
-            return Err(too_many());
+            let message = format!("more than {} numbers", limits::NUMBERS);
+            return Err(Wrong::new(message, "keep fewer instants"));
         }
         self.times.push(t);
         self.starts.push(start);
         self.given = 0;
-        self.x.extend_from_slice(self.expected.start());
+        self.x.extend_from_slice(&self.expected.start);
         if !self.columns.v.is_empty() {
             self.v.resize(self.x.len(), 0.0);
         }
@@ -144,7 +145,7 @@ impl<'a> Rows<'a> {
             return Ok(());
         }
         let missing = |id: &usize| self.given_in[*id] != self.times.len();
-        let fixed = self.expected.fixed();
+        let fixed = &self.expected.fixed;
         let ids = 0..fixed.len();
         let some_fixed_given = ids.clone().any(|id| fixed[id] && !missing(&id));
         let wanted = |id: &usize| missing(id) && (some_fixed_given || !fixed[*id]);
@@ -201,7 +202,7 @@ impl<'a> Rows<'a> {
     /// Writes a record's coordinates into the last state.
     fn store(&mut self, record: &ByteRecord, particle: usize) -> Located<()> {
         let state = (self.times.len() - 1) * 3 * self.given_in.len();
-        let coordinate = match self.expected.free_axis() {
+        let coordinate = match self.expected.free_axis {
             Some(free) if self.columns.x.len() == 1 => free.coordinate(),
             _ => 3 * particle,
         };
@@ -248,12 +249,11 @@ impl<'a> Rows<'a> {
         let [t_form, x_form, v_form] = self.forms;
         Ok(Table {
             times: Times {
-                values: self.times,
-                written: t_form.written(),
-                source: Source::Text {
-                    starts: self.starts,
-                    field: self.columns.t,
+                numbers: Numbers {
+                    values: self.times,
+                    written: t_form.written(),
                 },
+                fields: Some((self.starts, self.columns.t)),
             },
             x: Numbers {
                 values: self.x,
@@ -265,11 +265,6 @@ impl<'a> Rows<'a> {
             }),
         })
     }
-}
-
-fn too_many() -> Wrong {
-    let message = format!("more than {} numbers", limits::NUMBERS);
-    Wrong::new(message, "keep fewer instants")
 }
 
 /// A field without blanks and quotes around it.

@@ -58,7 +58,7 @@ impl Program for Started {
 
 fn write(path: &Path, task: &Task) -> Result<(), Failure> {
     let doing = Failure::io("write {scene_json}");
-    let bytes = serde_json::to_vec(&Flat::new(task)).map_err(std::io::Error::other);
+    let bytes = serde_json::to_vec(&Flat(task)).map_err(std::io::Error::other);
     std::fs::write(path, bytes.map_err(&doing)?).map_err(doing)
 }
 

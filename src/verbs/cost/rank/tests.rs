@@ -1,6 +1,6 @@
 //! Laws on made-up curves: their answers are known by construction.
 
-use super::{Judged, Misses, pareto, reach, slope, target};
+use super::{Misses, pareto, reach, slope, target};
 use crate::solvers::{Kind, Status};
 use crate::verbs::clock::WallTime;
 use crate::verbs::cost::{CostCurve, CostPoint};
@@ -148,7 +148,7 @@ fn targets_rank_integrators_and_only_list_the_engine() {
         curve("rapier", Kind::Rapier, points(&[Some(1e-9)])),
         curve("ended", Kind::Integrator, points(&[None])),
     ];
-    let answer = target(&curves, 1e-4, &Judged::Yes);
+    let answer = target(&curves, 1e-4, None);
     let names: Vec<&str> = answer.ranking.iter().map(|r| r.engine.as_str()).collect();
     assert_eq!(names, ["cheap", "dear", "slow", "ended"]);
     let ratios: Vec<Option<f64>> = answer.ranking.iter().map(|r| r.wall_ratio).collect();
@@ -174,7 +174,7 @@ fn targets_rank_integrators_and_only_list_the_engine() {
     assert_eq!(answer.cheapest, answer.fewest_evaluations);
     assert_eq!(answer.reference.len(), 1);
     assert_eq!(answer.reference[0].wall_ratio, Some(10.0 / 320.0));
-    let nobody = target(&curves, 1e-4, &Judged::No("no truth".into()));
+    let nobody = target(&curves, 1e-4, Some("no truth".into()));
     assert!(nobody.cheapest.is_none() && nobody.ranking.is_empty());
     assert_eq!(nobody.reason.as_deref(), Some("no truth"));
 }

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 /// `value` is the outcome as JSON.
 pub fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, runs: &Found) -> Check {
-    let Expectation { whom, key, wanted } = expectation;
+    let Expectation { scope, key, wanted } = expectation;
     let engine = &outcome.engine;
     let check = |status, measured, bound, message| Check {
         id: ID.to_owned(),
@@ -18,7 +18,7 @@ pub fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, runs: 
         status,
         measured,
         bound,
-        derivation: format!("the scene's `expect`, under `{whom}`"),
+        derivation: format!("the scene's `expect`, under `{scope}`"),
         message,
     };
     if let Some(reference) = absent_reference(key, outcome, runs.outcomes) {

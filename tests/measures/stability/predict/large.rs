@@ -50,7 +50,7 @@ fn krylov_spaces_find_what_dense_solvers_do() {
         (1.0, ["rk4", "rk4", "rk4"]),
     ] {
         let (system, state) = built(&cloth(12, 15, damping));
-        let with = |effort| Linearised::with(effort, &system, 0.0, &state.x, &state.v);
+        let with = |effort| Linearised::new(&system, &state, effort);
         let (whole, part) = (with(dense), with(sparse));
         for id in methods {
             let limits = [&whole, &part].map(|l| l.predict(method(id), 0.01).limit);
@@ -95,7 +95,7 @@ fn large_and_damped_is_as_small_and_damped() {
             ..*method(id)
         }
     };
-    let linearised = Linearised::at(&system, 0.0, &state.x, &state.v);
+    let linearised = Linearised::new(&system, &state, Effort::FULL);
     for id in ["velocity_verlet", "symplectic_euler"] {
         let once = linearised.predict(method(id), 0.01).limit;
         let twice = linearised.predict(&map_only(id), 0.01).limit;
@@ -121,7 +121,7 @@ const BLIND: Effort = Effort {
 /// `factor` is 1 near what is estimated.
 fn bound_law(factor: f64) -> Result<(), String> {
     let (system, state) = built(&cloth(4, 5, 1.0));
-    let with = |effort| Linearised::with(effort, &system, state.t, &state.x, &state.v);
+    let with = |effort| Linearised::new(&system, &state, effort);
     let (known, blind) = (with(Effort::FULL), with(BLIND));
     let rk4 = method("rk4");
     let Limit::At(exact) = known.predict(rk4, 0.01).limit else {
@@ -152,7 +152,7 @@ fn a_bound_stands_in_where_eigenvalues_are_too_many() {
     assert!(bound_law(1.2).is_err());
     // What oscillates is seen to do so, and A-stable methods need no eigenvalues.
     let (system, state) = built(&cloth(4, 5, 1.0));
-    let with = |effort| Linearised::with(effort, &system, state.t, &state.x, &state.v);
+    let with = |effort| Linearised::new(&system, &state, effort);
     let (known, blind) = (with(Effort::FULL), with(BLIND));
     let (w, estimate) = (known.omega_max().unwrap(), blind.omega_max().unwrap());
     assert!((estimate / w - 1.0).abs() < 0.05, "{estimate} {w}");
@@ -166,7 +166,7 @@ fn a_bound_stands_in_where_eigenvalues_are_too_many() {
 #[test]
 fn thousands_of_coordinates_coupled_by_damping_have_answers() {
     let (system, state) = built(&cloth(30, 31, 1.0));
-    let linearised = Linearised::brief(&system, state.t, &state.x, &state.v);
+    let linearised = Linearised::new(&system, &state, Effort::BRIEF);
     let w = linearised.omega_max().expect("it oscillates");
     for id in ["symplectic_euler", "velocity_verlet", "rk4"] {
         let limit = linearised.predict(method(id), 1e-3).limit;
@@ -190,7 +190,7 @@ fn the_same_bits_come_out_again() {
             unsymmetric: 10,
             ..Effort::FULL
         };
-        let linearised = Linearised::with(effort, &system, 0.0, &state.x, &state.v);
+        let linearised = Linearised::new(&system, &state, effort);
         fixed()
             .iter()
             .map(|m| format!("{:?}", linearised.predict(m, 0.01)))

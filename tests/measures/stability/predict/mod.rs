@@ -16,7 +16,8 @@ mod scenes;
 mod table;
 
 fn about(system: &dyn System, x: &[f64]) -> Linearised {
-    Linearised::at(system, 0.0, x, &vec![0.0; x.len()])
+    let state = State::new(x.to_vec(), vec![0.0; x.len()]);
+    Linearised::new(system, &state, Effort::FULL)
 }
 
 fn of_oscillator(method: &Method, w: f64, zeta: f64) -> Limit {
@@ -27,7 +28,7 @@ fn of_oscillator(method: &Method, w: f64, zeta: f64) -> Limit {
 
 fn start(scene: &Scene) -> Linearised {
     let (system, state) = built(scene);
-    Linearised::at(&system, state.t, &state.x, &state.v)
+    Linearised::new(&system, &state, Effort::FULL)
 }
 
 fn particle(position: [f64; 3], mass: f64, fixed: bool) -> Particle {

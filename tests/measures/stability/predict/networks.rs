@@ -27,7 +27,7 @@ fn chain_law(scene: &Scene, n: usize, tolerance: f64) -> Result<(), String> {
     let off = (omega / stiffest - 1.0)
         .abs()
         .max((h * stiffest / 2.0 - 1.0).abs());
-    if off < tolerance && linearised.excluded().iter().all(|e| e.count == 0) {
+    if off < tolerance && linearised.excluded().iter().all(|e| e.starts_with("modes")) {
         Ok(())
     } else {
         Err(format!("{n}: {omega} for {stiffest}, h {h}: {off:e}"))

@@ -1,4 +1,5 @@
-//! A scene set in motion, so that a few steps exercise all of it.
+//! The starts of a twin proof: a scene set in motion, so that a few steps exercise all of it, and the same
+//! one rounding away.
 
 use crate::scene::{Particle, Scene, Spring};
 
@@ -7,7 +8,7 @@ use crate::scene::{Particle, Scene, Spring};
 /// Fast enough to stretch springs by up to a hundredth in `time` seconds or in the time scale of
 /// the stiffest particle, whichever is longer: seen well above rounding, far from turning a spring
 /// over.
-pub(super) fn shaken(scene: &Scene, time: f64) -> Scene {
+pub(super) fn set_in_motion(scene: &Scene, time: f64) -> Scene {
     let scale = per_mass(scene, |spring| spring.stiffness);
     let time = if scale > 0.0 {
         time.max(1.0 / scale.sqrt())
@@ -16,18 +17,18 @@ pub(super) fn shaken(scene: &Scene, time: f64) -> Scene {
     };
     let speed = 0.01 * shortest(scene) / time;
     let mut random = Random(1);
-    let mut shaken = scene.clone();
-    for particle in shaken.particles.iter_mut().filter(|p| !p.fixed) {
+    let mut moving = scene.clone();
+    for particle in moving.particles.iter_mut().filter(|p| !p.fixed) {
         for v in &mut particle.velocity {
             *v += speed * random.symmetric();
         }
     }
-    shaken
+    moving
 }
 
 /// The scene from a start one rounding away: each free coordinate and velocity by one part in 2⁵²
 /// of the largest, in a direction that the seed picks.
-pub(super) fn nudged(scene: &Scene, seed: u64) -> Scene {
+pub(super) fn disturbed(scene: &Scene, seed: u64) -> Scene {
     let largest = |part: fn(&Particle) -> [f64; 3]| {
         let all = scene.particles.iter().flat_map(part);
         all.fold(0.0_f64, |most, c| most.max(c.abs()))
@@ -35,14 +36,14 @@ pub(super) fn nudged(scene: &Scene, seed: u64) -> Scene {
     let x = largest(|p| p.position);
     let v = largest(|p| if p.fixed { [0.0; 3] } else { p.velocity });
     let mut random = Random(seed);
-    let mut nudged = scene.clone();
-    for particle in nudged.particles.iter_mut().filter(|p| !p.fixed) {
+    let mut disturbed = scene.clone();
+    for particle in disturbed.particles.iter_mut().filter(|p| !p.fixed) {
         for axis in 0..3 {
             particle.position[axis] += f64::EPSILON * x * random.symmetric().signum();
             particle.velocity[axis] += f64::EPSILON * v * random.symmetric().signum();
         }
     }
-    nudged
+    disturbed
 }
 
 /// An upper bound of the condition number of the implicit step's matrix M + h C + h² K relative to

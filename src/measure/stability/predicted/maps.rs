@@ -1,0 +1,321 @@
+//! Limits of splittings: by the one-step map of each mode, of a whole part where modes are coupled, or by
+//! a definite matrix.
+
+use super::definite::Definite;
+use super::parts::Part;
+use super::prediction::Prediction;
+use super::regions::stiffest_binds;
+use super::spectrum::{Known, Mode, Spectrum};
+use super::{Effort, Limit};
+use crate::integrators::{Amplification, DampingTreatment, Stage, bisect, map};
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+use nalgebra::Complex;
+
+/// What a method does to a part at `h`, s; None where nothing of it could grow.
+pub(super) fn predict(
+    amplification: Amplification,
+    spectrum: &Spectrum,
+    h: f64,
+    effort: &Effort,
+) -> Option<Prediction> {
+    match amplification {
+        Amplification::Composition(stages, damping) if spectrum.proportional => {
+            let found = by_modes(stages, damping, &spectrum.modes, h)?;
+            match spectrum.known {
+                Known::Sampled => stiffest_binds(found, &spectrum.modes),
+                _ => Some(found),
+            }
+        }
+        _ if spectrum.proportional && spectrum.modes.is_empty() => None,
+        _ => Some(coupled(amplification, spectrum, h, effort)),
+    }
+}
+
+/// ln |eigenvalue| / h, 1/s.
+fn growth(modulus: f64, h: f64) -> f64 {
+    modulus.clamp(f64::MIN_POSITIVE, f64::MAX).ln() / h
+}
+
+/// Of a composition on modes damped by themselves.
+fn by_modes(
+    stages: &'static [Stage],
+    damping: DampingTreatment,
+    modes: &[Mode],
+    h: f64,
+) -> Option<Prediction> {
+    let definite = Definite::of(Amplification::Composition(stages, damping));
+    let mut sorted = modes.to_vec();
+    // The fastest first: it usually binds, and bounds how far the others are searched.
+    sorted.sort_by(|a, b| b.rate().total_cmp(&a.rate()));
+    let mut upto = f64::INFINITY;
+    let each = sorted.into_iter().map(|mode| {
+        let at = |h: f64| Pair::at(stages, damping, mode, h);
+        let found = match definite {
+            Some(definite) => definite.limit_of(mode),
+            None => first_failure(mode.rate(), upto, &|h| at(h).is_stable()),
+        };
+        upto = upto.min(found.unwrap_or(f64::INFINITY));
+        let limit = found.map_or(Limit::Unconditional, Limit::At);
+        let smooth = (!mode.oscillates()).then(|| {
+            let failure = first_failure(mode.rate(), upto, &|h| at(h).is_smooth());
+            failure.unwrap_or(upto)
+        });
+        // What oscillates from the first cell on is not smooth up to anything worth saying.
+        let smooth = smooth.filter(|smooth| *smooth > NEAR / mode.rate() * 0.5);
+        let one = Prediction {
+            smooth_below_s: smooth,
+            binding: Some(mode),
+            ..Prediction::only(limit)
+        };
+        one.growing(Some(growth(at(h).modulus(), h)), h)
+    });
+    each.reduce(Prediction::and)
+}
+
+/// Cells a scan takes, in units of the mode's rate; then in parts of how far it has come.
+const FINE: f64 = 0.01;
+/// Nothing of what a method promises begins below; far above, limits are those of drag's flow.
+const NEAR: f64 = 0.02;
+const FAR: f64 = 1e12;
+
+/// The first h, at most `upto`, at which `holds` no longer does, by a scan and bisection.
+fn first_failure(rate: f64, upto: f64, holds: &dyn Fn(f64) -> bool) -> Option<f64> {
+    let mut before = 0.0;
+    let mut u = NEAR;
+    while u < FAR {
+        let h = (u / rate).min(upto);
+        if !holds(h) {
+            return Some(bisect(before, h, 1e-14, holds));
+        }
+        if h >= upto {
+            return None;
+        }
+        before = h;
+        u += FINE * u.max(1.0);
+    }
+    None
+}
+
+/// A modulus above 1 by no more than this is rounding of a composition of nine factors.
+const ROUNDING: f64 = 1e-12;
+
+/// The two eigenvalues of a composition's map of one mode; without stiffness, 0 instead of the 1 of the
+/// place.
+struct Pair {
+    half_trace: f64,
+    determinant: f64,
+}
+
+impl Pair {
+    fn at(stages: &[Stage], damping: DampingTreatment, mode: Mode, h: f64) -> Self {
+        let [a, b, c, d] = map(stages, damping, [mode.stiffness, mode.damping], h);
+        let (trace, determinant) = match damping {
+            _ if mode.stiffness != 0.0 => (a + d, a * d - b * c),
+            DampingTreatment::Explicit => (d, 0.0),
+            // Flows of damping alone make one: their product overflows where kicks go backward.
+            DampingTreatment::ExactFlow => ((-h * mode.damping).exp(), 0.0),
+        };
+        Self {
+            half_trace: 0.5 * trace,
+            determinant,
+        }
+    }
+
+    /// Jury's conditions: both within the unit circle.
+    fn is_stable(&self) -> bool {
+        let room = 1.0 + self.determinant - 2.0 * self.half_trace.abs();
+        self.determinant <= 1.0 + ROUNDING && room >= -ROUNDING
+    }
+
+    /// A quarter of the squared distance between them.
+    fn apart(&self) -> f64 {
+        self.half_trace * self.half_trace - self.determinant
+    }
+
+    /// Both real and not negative, or so close to a double real one that only rounding parts them.
+    fn is_smooth(&self) -> bool {
+        let half = self.half_trace;
+        self.determinant >= 0.0 && half >= 0.0 && self.apart() >= -ROUNDING * half * half
+    }
+
+    fn modulus(&self) -> f64 {
+        if self.apart() < 0.0 {
+            self.determinant.abs().sqrt()
+        } else {
+            self.half_trace.abs() + self.apart().sqrt()
+        }
+    }
+}
+
+/// Where modes are coupled, by damping or by stiffness a method leaves out.
+fn coupled(
+    amplification: Amplification,
+    spectrum: &Spectrum,
+    h: f64,
+    effort: &Effort,
+) -> Prediction {
+    let part = &spectrum.part;
+    let n = part.n();
+    let definite = Definite::of(amplification).and_then(|kind| kind.limit(part, effort));
+    let map = (n <= effort.map).then(|| StepMap::new(spectrum)).flatten();
+    let found = match (definite, &map) {
+        (Some(found), None) => found,
+        (Some(found), Some(_)) if part.symmetric => found,
+        // For stiffnesses that are not symmetric the definite matrix is of their symmetric part only.
+        (found, Some(map)) => {
+            let found = found.unwrap_or(Prediction::only(Limit::Unconditional));
+            let guess = match found.limit {
+                Limit::At(guess) => guess,
+                _ => 2.0 / part.rate(),
+            };
+            let limit = map.limit(amplification, guess);
+            Prediction {
+                limit: limit.map_or(Limit::Unconditional, Limit::At),
+                ..found
+            }
+        }
+        (None, None) => {
+            return Prediction::unknown(format!(
+                "damping couples {n} coordinates: too many for this method's one-step map"
+            ));
+        }
+    };
+    found.growing(map.and_then(|map| map.growth(amplification, h)), h)
+}
+
+/// A part in the basis of its damping's eigenvectors, where that is symmetric.
+struct StepMap {
+    stiffness: Mat<f64>,
+    material: Mat<f64>,
+    /// Eigenvalues of C, 1/s.
+    damping: Vec<f64>,
+    /// Something is without restoring force, or grows in truth.
+    at_rest: bool,
+    unstable: bool,
+}
+
+/// Beyond 1 by this is growth. The eigenvalues of an unsymmetric matrix carry some rounding, and where
+/// the limit is, they grow linearly in h at least.
+const GROWING: f64 = 1e-10;
+/// What is at rest has the eigenvalue 1 twice: about the root of rounding away from it.
+const AT_REST: f64 = 1e-5;
+/// The scan's steps, in parts of h.
+const CELL: f64 = 0.02;
+
+impl StepMap {
+    /// None where the damping is not symmetric.
+    fn new(spectrum: &Spectrum) -> Option<Self> {
+        let Part {
+            stiffness,
+            damping,
+            material,
+            ..
+        } = &spectrum.part;
+        if damping.skewness() > 0.0 {
+            return None;
+        }
+        let eigen = damping.dense().self_adjoint_eigen(Side::Lower).ok()?;
+        let u = eigen.U();
+        let turned = |m: Mat<f64>| u.transpose() * m * u;
+        let values = eigen.S().column_vector();
+        Some(Self {
+            stiffness: turned(stiffness.dense()),
+            material: turned(material.dense()),
+            damping: (0..damping.n()).map(|i| values[i]).collect(),
+            at_rest: spectrum
+                .left_out
+                .is_none_or(|left_out| left_out.at_rest > 0),
+            unstable: spectrum
+                .left_out
+                .is_none_or(|left_out| left_out.unstable > 0),
+        })
+    }
+
+    /// The eigenvalue of one step that is farthest out, of those that count.
+    fn farthest(&self, amplification: Amplification, h: f64) -> Option<Complex<f64>> {
+        let n = self.damping.len();
+        let mut x = Mat::<f64>::from_fn(n, 2 * n, |i, j| f64::from(u8::from(i == j)));
+        let mut v = Mat::<f64>::from_fn(n, 2 * n, |i, j| f64::from(u8::from(i + n == j)));
+        match amplification {
+            // Eigenvalues alone decide, wherever damping couples.
+            Amplification::Rational(_) => return None,
+            Amplification::Composition(stages, treatment) => {
+                for stage in stages {
+                    match *stage {
+                        Stage::Drift(part) => x += faer::Scale(part * h) * &v,
+                        Stage::Kick(part) => {
+                            let force = &self.stiffness * &x;
+                            for (i, c) in self.damping.iter().enumerate() {
+                                let (kept, pushed) = treatment.kick(part * h, *c);
+                                for j in 0..2 * n {
+                                    v[(i, j)] = kept * v[(i, j)] - pushed * force[(i, j)];
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            Amplification::MaterialImplicit => {
+                let mut matrix = faer::Scale(h * h) * &self.material;
+                for (i, c) in self.damping.iter().enumerate() {
+                    matrix[(i, i)] += 1.0 + h * c;
+                }
+                v -= faer::Scale(h) * (&self.stiffness * &x);
+                v = matrix.partial_piv_lu().solve(&v);
+                x += faer::Scale(h) * &v;
+            }
+        }
+        // v in units of x / h: balanced.
+        let map = Mat::<f64>::from_fn(2 * n, 2 * n, |i, j| {
+            let across = if j < n { 1.0 } else { 1.0 / h };
+            if i < n {
+                x[(i, j)] * across
+            } else {
+                v[(i - n, j)] * h * across
+            }
+        });
+        if (0..2 * n).any(|j| (0..2 * n).any(|i| !map[(i, j)].is_finite())) {
+            return None;
+        }
+        let all = map.eigenvalues().ok()?;
+        let all = all.into_iter().map(|z| Complex::new(z.re, z.im));
+        let counts = |z: &Complex<f64>| {
+            let rests = self.at_rest && (z - 1.0).norm() <= AT_REST;
+            let grows = self.unstable && z.im == 0.0 && z.re > 1.0;
+            !rests && !grows
+        };
+        all.filter(counts)
+            .max_by(|a, b| a.norm().total_cmp(&b.norm()))
+    }
+
+    /// ln |eigenvalue| / h; None where the map is not finite.
+    fn growth(&self, amplification: Amplification, h: f64) -> Option<f64> {
+        let farthest = self.farthest(amplification, h)?;
+        Some(growth(farthest.norm(), h))
+    }
+
+    /// The limit near `guess`, s: a scan from a twentieth of it upwards. None where nothing crosses
+    /// before a hundred times it.
+    fn limit(&self, amplification: Amplification, guess: f64) -> Option<f64> {
+        let stable = |h: f64| {
+            let farthest = self.farthest(amplification, h);
+            farthest.is_some_and(|z| z.norm() <= 1.0 + GROWING)
+        };
+        let mut low = 0.05 * guess;
+        if !stable(low) {
+            low = 0.0;
+        }
+        let mut high = low.max(1e-3 * guess);
+        while stable(high) {
+            low = high;
+            // Coarse where nothing is expected.
+            let cell = if high < 0.5 * guess { 5.0 * CELL } else { CELL };
+            high *= 1.0 + cell;
+            if high > 100.0 * guess {
+                return None;
+            }
+        }
+        Some(bisect(low, high, 1e-12, stable))
+    }
+}

@@ -1,0 +1,115 @@
+//! What a method does to a linearised scene: of one part of it, and of several together.
+
+use super::Limit;
+use super::spectrum::Mode;
+
+/// What one method does to a linearised scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    pub limit: Limit,
+    /// ln(spectral radius) / h of the amplitude at the timestep asked for, 1/s; at most 0 where it
+    /// is stable, 0 where nothing moves but freely. None where it would take the full spectrum of too
+    /// many coordinates.
+    pub growth_per_s: Option<f64>,
+    /// Where nothing oscillates (drag alone, overdamped modes): the largest step, s, up to which every
+    /// mode decays without changing sign from step to step; None where something oscillates in truth,
+    /// where no step is too large (`reason` says so), and for splittings where damping couples modes.
+    pub smooth_below_s: Option<f64>,
+    /// What there is to say in words: which mode binds, how sure the limit is, or why there is none.
+    pub reason: Option<String>,
+    /// The mode that sets the limit.
+    pub(super) binding: Option<Mode>,
+}
+
+impl Prediction {
+    /// Of nothing that moves but freely.
+    pub(super) fn at_rest() -> Self {
+        Self {
+            growth_per_s: Some(0.0),
+            ..Self::only(Limit::Unconditional)
+        }
+    }
+
+    pub(super) fn unknown(why: impl Into<String>) -> Self {
+        Self::only(Limit::Unknown(why.into()))
+    }
+
+    pub(super) fn only(limit: Limit) -> Self {
+        Self {
+            limit,
+            growth_per_s: None,
+            smooth_below_s: None,
+            reason: None,
+            binding: None,
+        }
+    }
+
+    /// With this growth at `h`, s: a step that is stable does not grow, whatever rounding says.
+    pub(super) fn growing(self, growth: Option<f64>, h: f64) -> Self {
+        let stable = self.limit.allows(h);
+        let growth = growth.map(|growth| if stable { growth.min(0.0) } else { growth });
+        Self {
+            growth_per_s: growth,
+            ..self
+        }
+    }
+
+    /// Of both together: never beats unknown, unknown beats what is known.
+    pub(super) fn and(self, other: Self) -> Self {
+        let growth_per_s = match (self.growth_per_s, other.growth_per_s) {
+            (Some(a), Some(b)) => Some(a.max(b)),
+            // One that grows is enough to say so.
+            (one, another) => one.or(another).filter(|growth| *growth > 0.0),
+        };
+        let smooth = self.smooth_below_s.zip(other.smooth_below_s);
+        let rank = |limit: &Limit| match limit {
+            Limit::Never => 0,
+            Limit::Unknown(_) => 1,
+            Limit::At(_) | Limit::Between(..) => 2,
+            Limit::Unconditional => 3,
+        };
+        let ours_binds = match (&self.limit, &other.limit) {
+            (Limit::At(a), Limit::At(b)) => a <= b,
+            // Of modes that are never stable, the fastest stands for all.
+            (Limit::Never, Limit::Never) => {
+                let rate = |of: &Self| of.binding.map_or(0.0, Mode::rate);
+                rate(&self) >= rate(&other)
+            }
+            (a, b) => rank(a) <= rank(b),
+        };
+        Self {
+            growth_per_s,
+            smooth_below_s: smooth.map(|(a, b)| a.min(b)),
+            ..if ours_binds { self } else { other }
+        }
+    }
+
+    /// Of the whole scene, in words: `undamped` of its `modes` that do not rest neither decay. Until then
+    /// the reason says how sure the limit is, where it is not, and a step that is smooth without bound is
+    /// infinite.
+    pub(super) fn explained(self, undamped: usize, modes: usize) -> Self {
+        let mode = self.binding.map(Mode::words);
+        let reason = match &self.limit {
+            Limit::Unknown(why) => Some(why.clone()),
+            Limit::At(_) | Limit::Between(..) => {
+                let words: Vec<String> = mode.into_iter().chain(self.reason).collect();
+                (!words.is_empty()).then(|| words.join("; "))
+            }
+            Limit::Unconditional => (self.smooth_below_s == Some(f64::INFINITY))
+                .then(|| "smooth at every step: nothing oscillates".to_owned()),
+            Limit::Never if undamped > 0 && undamped < modes => mode.map(|mode| {
+                format!(
+                    "{mode}; {undamped} of {modes} modes are undamped, and on those it is stable at \
+                     no step"
+                )
+            }),
+            Limit::Never => mode,
+        };
+        Self {
+            growth_per_s: self.growth_per_s.filter(|growth| growth.is_finite()),
+            smooth_below_s: self.smooth_below_s.filter(|smooth| smooth.is_finite()),
+            reason,
+            ..self
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Limits of Runge-Kutta methods: by the eigenvalues of a part and the region where |R| <= 1.
+
+use super::Limit;
+use super::prediction::Prediction;
+use super::spectrum::{Bound, Known, Mode, Spectrum, shown};
+use crate::integrators::{Rational, Stable};
+use nalgebra::Complex;
+
+/// What a method does to a part at `h`, s; None where nothing of it could grow.
+pub(super) fn predict(rational: &Rational, spectrum: &Spectrum, h: f64) -> Option<Prediction> {
+    let of = |eigenvalues: &[(Complex<f64>, Mode)]| of_eigenvalues(rational, eigenvalues, h);
+    let outermost = &spectrum.eigenvalues;
+    match spectrum.known {
+        Known::All => of(outermost),
+        Known::Sampled => stiffest_binds(of(outermost)?, &spectrum.modes),
+        Known::Outermost(Some(bound)) if outermost.is_empty() => {
+            Some(of_bound(rational, bound, of(&bound.stiffest.eigenvalues())))
+        }
+        Known::Outermost(_) => Some(of_outermost(rational, outermost, of(outermost))),
+    }
+}
+
+fn of_eigenvalues(
+    rational: &Rational,
+    eigenvalues: &[(Complex<f64>, Mode)],
+    h: f64,
+) -> Option<Prediction> {
+    let sign_change = rational.sign_change();
+    let each = eigenvalues.iter().map(|&(value, mode)| {
+        let rate = value.norm();
+        let (limit, bound) = match rational.reach(value) {
+            Stable::Never => (Limit::Never, f64::INFINITY),
+            Stable::Below(u) => (Limit::At(u / rate), u / rate),
+            Stable::Always | Stable::AlwaysAlong { .. } => (Limit::Unconditional, f64::INFINITY),
+        };
+        let one = Prediction {
+            smooth_below_s: (value.im == 0.0).then(|| bound.min(sign_change / rate)),
+            binding: Some(mode),
+            ..Prediction::only(limit)
+        };
+        one.growing(Some(rational.log_modulus(value, h) / h), h)
+    });
+    each.reduce(Prediction::and)
+}
+
+/// Between two samples there may be any mode: what they say holds where the stiffest, which is
+/// known, is the one that binds, or where nothing does.
+pub(super) fn stiffest_binds(found: Prediction, modes: &[Mode]) -> Option<Prediction> {
+    let binds = found.binding == modes.last().copied();
+    if binds || !matches!(found.limit, Limit::At(_)) {
+        return Some(found);
+    }
+    Some(Prediction::unknown(
+        "too many coordinates for the full spectrum, and it is not the stiffest mode that binds",
+    ))
+}
+
+/// Of outermost eigenvalues: the others lie within the least of them, and where the half disc of that
+/// radius is stable too, nothing was missed.
+fn of_outermost(
+    rational: &Rational,
+    outermost: &[(Complex<f64>, Mode)],
+    known: Option<Prediction>,
+) -> Prediction {
+    let radius = rational.half_disc();
+    if radius == f64::INFINITY {
+        // Others may decay more slowly.
+        return Prediction {
+            binding: known.and_then(|known| known.binding),
+            ..Prediction::only(Limit::Unconditional)
+        };
+    }
+    let Some(known) = known else {
+        return Prediction::unknown(
+            "damping couples too many modes to know them, and any may be the tightest",
+        );
+    };
+    let inner = outermost.last().map_or(0.0, |(value, _)| value.norm());
+    let growth_per_s = known.growth_per_s.filter(|growth| *growth > 0.0);
+    let reason = match known.limit {
+        Limit::Never => return known,
+        Limit::At(limit) if limit * inner <= radius => known.reason,
+        Limit::At(_) if radius > 0.0 => Some(format!(
+            "by the outermost modes of too many to know; others could lower it to {} s at most",
+            shown(radius / inner)
+        )),
+        _ => {
+            let why =
+                "too many coordinates for the full spectrum, and any mode may be the tightest";
+            return Prediction {
+                growth_per_s,
+                ..Prediction::unknown(why)
+            };
+        }
+    };
+    Prediction {
+        growth_per_s,
+        smooth_below_s: None,
+        reason,
+        ..known
+    }
+}
+
+/// Of the stiffest vector, and a radius no eigenvalue is beyond.
+fn of_bound(rational: &Rational, bound: Bound, known: Option<Prediction>) -> Prediction {
+    let stable = rational.half_disc();
+    let sure = stable / bound.radius;
+    match known {
+        Some(Prediction {
+            limit: Limit::At(limit),
+            binding,
+            ..
+        }) if stable > 0.0 && stable.is_finite() => Prediction {
+            binding,
+            reason: (sure < limit).then(|| {
+                format!(
+                    "estimated by the stiffest motion, since damping couples too many modes to know \
+                     them; certainly stable up to {} s",
+                    shown(sure)
+                )
+            }),
+            ..Prediction::only(Limit::At(limit))
+        },
+        _ => of_outermost(rational, &[], None),
+    }
+}

@@ -1,0 +1,177 @@
+//! Judges what concerns several values of a scene, fills in the defaults that follow from others, and says
+//! whether a timestep fits a duration.
+
+use super::error::Refusal;
+use super::limits;
+use super::model::{NO_PARTICLES, Particle, Scene, Wind};
+use super::place::Problem;
+use super::read::Reading;
+use super::values::Number;
+use std::fmt::Display;
+
+/// At least one step, and not more than a run can take; both in seconds.
+///
+/// # Errors
+/// What was expected, also for what is not finite or not positive.
+pub fn check_times(timestep: f64, duration: f64) -> Result<(), Refusal> {
+    for (what, seconds, limit) in [
+        ("a timestep", timestep, limits::TIMESTEP),
+        ("a duration", duration, limits::DURATION),
+    ] {
+        if !(limit.low..=limit.high).contains(&seconds) {
+            let message = format!("expected {what} of positive seconds, found {seconds:?}");
+            return Refusal::because(message, "");
+        }
+    }
+    if timestep > duration {
+        let message = format!("expected at most the duration ({duration:?} s), found {timestep:?}");
+        let help = "the duration is 5 s unless `duration` says otherwise";
+        return Refusal::because(message, help);
+    }
+    if duration / timestep > limits::STEPS {
+        let most = limits::STEPS;
+        let message = format!(
+            "expected at most {most:e} steps in {duration:e} s, found {timestep:e} s a step"
+        );
+        return Refusal::because(message, "take larger steps or a shorter `duration`");
+    }
+    Ok(())
+}
+
+/// The scene that was read. The first problem ends it.
+pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
+    let Reading { mut scene, .. } = reading;
+    if let Some(problem) = reading.problem {
+        return Err(problem);
+    }
+    check_times(scene.solver.timestep, scene.duration)
+        .map_err(|refusal| Problem::new("solver.timestep", refusal))?;
+    particles(&scene.particles)?;
+    let count = scene.particles.len();
+    if let Some((path, number)) = reading.no_id {
+        return Err(Problem::new(path, no_particle(number, count)));
+    }
+    for (at, spring) in scene.springs.iter_mut().enumerate() {
+        ends(spring.ends, count, &format_args!("springs[{at}]"))?;
+        if spring.rest_length.is_nan() {
+            spring.rest_length = distance(&scene.particles, spring.ends);
+        }
+    }
+    for (at, pair) in scene.gravitational.iter().enumerate() {
+        ends(pair.ends, count, &format_args!("gravitational[{at}]"))?;
+        attraction(pair.ends, &scene.particles).map_err(|refusal| {
+            Problem::new(format!("gravitational[{at}].particle_ids"), refusal)
+        })?;
+    }
+    for particle in scene.particles.iter_mut().filter(|p| p.mass.is_nan()) {
+        particle.mass = Particle::default().mass;
+    }
+    if let Some(plot) = &scene.plot {
+        if plot.particle >= count {
+            let refusal = no_particle(whole(plot.particle), count);
+            return Err(Problem::new("plot.particle_id", refusal));
+        }
+        if let Some([low, high]) = plot.y_range
+            && low >= high
+        {
+            let message = format!("expected [lower, upper], found [{low:?}, {high:?}]");
+            let help = "the first number is the smaller one";
+            return Problem::because("plot.y_range", message, help);
+        }
+    }
+    if let Some(wind) = &mut scene.wind {
+        normalise(wind)?;
+    }
+    Ok(scene)
+}
+
+/// At least one, and at least one that can move.
+fn particles(particles: &[Particle]) -> Result<(), Problem> {
+    if particles.is_empty() {
+        let message = "expected at least one particle, found none";
+        return Problem::because("particles", message, NO_PARTICLES);
+    }
+    for (at, particle) in particles.iter().enumerate() {
+        let velocity = particle.velocity;
+        if particle.fixed && velocity != [0.0; 3] {
+            let message = format!("expected no velocity on a fixed particle, found {velocity:?}");
+            let help = "remove `vel`, or `fixed: true`";
+            return Problem::because(format!("particles[{at}].vel"), message, help);
+        }
+        // Of what acts on a particle that cannot move, only attraction depends on its mass.
+        if !particle.fixed && particle.mass.is_nan() {
+            let help = "a free particle needs its mass in kg";
+            return Problem::because(format!("particles[{at}].mass"), "missing", help);
+        }
+    }
+    if particles.iter().all(|p| p.fixed) {
+        let message = "expected at least one free particle, found all of them fixed";
+        let help = "nothing can move: remove `fixed: true` from one";
+        return Problem::because("particles", message, help);
+    }
+    Ok(())
+}
+
+/// Two different particles of those there are.
+fn ends(ends: [usize; 2], count: usize, of: &impl Display) -> Result<(), Problem> {
+    if let Some(index) = ends.iter().position(|&end| end >= count) {
+        let refusal = no_particle(whole(ends[index]), count);
+        return Err(Problem::new(format!("{of}.particle_ids[{index}]"), refusal));
+    }
+    if ends[0] == ends[1] {
+        let message = format!("expected two different particles, found {} twice", ends[0]);
+        return Problem::because(format!("{of}.particle_ids"), message, "");
+    }
+    Ok(())
+}
+
+fn no_particle(found: Number, count: usize) -> Refusal {
+    let last = count.saturating_sub(1);
+    let message = format!("expected a particle from 0 to {last}, found {found}");
+    let help = match found {
+        Number::Real(_) => "ids are whole numbers",
+        Number::Whole(_) => "ids count from 0, in the order of `particles`",
+    };
+    Refusal::new(message, help)
+}
+
+/// An id as it was read: from an i64.
+fn whole(id: usize) -> Number {
+    Number::Whole(id as i64)
+}
+
+/// Two particles that state their mass and do not start at one place.
+fn attraction(ends: [usize; 2], particles: &[Particle]) -> Result<(), Refusal> {
+    if let Some(id) = ends.into_iter().find(|id| particles[*id].mass.is_nan()) {
+        let message = format!("expected particles with a mass, found that {id} states none");
+        return Refusal::because(message, "the attraction depends on it: add `mass`");
+    }
+    let apart = distance(particles, ends);
+    if apart < limits::ATTRACTION_DISTANCE {
+        let message =
+            format!("expected two particles apart, found them {apart:?} m from each other");
+        return Refusal::because(message, "the attraction is infinite at distance 0");
+    }
+    Ok(())
+}
+
+/// Makes the direction a unit vector.
+fn normalise(wind: &mut Wind) -> Result<(), Problem> {
+    // Scaled first, so that the squares of tiny components do not vanish.
+    let largest = wind.direction.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+    if largest == 0.0 {
+        let message = "expected a direction, found a vector of length 0";
+        return Problem::because("wind.direction", message, "");
+    }
+    let scaled = wind.direction.map(|d| d / largest);
+    let length = scaled.iter().map(|d| d * d).sum::<f64>().sqrt();
+    wind.direction = scaled.map(|d| d / length);
+    Ok(())
+}
+
+/// Initial distance of two particles, in metres.
+fn distance(particles: &[Particle], [a, b]: [usize; 2]) -> f64 {
+    let (a, b) = (particles[a].position, particles[b].position);
+    // hypot neither overflows nor loses tiny distances.
+    (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
+}

@@ -1,0 +1,223 @@
+//! Reads the file by the table of the [model](super::model): known keys, each at most once, with values
+//! of their kind and within their bounds.
+//!
+//! The values are judged as they stream by and go straight into the [`Scene`], never through a free-form
+//! value, whose aliases and nesting a hostile file can multiply. What concerns several values waits for
+//! the end: [`complete`](super::complete) judges it.
+
+use super::error::{Fault, Refusal};
+use super::expect::Engines;
+use super::expectation::Names;
+use super::limits::known;
+use super::model::{Absent, Kind, Part, Row, SCENE, Scene};
+use super::place::{Problem, refused, second_document};
+use super::table::Value;
+use super::values::{Any, Key, Maybe, Number, Numbers, flag, index_of, number, text};
+use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
+use std::fmt;
+
+/// A scene while it is read.
+pub(super) struct Reading<'n> {
+    pub(super) scene: Scene,
+    pub(super) names: &'n Names,
+    /// The first id that is no whole number from 0, and where: the message says how many particles there are.
+    pub(super) no_id: Option<(String, Number)>,
+    /// The first key that is missing, or unknown under `expect`. What the parser says of the rest of the
+    /// file goes first.
+    pub(super) problem: Option<Problem>,
+}
+
+/// Reads the one document the file holds.
+pub(super) fn document(text: &str, reading: &mut Reading) -> Result<(), Fault> {
+    let mut documents = serde_yaml::Deserializer::from_str(text);
+    let scene = Any(Mapping {
+        part: &SCENE,
+        row: None,
+        reading,
+    });
+    let first = match documents.next() {
+        Some(document) => Maybe(scene)
+            .deserialize(document)
+            .map_err(|e| refused(&e, text))?,
+        None => None,
+    };
+    if let Some(second) = documents.next() {
+        return Err(second_document(second, text));
+    }
+    let help = "a scene needs at least `solver` and `particles`";
+    first.ok_or_else(|| Fault::new(0, "the file holds no scene", help))
+}
+
+/// Reads one mapping as a member of a part.
+struct Mapping<'r, 'n> {
+    part: &'static Part,
+    /// Adds the member; none for the file itself.
+    row: Option<&'static Row>,
+    reading: &'r mut Reading<'n>,
+}
+
+impl<'de> Visitor<'de> for Mapping<'_, '_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.part.expected)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        let Mapping { part, row, reading } = self;
+        if let Some(row) = row {
+            (row.set)(&mut reading.scene, 0, 0, Value::Flag(true));
+        }
+        let at = (part.count)(&reading.scene) - 1;
+        // Bit i: the key of row i was there, and had a value.
+        let (mut seen, mut given) = (0_u32, 0_u32);
+        while let Some(index) = map.next_key_seed(Key(|key: &str| row_of(part, key, &mut seen)))? {
+            let row = &part.rows[index];
+            let reading = &mut *reading;
+            let value = Entry {
+                part,
+                row,
+                at,
+                reading,
+            };
+            if map.next_value_seed(Maybe(value))?.is_some() {
+                given |= 1 << index;
+            }
+        }
+        for (index, row) in part.rows.iter().enumerate() {
+            match row.absent {
+                _ if given & (1 << index) != 0 => {}
+                Absent::Required(help) => {
+                    let path = part.path(Some(at), row.key);
+                    let missing = || Problem::new(path, Refusal::new("missing", help));
+                    reading.problem.get_or_insert_with(missing);
+                }
+                Absent::Derived => {
+                    (row.set)(&mut reading.scene, at, 0, Value::Number(f64::NAN));
+                }
+                Absent::Usual => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The index of the row of a key that was not there before.
+fn row_of(part: &Part, key: &str, seen: &mut u32) -> Result<usize, Refusal> {
+    if part.later.contains(&key) {
+        let help = "remove the key to run the rest of the scene";
+        return Err(Refusal::new("not supported yet", help).of(key));
+    }
+    index_of(key, part.rows.iter().map(|row| row.key), seen)
+}
+
+/// Reads the value of a row.
+struct Entry<'r, 'n> {
+    part: &'static Part,
+    row: &'static Row,
+    at: usize,
+    reading: &'r mut Reading<'n>,
+}
+
+impl<'n> Entry<'_, 'n> {
+    fn set(&mut self, component: usize, value: Value<'_>) {
+        (self.row.set)(&mut self.reading.scene, self.at, component, value);
+    }
+
+    fn member(&mut self, part: &'static Part) -> Mapping<'_, 'n> {
+        Mapping {
+            part,
+            row: Some(self.row),
+            reading: self.reading,
+        }
+    }
+
+    /// Takes a number, or one of a list.
+    fn number(&mut self, component: usize, number: Number) -> Result<(), Refusal> {
+        let value = match self.row.kind {
+            Kind::Number(quantity) | Kind::Numbers(_, quantity) => {
+                Value::Number(quantity.judge(number)?)
+            }
+            Kind::Coordinate => Value::Id(coordinate(number)?),
+            _ => Value::Id(self.id(component, number)),
+        };
+        self.set(component, value);
+        Ok(())
+    }
+
+    /// The id; of what is none, the largest number, which is no id either.
+    fn id(&mut self, component: usize, number: Number) -> usize {
+        number.whole().unwrap_or_else(|| {
+            let mut path = self.part.path(Some(self.at), self.row.key);
+            if let Kind::Ids = self.row.kind {
+                path += &format!("[{component}]");
+            }
+            self.reading.no_id.get_or_insert((path, number));
+            usize::MAX
+        })
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(mut self, from: D) -> Result<(), D::Error> {
+        match self.row.kind {
+            Kind::Number(_) | Kind::Id | Kind::Coordinate => {
+                from.deserialize_any(number(|n| self.number(0, n)))
+            }
+            Kind::Numbers(count, _) => {
+                from.deserialize_any(Numbers(count, |i, n| self.number(i, n)))
+            }
+            Kind::Ids => from.deserialize_any(Numbers(2, |i, n| self.number(i, n))),
+            Kind::Flag => {
+                let flag = from.deserialize_any(flag())?;
+                self.set(0, Value::Flag(flag));
+                Ok(())
+            }
+            Kind::Word(_) | Kind::Text(_) => from.deserialize_any(text(|text| {
+                match self.row.kind {
+                    Kind::Word(words) => known(text, words, "choice")?,
+                    Kind::Text(judge) => judge(text, self.reading.names)?,
+                    _ => {}
+                }
+                self.set(0, Value::Text(text));
+                Ok(())
+            })),
+            Kind::Part(part) if part.list => from.deserialize_any(List(part, self)),
+            Kind::Part(part) => from.deserialize_any(self.member(part)),
+            Kind::Expect => from.deserialize_any(Engines {
+                names: self.reading.names,
+                expect: &mut self.reading.scene.expect,
+                problem: &mut self.reading.problem,
+            }),
+        }
+    }
+}
+
+fn coordinate(number: Number) -> Result<usize, Refusal> {
+    match number.whole() {
+        Some(coordinate @ 0..=2) => Ok(coordinate),
+        _ => Refusal::because(
+            format!("expected a coordinate, 0, 1 or 2, found {number}"),
+            "0 is x, 1 is y, 2 is z",
+        ),
+    }
+}
+
+/// Reads a list of mappings.
+struct List<'r, 'n>(&'static Part, Entry<'r, 'n>);
+
+impl<'de> Visitor<'de> for List<'_, '_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a list")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let List(part, mut entry) = self;
+        while list.next_element_seed(Any(entry.member(part)))?.is_some() {}
+        Ok(())
+    }
+}

@@ -1,0 +1,175 @@
+//! What the table of parameters is made of: the [`Value`]s it gets and sets, and `declare!`, which
+//! declares a type of the [model](super::model) together with its rows, so that no field is without
+//! one.
+
+use serde::Serialize;
+
+/// What a key holds, or one component of it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value<'a> {
+    /// In the row's unit.
+    Number(f64),
+    /// A particle, or a coordinate.
+    Id(usize),
+    Flag(bool),
+    /// Lent by the scene, or by the file that is read.
+    Text(&'a str),
+}
+
+/// A field of the model as the values of its components. A part has none, and takes whatever is put
+/// as one more member.
+pub(super) trait Field {
+    fn value(&self, _component: usize) -> Option<Value<'_>> {
+        None
+    }
+
+    fn put(&mut self, _component: usize, _value: Value<'_>) {}
+}
+
+macro_rules! scalars {
+    ($($type:ty: $kind:ident, $lend:expr;)*) => {
+        $(impl Field for $type {
+            fn value(&self, component: usize) -> Option<Value<'_>> {
+                (component == 0).then(|| Value::$kind($lend(self)))
+            }
+
+            fn put(&mut self, _: usize, value: Value<'_>) {
+                if let Value::$kind(value) = value {
+                    *self = value.to_owned();
+                }
+            }
+        })*
+    };
+}
+scalars! {
+    f64: Number, Clone::clone;
+    usize: Id, Clone::clone;
+    bool: Flag, Clone::clone;
+    String: Text, String::as_str;
+}
+
+impl<T: Field, const N: usize> Field for [T; N] {
+    fn value(&self, component: usize) -> Option<Value<'_>> {
+        self.get(component)?.value(0)
+    }
+
+    fn put(&mut self, component: usize, value: Value<'_>) {
+        if let Some(field) = self.get_mut(component) {
+            field.put(0, value);
+        }
+    }
+}
+
+impl<T: Field + Default> Field for Option<T> {
+    fn value(&self, component: usize) -> Option<Value<'_>> {
+        self.as_ref()?.value(component)
+    }
+
+    fn put(&mut self, component: usize, value: Value<'_>) {
+        self.get_or_insert_default().put(component, value);
+    }
+}
+
+impl<T: Field + Default> Field for Vec<T> {
+    fn put(&mut self, _: usize, _: Value<'_>) {
+        self.push(T::default());
+    }
+}
+
+/// Gives an enum its words in a file, in the order in which messages list them.
+macro_rules! words {
+    ($type:ident: $($word:literal => $variant:ident),+) => {
+        impl $type {
+            const WORDS: &'static [&'static str] = &[$($word),+];
+        }
+
+        impl Field for $type {
+            fn value(&self, component: usize) -> Option<Value<'_>> {
+                let word = match self {
+                    $(Self::$variant => $word,)+
+                };
+                (component == 0).then_some(Value::Text(word))
+            }
+
+            fn put(&mut self, _: usize, value: Value<'_>) {
+                match value {
+                    $(Value::Text($word) => *self = Self::$variant,)+
+                    _ => {}
+                }
+            }
+        }
+    };
+}
+
+/// The members of a part as a slice: the scene `itself`, `one` member, `maybe` one or a `list`.
+macro_rules! members {
+    (itself $scene:ident . $file:ident, as_slice) => {
+        std::slice::from_ref($scene)
+    };
+    (itself $scene:ident . $file:ident, as_mut_slice) => {
+        std::slice::from_mut($scene)
+    };
+    (one $scene:ident . $part:ident, as_slice) => {
+        std::slice::from_ref(&$scene.$part)
+    };
+    (one $scene:ident . $part:ident, as_mut_slice) => {
+        std::slice::from_mut(&mut $scene.$part)
+    };
+    ($how:ident $scene:ident . $part:ident, $as_slice:ident) => {
+        $scene.$part.$as_slice()
+    };
+}
+
+/// Declares a type of the model: its fields with their defaults, and the row of each. A field in
+/// brackets has no key.
+macro_rules! declare {
+    (
+        $(#[$about:meta])*
+        $name:ident: $type:ident, $how:ident $place:ident, $expected:literal, later $later:expr;
+        $([$(#[$note:meta])* $unlisted:ident: $kept:ty = $empty:expr])?
+        $(
+            $(#[doc = $summary:literal])*
+            $field:ident: $of:ty = $default:expr, $key:literal => $kind:expr, $absent:expr, $flat:expr;
+        )*
+    ) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq)]
+        pub struct $type {
+            $($(#[doc = $summary])* pub $field: $of,)*
+            $($(#[$note])* pub $unlisted: $kept,)?
+        }
+
+        impl Default for $type {
+            fn default() -> Self {
+                Self { $($field: $default,)* $($unlisted: $empty,)? }
+            }
+        }
+
+        impl Field for $type {}
+
+        pub static $name: Part = Part {
+            key: stringify!($place),
+            list: matches!(stringify!($how).as_bytes(), b"list"),
+            expected: $expected,
+            later: &$later,
+            rows: &[$(Row {
+                key: $key,
+                summary: concat!($($summary),*),
+                kind: $kind,
+                absent: $absent,
+                flat: $flat,
+                get: |scene, at, component| {
+                    members!($how scene.$place, as_slice).get(at)?.$field.value(component)
+                },
+                set: |scene, at, component, value| {
+                    if let Some(member) = members!($how scene.$place, as_mut_slice).get_mut(at) {
+                        member.$field.put(component, value);
+                    }
+                },
+            }),*],
+            count: |scene| members!($how scene.$place, as_slice).len(),
+        };
+    };
+}
+pub(super) use {declare, members, words};

@@ -1,0 +1,76 @@
+//! Text from a file, made fit to show, and "did you mean": the nearest known word.
+
+use strsim::damerau_levenshtein;
+
+/// The character, or a stand-in for one that moves the cursor or reverses the line.
+pub(crate) fn printable(c: char) -> char {
+    match c {
+        '\t' => ' ',
+        '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
+        c if c.is_control() => '\u{fffd}',
+        c => c,
+    }
+}
+
+/// The first 60 characters, so that a message stays a line.
+pub(crate) fn shorten(text: &str) -> String {
+    let mut short: String = text.chars().take(60).map(printable).collect();
+    if text.chars().nth(60).is_some() {
+        short.push('…');
+    }
+    short
+}
+
+/// The known word a few letters away, if any.
+pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
+    // The distance is quadratic in length, and no known word is this long.
+    if found.len() > 64 {
+        return None;
+    }
+    let found = found.to_lowercase().replace('-', "_");
+    let allowed = (found.chars().count() / 3).max(1);
+    known
+        .iter()
+        .map(|word| (damerau_levenshtein(&found, &word.to_lowercase()), *word))
+        .filter(|(distance, word)| *distance <= allowed && *distance < word.len())
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, word)| word)
+}
+
+/// `did you mean ...?`, where a known word is near.
+pub(super) fn did_you_mean(found: &str, known: &[&str]) -> Option<String> {
+    nearest(found, known).map(|near| format!("did you mean `{near}`?"))
+}
+
+/// Keys other formats use, or that belong to another mapping of this one.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("k", "did you mean `stiffness`?"),
+    ("c", "did you mean `damping`?"),
+    ("length", "did you mean `rest_length`?"),
+    ("position", "did you mean `pos`?"),
+    ("velocity", "did you mean `vel`?"),
+    ("dt", "did you mean `timestep`?"),
+    ("h", "did you mean `timestep`?"),
+    ("gravity", "`gravity` stands under `solver`"),
+    ("timestep", "`timestep` stands under `solver`"),
+    ("type", "`type` stands under `solver`"),
+    ("tolerance", "`tolerance` stands under `solver`"),
+    ("duration", "`duration` stands at the top of the file"),
+    ("up", "`up` stands at the top of the file"),
+    (
+        "damping_model",
+        "`damping_model` stands at the top of the file",
+    ),
+];
+
+/// What to do about an unknown key, given those the mapping knows.
+pub(super) fn about_key(found: &str, known: &[&str]) -> String {
+    did_you_mean(found, known).unwrap_or_else(|| {
+        // A hint is worth giving only where it does not name the mapping the key was found in.
+        let hint = ELSEWHERE.iter().find(|(key, hint)| {
+            *key == found && (hint.contains("stands") || known.iter().any(|k| hint.contains(k)))
+        });
+        let keys = || format!("the keys here are {}", known.join(", "));
+        hint.map_or_else(keys, |(_, hint)| (*hint).to_owned())
+    })
+}

@@ -1,0 +1,137 @@
+//! Groups of particles that move independently of all others: what a closed form is asked for.
+
+use crate::physics::State;
+use crate::scene::{DampingModel, Scene, Spring};
+use nalgebra::Vector3;
+
+/// Free particles joined by springs, and what acts on them from t = 0 to `until`.
+#[derive(Debug, Clone)]
+pub(super) struct Group<'a> {
+    /// In the order of their ids.
+    pub bodies: Vec<Body>,
+    pub links: Vec<Link<'a>>,
+    pub until: f64,
+    /// The scene's size, m.
+    pub size: f64,
+}
+
+/// A free particle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Body {
+    /// In the scene.
+    pub id: usize,
+    pub mass: f64,
+    pub drag: f64,
+    /// At the start.
+    pub position: Vector3<f64>,
+    pub velocity: Vector3<f64>,
+    /// Acceleration under gravity and wind alone, m/s²: the same bits for equal masses, and without
+    /// wind for all.
+    pub constant: Vector3<f64>,
+}
+
+/// A spring and damper of a group.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Link<'a> {
+    pub spring: &'a Spring,
+    /// Where in `bodies` its ends stand; None is a fixed end.
+    pub ends: [Option<usize>; 2],
+    /// Positions of its ends at the start, m.
+    pub at: [Vector3<f64>; 2],
+    /// Damping along its direction alone, N s/m; 0 where the scene's dampers have none.
+    pub axial_damping: f64,
+}
+
+/// The groups of a scene: free particles that springs join, directly or through one another; fixed
+/// ones join nothing. In order of their first particle.
+pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Group<'a>> {
+    let fixed = |i: usize| scene.particles[i].fixed;
+    let acts = |spring: &&Spring| {
+        (spring.stiffness > 0.0 || spring.damping > 0.0) && !spring.ends.into_iter().all(fixed)
+    };
+    let springs: Vec<&Spring> = scene.springs.iter().filter(acts).collect();
+    let mut parent: Vec<usize> = (0..scene.particles.len()).collect();
+    for spring in &springs {
+        let [a, b] = spring.ends;
+        if !fixed(a) && !fixed(b) {
+            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    let mut gravity = Vector3::zeros();
+    gravity[scene.up.index()] = scene.solver.gravity;
+    let wind = scene.wind.as_ref().map_or(Vector3::zeros(), |wind| {
+        wind.strength * Vector3::from(wind.direction)
+    });
+    let position = |i: usize| Vector3::from(scene.particles[i].position);
+    let size = scene.size();
+    let mut groups: Vec<Group> = Vec::new();
+    let mut group_of = vec![usize::MAX; parent.len()];
+    for i in (0..parent.len()).filter(|&i| !fixed(i)) {
+        let root = root(&mut parent, i);
+        if group_of[root] == usize::MAX {
+            group_of[root] = groups.len();
+            groups.push(Group {
+                bodies: Vec::new(),
+                links: Vec::new(),
+                until,
+                size,
+            });
+        }
+        let particle = &scene.particles[i];
+        groups[group_of[root]].bodies.push(Body {
+            id: i,
+            mass: particle.mass,
+            drag: particle.drag,
+            position: position(i),
+            velocity: Vector3::from_column_slice(&start.v[3 * i..3 * i + 3]),
+            constant: gravity + wind / particle.mass,
+        });
+    }
+    for spring in springs {
+        let [a, b] = spring.ends;
+        let root = root(&mut parent, if fixed(a) { b } else { a });
+        let group = &mut groups[group_of[root]];
+        let place = |end| group.bodies.binary_search_by_key(&end, |body| body.id).ok();
+        group.links.push(Link {
+            spring,
+            ends: spring.ends.map(place),
+            at: spring.ends.map(position),
+            axial_damping: match scene.damping_model {
+                DampingModel::Axial => spring.damping,
+                DampingModel::Isotropic => 0.0,
+            },
+        });
+    }
+    groups
+}
+
+/// The representative of a particle's group, halving the path to it.
+fn root(parent: &mut [usize], mut i: usize) -> usize {
+    while parent[i] != i {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    i
+}
+
+impl Group<'_> {
+    /// Whether every force is linear wherever the particles are: no spring has a rest length, and no
+    /// damper a direction.
+    pub fn is_linear(&self) -> bool {
+        let linear = |link: &Link| !link.has_rest_length() && link.axial_damping <= 0.0;
+        self.links.iter().all(linear)
+    }
+}
+
+impl Link<'_> {
+    /// Whether the spring pulls towards a length other than 0.
+    pub fn has_rest_length(&self) -> bool {
+        self.spring.stiffness > 0.0 && self.spring.rest_length > 0.0
+    }
+
+    /// From its first end to its second at the start, m.
+    pub fn between(&self) -> Vector3<f64> {
+        self.at[1] - self.at[0]
+    }
+}
