@@ -11,8 +11,8 @@ use springcheck::physics::{State, System};
 use springcheck::scene;
 use springcheck::solvers::Solver;
 use springcheck::verbs;
-use springcheck::verbs::host::Quiet;
 use springcheck::verbs::run::{Choice, Plan};
+use springcheck::verbs::session::Quiet;
 use std::process::ExitCode;
 
 /// Kicks and drifts with these coefficients, in turn.

@@ -25,7 +25,7 @@
 //!
 //! ```
 //! use springcheck::verbs;
-//! use springcheck::verbs::host::Quiet;
+//! use springcheck::verbs::session::Quiet;
 //! use springcheck::verbs::run::{Choice, Plan};
 //! use springcheck::{measure::EnergyClass, scene};
 //!

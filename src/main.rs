@@ -1,6 +1,6 @@
 //! The command line: verbs in, exit codes out.
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{ColorChoice, Parser, Subcommand};
 use springcheck::verbs::{compare, cost, list, run, show, stability};
 use std::io::Write;
 use std::process::ExitCode;
@@ -16,8 +16,8 @@ struct Cli {
     verb: Verb,
 
     /// When to colour.
-    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
-    color: Color,
+    #[arg(long, global = true, value_enum, default_value_t)]
+    color: ColorChoice,
 
     /// No progress bar, no notes on stderr; errors still show.
     #[arg(long, global = true)]
@@ -40,13 +40,6 @@ enum Verb {
     List(list::Args),
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Color {
-    Auto,
-    Always,
-    Never,
-}
-
 /// The exit code for usage, scene and input errors.
 const USAGE: u8 = 2;
 
@@ -61,9 +54,9 @@ fn main() -> ExitCode {
         }
     };
     match cli.color {
-        Color::Auto => anstream::ColorChoice::Auto,
-        Color::Always => anstream::ColorChoice::Always,
-        Color::Never => anstream::ColorChoice::Never,
+        ColorChoice::Auto => anstream::ColorChoice::Auto,
+        ColorChoice::Always => anstream::ColorChoice::Always,
+        ColorChoice::Never => anstream::ColorChoice::Never,
     }
     .write_global();
     let done = match cli.verb {

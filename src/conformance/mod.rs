@@ -32,7 +32,6 @@ mod exactness;
 mod finding;
 mod momentum;
 mod order;
-mod reference;
 mod reuse;
 mod reversal;
 mod stability;

@@ -40,7 +40,7 @@ impl Energy {
 }
 
 /// Energies at the recorded instants of one run, joules; all finite.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct EnergySeries {
     /// Seconds.
     pub t: Vec<f64>,
@@ -48,14 +48,11 @@ pub struct EnergySeries {
     pub instants: Vec<usize>,
     /// B = E + dissipated - injected; constant in the truth.
     pub balance: Vec<f64>,
-    initial: f64,
-    last: f64,
-    kinetic_last: f64,
-    potential_last: BTreeMap<String, f64>,
-    work: Work,
-    /// Steps taken up to the last instant, and the largest term ever summed: what rounding grows with.
-    steps: u64,
-    largest_term: f64,
+    /// Energies at the start and the end; nothing is judged yet.
+    ends: Energy,
+    /// What rounding alone may do to the balance: half a last bit of the largest term each way a
+    /// step. Mostly it is a random walk, but a constant such as 1/6 rounds the same way every time.
+    floor: f64,
 }
 
 impl EnergySeries {
@@ -80,21 +77,33 @@ impl EnergySeries {
         };
         let samples: Vec<_> = (0..run.len()).filter_map(sample).collect();
         let (&(_, initial, ..), &(end, last, ..)) = samples.first().zip(samples.last())?;
+        let largest = samples.iter().fold(0.0, |most, (.., term)| term.max(most));
         let potential = |effect: &dyn Effect| effect.potential(run.time(end), run.x(end));
         let effects = system.effects().iter();
+        let Work {
+            dissipated,
+            injected,
+        } = run.work(end);
         Some(Self {
             t: samples.iter().map(|(k, ..)| run.time(*k)).collect(),
             instants: samples.iter().map(|(k, ..)| *k).collect(),
             balance: samples.iter().map(|(_, _, balance, _)| *balance).collect(),
-            initial,
-            last,
-            kinetic_last: system.kinetic(run.v(end)),
-            potential_last: effects
-                .map(|(row, effect)| (row.id.to_owned(), potential(effect.as_ref())))
-                .collect(),
-            work: run.work(end),
-            steps: run.step(end),
-            largest_term: samples.iter().fold(0.0, |most, (.., term)| term.max(most)),
+            ends: Energy {
+                initial_j: Some(initial),
+                final_j: Some(last),
+                relative_error_max: None,
+                drift_per_s: None,
+                drift_per_s_ci: None,
+                fluctuation: None,
+                class: None,
+                kinetic_final_j: Some(system.kinetic(run.v(end))),
+                potential_final_j: effects
+                    .map(|(row, effect)| (row.id.to_owned(), potential(effect.as_ref())))
+                    .collect(),
+                dissipated_j: Some(dissipated),
+                injected_j: Some(injected),
+            },
+            floor: f64::EPSILON * largest * run.step(end).max(8) as f64,
         })
     }
 
@@ -103,18 +112,12 @@ impl EnergySeries {
         let start = self.balance[0];
         self.balance.iter().map(|b| (b - start) / scale).collect()
     }
-
-    /// What rounding alone may do to the balance: half a last bit of the largest term each way a
-    /// step. Mostly it is a random walk, but a constant such as 1/6 rounds the same way every time.
-    fn floor(&self) -> f64 {
-        f64::EPSILON * self.largest_term * self.steps.max(8) as f64
-    }
 }
 
 /// The verdict on a run's balance; `scale` is S, without which errors have no relative size.
 /// A run that `diverged` is growing by definition, however few instants it left.
 pub fn judge(series: &EnergySeries, scale: Option<f64>, diverged: bool) -> Energy {
-    let trend = trend(&series.t, &series.balance, series.floor());
+    let trend = trend(&series.t, &series.balance, series.floor);
     // One instant has no history: 0 would look like a perfect run.
     let scale = scale.filter(|_| series.t.len() > 1);
     let in_scale = |joules: f64| scale.map(|s| joules / s).filter(|r| r.is_finite());
@@ -124,8 +127,6 @@ pub fn judge(series: &EnergySeries, scale: Option<f64>, diverged: bool) -> Energ
         .fold(0.0, |m: f64, e| m.max(e.abs()));
     let interval = [in_scale(trend.interval[0]), in_scale(trend.interval[1])];
     Energy {
-        initial_j: Some(series.initial),
-        final_j: Some(series.last),
         relative_error_max: in_scale(worst),
         drift_per_s: in_scale(trend.slope),
         drift_per_s_ci: interval[0].zip(interval[1]).map(|(lo, hi)| [lo, hi]),
@@ -135,9 +136,6 @@ pub fn judge(series: &EnergySeries, scale: Option<f64>, diverged: bool) -> Energ
         } else {
             trend.class
         }),
-        kinetic_final_j: Some(series.kinetic_last),
-        potential_final_j: series.potential_last.clone(),
-        dissipated_j: Some(series.work.dissipated),
-        injected_j: Some(series.work.injected),
+        ..series.ends.clone()
     }
 }

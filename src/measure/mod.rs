@@ -1,7 +1,6 @@
 //! What a trajectory shows, as numbers: pure functions of recorded states.
 
 mod check;
-mod deviation;
 mod energy;
 mod error;
 pub mod identify;
@@ -13,10 +12,9 @@ mod trend;
 pub mod twin;
 
 pub use check::{Check, CheckStatus};
-pub use deviation::{Deviation, TOLERANCE, deviation, reach};
 pub use energy::{Energy, EnergySeries, judge};
-pub use error::{Errors, Known, Spread, errors};
+pub use error::{Deviation, Errors, Known, Spread, TOLERANCE, deviation, errors, reach};
 pub(crate) use momentum::totals;
 pub use momentum::{Momentum, momentum};
 pub use scale::{divergence_limit, energy_scale};
-pub use trend::{EnergyClass, Trend, trend};
+pub use trend::EnergyClass;

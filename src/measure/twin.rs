@@ -56,10 +56,13 @@ pub fn prove_pair(ours: &Scene, theirs: &Scene, timestep: f64) -> Vec<Check> {
         theirs: other,
         timestep,
     };
-    let mut proofs = vec![pair.forces(), pair.joints()];
+    let mut proofs = vec![
+        pair.prove(FORCES, Pair::forces),
+        pair.prove(JOINTS, Pair::joints),
+    ];
     let system = ParticleSystem::new(&pair.ours);
     if system.effects().iter().all(|(row, _)| row.constant) {
-        proofs.push(pair.fall());
+        proofs.push(pair.prove(FALL, Pair::fall));
     }
     proofs
 }
@@ -71,6 +74,25 @@ struct Claim {
     /// The integrator of ours that the subject must be.
     method: &'static str,
 }
+
+/// rapier-forces is symplectic Euler.
+const FORCES: Claim = Claim {
+    id: "twin-forces",
+    subject: "rapier-forces",
+    method: "symplectic_euler",
+};
+/// rapier-converged is linearly implicit Euler without geometric stiffness, at dt / 4.
+const JOINTS: Claim = Claim {
+    id: "twin-joints",
+    subject: "rapier-converged",
+    method: "linearized_implicit_material",
+};
+/// rapier's fall is symplectic Euler at dt / n.
+const FALL: Claim = Claim {
+    id: "twin-fall",
+    subject: "rapier",
+    method: "symplectic_euler",
+};
 
 impl Claim {
     fn judge(&self, ours: &Path, theirs: &Path, bound: f64, derivation: String) -> Check {
@@ -113,11 +135,6 @@ impl Claim {
         self.check(status, measured, bound, derivation, message)
     }
 
-    fn skip(&self, unsupported: Unsupported) -> Check {
-        let reason = unsupported.reason;
-        self.check(CheckStatus::Skip, None, 0.0, String::new(), reason)
-    }
-
     fn check(
         &self,
         status: CheckStatus,
@@ -153,39 +170,27 @@ impl Pair {
         Path::of(&solver, &self.theirs, self.timestep, 1, steps)
     }
 
-    /// rapier-forces is symplectic Euler.
-    fn forces(&self) -> Check {
-        let proof = Claim {
-            id: "twin-forces",
-            subject: "rapier-forces",
-            method: "symplectic_euler",
-        };
-        let solver = find(proof.subject);
-        let theirs = match self.theirs(solver, FORCE_STEPS) {
-            Ok(path) => path,
-            Err(unsupported) => return proof.skip(unsupported),
-        };
-        let ours = Path::ours(&self.ours, proof.method, self.timestep, 1, FORCE_STEPS);
+    /// Takes what rapier does not support for a proof to be skipped.
+    fn prove(&self, claim: Claim, by: fn(&Self, &Claim) -> Result<Check, Unsupported>) -> Check {
+        by(self, &claim).unwrap_or_else(|Unsupported { reason }| {
+            claim.check(CheckStatus::Skip, None, 0.0, String::new(), reason)
+        })
+    }
+
+    fn forces(&self, claim: &Claim) -> Result<Check, Unsupported> {
+        let theirs = self.theirs(find(claim.subject), FORCE_STEPS)?;
+        let ours = Path::ours(&self.ours, claim.method, self.timestep, 1, FORCE_STEPS);
         // v += h (f / m), x += h v: the forces are the same code, and both sides round the same
         // four operations in the same order. There is no difference to be amplified.
         let derivation = "both sides round the same operations in the same order: bit for bit";
-        proof.judge(&ours, &theirs, 0.0, derivation.to_owned())
+        Ok(claim.judge(&ours, &theirs, 0.0, derivation.to_owned()))
     }
 
-    /// rapier-converged is linearly implicit Euler without geometric stiffness, at dt / 4.
-    fn joints(&self) -> Check {
-        let proof = Claim {
-            id: "twin-joints",
-            subject: "rapier-converged",
-            method: "linearized_implicit_material",
-        };
+    fn joints(&self, claim: &Claim) -> Result<Check, Unsupported> {
         let mut settings = Settings::CONVERGED;
         let run = |settings: &Settings| self.theirs(Some(Solver::rapier(*settings)), JOINT_STEPS);
-        let mut coarse = match run(&settings) {
-            Ok(path) => path,
-            Err(unsupported) => return proof.skip(unsupported),
-        };
-        let (path, bound, derivation) = self.reference(proof.method, settings.iterations);
+        let mut coarse = run(&settings)?;
+        let (path, bound, derivation) = self.reference(claim.method, settings.iterations);
         let joints = self.ours.springs.len() as u64 * u64::from(JOINT_STEPS * settings.iterations);
         while settings.pgs < MAX_SWEEPS && joints * u64::from(2 * settings.pgs) <= MAX_ROWS {
             settings.pgs *= 2;
@@ -193,7 +198,7 @@ impl Pair {
             let moved = distance(&coarse, &fine);
             if let Some(moved) = moved.filter(|moved| *moved <= 0.1 * bound) {
                 let derivation = format!("{derivation}; {} sweeps", settings.pgs);
-                let judged = proof.judge(&path, &fine, bound, derivation);
+                let judged = claim.judge(&path, &fine, bound, derivation);
                 // A sweep takes off at least one part in `condition` of the error, so half of the
                 // sweeps having moved it this far leave at most this much. A difference refutes
                 // only if it is not that.
@@ -201,7 +206,7 @@ impl Pair {
                 let kept = (1.0 - part).powf(f64::from(settings.pgs) / 2.0);
                 let left = moved.max(f64::EPSILON) * kept / (1.0 - kept);
                 if judged.status != CheckStatus::Fail || left <= 0.1 * bound {
-                    return judged;
+                    return Ok(judged);
                 }
             }
             coarse = fine;
@@ -212,23 +217,14 @@ impl Pair {
         );
         let measured = distance(&path, &coarse);
         let status = CheckStatus::Inconclusive;
-        proof.check(status, measured, bound, derivation, message)
+        Ok(claim.check(status, measured, bound, derivation, message))
     }
 
-    /// rapier's fall is symplectic Euler at dt / n.
-    fn fall(&self) -> Check {
-        let proof = Claim {
-            id: "twin-fall",
-            subject: "rapier",
-            method: "symplectic_euler",
-        };
+    fn fall(&self, claim: &Claim) -> Result<Check, Unsupported> {
         let settings = Settings::DEFAULT;
-        let theirs = match self.theirs(Some(Solver::rapier(settings)), JOINT_STEPS) {
-            Ok(path) => path,
-            Err(unsupported) => return proof.skip(unsupported),
-        };
-        let (path, bound, derivation) = self.reference(proof.method, settings.iterations);
-        proof.judge(&path, &theirs, bound, derivation)
+        let theirs = self.theirs(Some(Solver::rapier(settings)), JOINT_STEPS)?;
+        let (path, bound, derivation) = self.reference(claim.method, settings.iterations);
+        Ok(claim.judge(&path, &theirs, bound, derivation))
     }
 
     /// Our path at dt / n, what rounding can move it, and why.

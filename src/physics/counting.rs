@@ -16,16 +16,14 @@ pub struct Evaluations {
 #[derive(Debug)]
 pub struct Counting<S> {
     inner: S,
-    forces: Cell<u64>,
-    damping: Cell<u64>,
+    counted: Cell<Evaluations>,
 }
 
 impl<S: System> Counting<S> {
     pub fn new(inner: S) -> Self {
         Self {
             inner,
-            forces: Cell::new(0),
-            damping: Cell::new(0),
+            counted: Cell::default(),
         }
     }
 
@@ -35,15 +33,8 @@ impl<S: System> Counting<S> {
     }
 
     pub fn evaluations(&self) -> Evaluations {
-        Evaluations {
-            forces: self.forces.get(),
-            damping: self.damping.get(),
-        }
+        self.counted.get()
     }
-}
-
-fn bump(counter: &Cell<u64>) {
-    counter.set(counter.get() + 1);
 }
 
 impl<S: System> System for Counting<S> {
@@ -51,14 +42,18 @@ impl<S: System> System for Counting<S> {
         self.inner.inverse_mass()
     }
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
-        bump(&self.forces);
+        let mut counted = self.counted.get();
+        counted.forces += 1;
+        self.counted.set(counted);
         self.inner.acceleration(t, x, v, a)
     }
     fn kinds(&self) -> ForceKinds {
         self.inner.kinds()
     }
     fn damping(&self, t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
-        bump(&self.damping);
+        let mut counted = self.counted.get();
+        counted.damping += 1;
+        self.counted.set(counted);
         self.inner.damping(t, x, w, a);
     }
     fn injected_power(&self, t: f64, x: &[f64], v: &[f64]) -> f64 {

@@ -15,6 +15,8 @@ pub struct Refusal {
     pub message: String,
     /// What to do; empty where the message says it all.
     pub help: String,
+    /// Whether the value was read and then judged.
+    judged: bool,
 }
 
 impl Refusal {
@@ -23,6 +25,14 @@ impl Refusal {
             key: String::new(),
             message: message.into(),
             help: help.into(),
+            judged: false,
+        }
+    }
+
+    pub(super) fn judged(self) -> Refusal {
+        Refusal {
+            judged: true,
+            ..self
         }
     }
 
@@ -48,9 +58,12 @@ pub(super) const MARK: char = '\u{1f}';
 
 /// The refusal of the value being read.
 pub(super) fn refuse<E: serde::de::Error>(refusal: Refusal) -> E {
-    let Refusal { key, message, help } = refusal;
-    let [key, message, help] = [key, message, help].map(|text| text.replace(MARK, " "));
-    E::custom(format!("{MARK}{key}{MARK}{message}{MARK}{help}{MARK}"))
+    let judged = if refusal.judged { "judged" } else { "" };
+    let parts = [refusal.key, refusal.message, refusal.help].map(|text| text.replace(MARK, " "));
+    let [key, message, help] = parts;
+    E::custom(format!(
+        "{MARK}{key}{MARK}{message}{MARK}{help}{MARK}{judged}{MARK}"
+    ))
 }
 
 /// A refusal at a place in the text.
@@ -132,7 +145,9 @@ impl SceneError {
 
     /// The whole block, by a renderer of the caller's choice: plain or styled.
     pub fn render(&self, renderer: &Renderer) -> String {
-        let Refusal { key, message, help } = &self.refusal;
+        let Refusal {
+            key, message, help, ..
+        } = &self.refusal;
         let mut headline = self.file.clone();
         for number in [self.line, self.column].into_iter().flatten() {
             headline += &format!(":{number}");

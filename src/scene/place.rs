@@ -14,18 +14,8 @@ use super::words::shorten;
 use serde::de::{Deserialize, DeserializeSeed, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
-/// What is wrong with a document that was refused. What is not YAML comes first: it may be the cause of
-/// whatever else is wrong.
-pub(super) fn refused(error: &serde_yaml::Error, text: &str) -> Fault {
-    let document = serde_yaml::Deserializer::from_str(text).next();
-    match document.and_then(|document| IgnoredAny::deserialize(document).err()) {
-        Some(not_yaml) => fault(&not_yaml, text),
-        None => fault(error, text),
-    }
-}
-
 /// Rebuilds what the parser says as a located fault.
-fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
+pub(super) fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
     let said = error.to_string();
     let location = error.location();
     let offset = location.as_ref().map_or(0, |l| l.index());
@@ -35,7 +25,14 @@ fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
     };
 
     let parts: Vec<&str> = said.split(MARK).collect();
-    if let [path, key, message, help, _] = parts[..] {
+    if let [path, key, message, help, judged, _] = parts[..] {
+        // A bracket left open may be why the value is odd: what is not YAML goes first.
+        if !judged.is_empty()
+            && let Some(document) = serde_yaml::Deserializer::from_str(text).next()
+            && let Err(not_yaml) = IgnoredAny::deserialize(document)
+        {
+            return fault(&not_yaml, text);
+        }
         let path = [path.trim_end_matches(": "), key];
         let path: Vec<&str> = path.into_iter().filter(|part| !part.is_empty()).collect();
         return place(&path.join("."), message, help);

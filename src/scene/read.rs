@@ -10,7 +10,7 @@ use super::expect::Engines;
 use super::expectation::Names;
 use super::limits::known;
 use super::model::{Absent, Kind, Part, Row, SCENE, Scene};
-use super::place::{Problem, refused, second_document};
+use super::place::{Problem, fault, second_document};
 use super::table::Value;
 use super::values::{Any, Key, Maybe, Number, Numbers, flag, index_of, number, text};
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
@@ -38,7 +38,7 @@ pub(super) fn document(text: &str, reading: &mut Reading) -> Result<(), Fault> {
     let first = match documents.next() {
         Some(document) => Maybe(scene)
             .deserialize(document)
-            .map_err(|e| refused(&e, text))?,
+            .map_err(|e| fault(&e, text))?,
         None => None,
     };
     if let Some(second) = documents.next() {

@@ -120,7 +120,7 @@ pub(super) fn number<'de, T>(
     mut judge: impl FnMut(Number) -> Result<T, Refusal>,
 ) -> impl Visitor<'de, Value = T> {
     let number = move |scalar: Scalar| match scalar {
-        Scalar::Number(number) => Some(judge(number)),
+        Scalar::Number(number) => Some(judge(number).map_err(Refusal::judged)),
         Scalar::Text(text) => {
             let message = format!("expected a number, found the text `{}`", shorten(text));
             Some(Refusal::because(message, remedy(text)))
@@ -151,7 +151,7 @@ pub(super) fn text<'de, T>(
 ) -> impl Visitor<'de, Value = T> {
     let expected = "text (in quotes if it looks like something else)";
     One(expected, move |scalar: Scalar| match scalar {
-        Scalar::Text(text) => Some(judge(text)),
+        Scalar::Text(text) => Some(judge(text).map_err(Refusal::judged)),
         _ => None,
     })
 }
@@ -271,10 +271,6 @@ impl<'de, S: DeserializeSeed<'de>> Visitor<'de> for Maybe<S> {
     }
 
     fn visit_none<E: Error>(self) -> Result<Self::Value, E> {
-        Ok(None)
-    }
-
-    fn visit_unit<E: Error>(self) -> Result<Self::Value, E> {
         Ok(None)
     }
 

@@ -114,8 +114,8 @@ fn sum_of_squares(v: &[f64]) -> f64 {
     let blocks = v.chunks_exact(8);
     let rest: f64 = blocks.remainder().iter().map(|v| v * v).sum();
     for block in blocks {
-        for lane in 0..8 {
-            sums[lane] += block[lane] * block[lane];
+        for i in 0..8 {
+            sums[i] += block[i] * block[i];
         }
     }
     sums.iter().sum::<f64>() + rest

@@ -262,14 +262,13 @@ pub fn find(id: &str) -> Option<Solver> {
 
 /// These methods after the integrator of the id `own`, which a scene names.
 pub fn own_first(own: &str, methods: impl Iterator<Item = Solver>) -> Vec<Solver> {
-    let own_method = integrators::find(own).filter(|method| method.pair().is_none());
-    let first = own_method.map(Solver::method).into_iter();
-    first
+    let first = integrators::fixed().iter().find(|method| method.id == own);
+    (first.map(Solver::method).into_iter())
         .chain(methods.filter(|method| method.id != own))
         .collect()
 }
 
-/// Every method of the registry, the one with the id `own` first.
+/// Every method of fixed steps, the one with the id `own` first.
 pub fn methods(own: &str) -> Vec<Solver> {
     own_first(own, integrators::fixed().iter().map(Solver::method))
 }

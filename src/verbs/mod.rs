@@ -7,11 +7,12 @@ pub mod cli;
 pub mod clock;
 pub mod compare;
 pub mod cost;
+mod facts;
 pub mod formats;
-pub mod host;
 pub mod list;
 pub mod run;
 pub mod series;
+pub mod session;
 pub mod show;
 pub mod stability;
 

@@ -8,8 +8,8 @@ use springcheck::integrators::{DampingTreatment, Integrator, Splitting, Stage};
 use springcheck::physics::{Counting, State, System};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
 use springcheck::solvers::Solver;
-use springcheck::verbs::host::Quiet;
 use springcheck::verbs::run::{Choice, Plan};
+use springcheck::verbs::session::Quiet;
 
 /// The kick alone: positions stay where they are.
 const KICK: &[Stage] = &[Stage::Kick(1.0)];

@@ -12,8 +12,8 @@ use springcheck::scene::{self, DampingModel};
 use springcheck::solvers::Solver;
 use springcheck::solvers::Status;
 use springcheck::verbs;
-use springcheck::verbs::host::Quiet;
 use springcheck::verbs::run::{Choice, Plan};
+use springcheck::verbs::session::Quiet;
 
 /// f = q B v x e_z on every particle, with this q B, kg/s.
 struct Magnetic(f64, ForceKinds);

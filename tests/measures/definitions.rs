@@ -12,9 +12,9 @@ use springcheck::solvers::{Limits, Setting, Solver};
 use springcheck::trajectory::{Recorder, Trajectory};
 use springcheck::truth::Demand;
 use springcheck::verbs::Report;
-use springcheck::verbs::host::Quiet;
 use springcheck::verbs::run::Outcome;
 use springcheck::verbs::run::{Choice, Plan};
+use springcheck::verbs::session::Quiet;
 
 /// The oscillator k = 50, m = 1, A = 0.5 at rest length 0, without gravity.
 fn oscillator(timestep: f64, damping: f64) -> Scene {

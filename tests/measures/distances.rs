@@ -6,8 +6,8 @@ use springcheck::physics::effects;
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::{DampingModel, Scene};
 use springcheck::verbs::Report;
-use springcheck::verbs::host::Quiet;
 use springcheck::verbs::run::{Choice, Plan};
+use springcheck::verbs::session::Quiet;
 
 /// Explicit Euler and rapier, whose four iterations a step are four steps of symplectic Euler.
 fn report(scene: &Scene, timesteps: &[f64]) -> Report {

@@ -6,9 +6,9 @@ use springcheck::scene::Scene;
 use springcheck::solvers::Kind;
 use springcheck::solvers::Solver;
 use springcheck::verbs::Report;
-use springcheck::verbs::host::Quiet;
 use springcheck::verbs::run::Outcome;
 use springcheck::verbs::run::{Choice, Plan};
+use springcheck::verbs::session::Quiet;
 
 fn circle() -> Scene {
     shipped("oscillator/circle.yml")

@@ -7,8 +7,8 @@ use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::{self, Scene};
 use springcheck::solvers::{Solver, rapier::Settings};
 use springcheck::truth::Demand;
-use springcheck::verbs::host::Quiet;
 use springcheck::verbs::run::{Choice, Expectations, Orders, Plan};
+use springcheck::verbs::session::Quiet;
 
 const SIXTIETH: f64 = 1.0 / 60.0;
 

@@ -90,8 +90,8 @@ impl<'a> Study<'a> {
             motion,
             until,
         };
-        // At once, not when first asked for: asked for by several threads, one would wait for a truth
-        // that is computed in parallel and could be handed the work of those who wait for it.
+        // Both now, not when first asked for: the truth is computed in parallel, and a thread that waits for
+        // it inside its own computation would wait for ever.
         let grids = GRIDS.map(|(share, most)| Grid::new(&problem, own / share, most));
         Self {
             problem,

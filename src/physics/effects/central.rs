@@ -50,19 +50,17 @@ enum Law {
 }
 
 impl Law {
-    /// At a distance in m, N/m: the pull over the distance, and how the pull grows with the distance. None
-    /// at coincidence, where there is no direction and no force.
-    fn slopes(&self, length: f64) -> Option<[f64; 2]> {
+    /// At a distance in m: the pull over the distance, N/m. None at coincidence, where there is no
+    /// direction and no force.
+    fn pull(&self, length: f64) -> Option<f64> {
         match *self {
             Self::Cubic { cubic, rest_length } if length > SHORTEST => {
                 let stretch = length - rest_length;
-                let squared = cubic * stretch * stretch;
-                Some([squared * stretch / length, 3.0 * squared])
+                Some(cubic * stretch * stretch * stretch / length)
             }
+            // Divided one by one: r³ may leave the range of a double.
             Self::Gravitational { strength } if length >= COINCIDENT => {
-                // Divided one by one: r³ may leave the range of a double.
-                let pull = strength / length / length / length;
-                Some([pull, -2.0 * pull])
+                Some(strength / length / length / length)
             }
             _ => None,
         }
@@ -82,18 +80,31 @@ impl Law {
     /// ∂f_i/∂(x_j - x_i) for the separation d from i to j.
     fn block(&self, d: Vector3<f64>, kept: Linearization) -> Matrix3<f64> {
         let length = d.norm();
-        let Some([across, along]) = self.slopes(length) else {
+        let Some(pull) = self.pull(length) else {
             return Matrix3::zeros();
         };
-        // Attraction falls with distance: its stiffness along the pair is negative.
-        let [across, along] = match (kept, self) {
-            (Linearization::Definite, _) => [across.max(0.0), along.max(0.0)],
-            (Linearization::Material, Self::Cubic { .. }) => [0.0, along],
-            _ => [across, along],
-        };
-        let n = d / length;
-        let axial = n * n.transpose();
-        axial * along + (Matrix3::identity() - axial) * across
+        let (n, identity) = (d / length, Matrix3::identity());
+        match *self {
+            Self::Cubic { cubic, rest_length } => {
+                let stretch = length - rest_length;
+                let axial = n * n.transpose();
+                let across = match kept {
+                    Linearization::Exact => pull,
+                    Linearization::Definite => pull.max(0.0),
+                    Linearization::Material => 0.0,
+                };
+                axial * (3.0 * (cubic * stretch * stretch)) + (identity - axial) * across
+            }
+            // Attraction falls with distance: its stiffness along the pair is negative.
+            Self::Gravitational { .. } => {
+                let along = if kept == Linearization::Definite {
+                    1.0
+                } else {
+                    3.0
+                };
+                (identity - along * n * n.transpose()) * pull
+            }
+        }
     }
 }
 
@@ -149,7 +160,7 @@ impl Effect for Central {
 
     fn add_force(&self, _t: f64, x: &[f64], _v: &[f64], f: &mut [f64]) -> Power {
         for (law, [i, j], d) in self.separations(x) {
-            if let Some([pull, _]) = law.slopes(dot(d, d).sqrt()) {
+            if let Some(pull) = law.pull(dot(d, d).sqrt()) {
                 for axis in 0..3 {
                     f[i + axis] += pull * d[axis];
                     f[j + axis] -= pull * d[axis];

@@ -1,11 +1,9 @@
 //! `--save`: every step of every engine, in files beside the report.
 
-use super::output::{Place, temporary};
+use super::output::temporary;
 use crate::physics::State;
 use crate::trajectory::{CsvWriter, NpzWriter, Observer, SaveError};
-use crate::verbs::host::{Label, Saver};
-use std::fs::File;
-use std::io::BufWriter;
+use crate::verbs::session::{Label, Saver};
 use std::path::PathBuf;
 use tempfile::NamedTempFile;
 
@@ -20,100 +18,69 @@ pub enum FileKind {
 /// Makes one file a case.
 #[derive(Debug)]
 pub struct Files {
-    kind: FileKind,
-    folder: PathBuf,
-    every: u64,
+    pub kind: FileKind,
+    pub folder: PathBuf,
+    /// Steps from one row to the next.
+    pub every: u64,
 }
 
 impl Files {
-    pub fn new(kind: FileKind, place: &Place, every: u64) -> Self {
-        Self {
-            kind,
-            folder: place.folder().to_owned(),
-            every,
-        }
-    }
-
     /// A writer into a temporary file that takes its name, `<engine>@<timestep>.csv`, at the end.
     pub fn saver(&self, case: &Label) -> Result<Box<dyn Saver>, SaveError> {
-        let extension = match self.kind {
-            FileKind::Csv => "csv",
-            FileKind::Npz => "npz",
+        let Label {
+            engine,
+            timestep,
+            steps,
+            particles,
+        } = case;
+        let path = |extension| {
+            let name = format!("{engine}@{timestep}.{extension}");
+            self.folder.join(name)
         };
-        let path = self
-            .folder
-            .join(format!("{}@{}.{extension}", case.engine, case.timestep));
         let file = temporary(&self.folder)?;
         Ok(match self.kind {
-            FileKind::Csv => {
-                let out = BufWriter::new(file);
-                let writer = CsvWriter::new(out, case.steps, self.every, case.timestep);
-                Box::new(CsvFile { writer, path })
-            }
+            FileKind::Csv => Box::new(Saving {
+                writer: CsvWriter::new(file, *steps, self.every, *timestep),
+                complete: CsvWriter::finish,
+                path: path("csv"),
+            }),
             FileKind::Npz => {
                 let scratch = [tempfile::tempfile()?, tempfile::tempfile()?];
-                let writer = NpzWriter::new(
-                    scratch,
-                    case.particles,
-                    case.steps,
-                    self.every,
-                    case.timestep,
-                );
-                Box::new(NpzFile { writer, file, path })
+                Box::new(Saving {
+                    writer: NpzWriter::new(scratch, *particles, *steps, self.every, *timestep),
+                    complete: |writer: NpzWriter<_>| writer.finish(file),
+                    path: path("npz"),
+                })
             }
         })
     }
 }
 
-struct CsvFile {
-    writer: CsvWriter<BufWriter<NamedTempFile>>,
+/// A file on its way: its writer, what completes it, and the name it takes then.
+struct Saving<W, F> {
+    writer: W,
+    complete: F,
     path: PathBuf,
 }
 
-impl Observer for CsvFile {
+impl<W: Observer, F> Observer for Saving<W, F> {
     fn next(&self, from: u64) -> Option<u64> {
         self.writer.next(from)
     }
+
     fn observe(&mut self, step: u64, state: &State) {
         self.writer.observe(step, state);
     }
 }
 
-impl Saver for CsvFile {
+impl<W, F> Saver for Saving<W, F>
+where
+    W: Observer,
+    F: FnOnce(W) -> Result<NamedTempFile, SaveError>,
+{
     fn finish(self: Box<Self>) -> Result<(), SaveError> {
-        let out = self.writer.finish()?;
-        let file = out
-            .into_inner()
-            .map_err(std::io::IntoInnerError::into_error)?;
-        persist(file, &self.path)
+        let file = (self.complete)(self.writer)?;
+        file.persist(self.path).map_err(|error| error.error)?;
+        Ok(())
     }
-}
-
-struct NpzFile {
-    writer: NpzWriter<File>,
-    file: NamedTempFile,
-    path: PathBuf,
-}
-
-impl Observer for NpzFile {
-    fn next(&self, from: u64) -> Option<u64> {
-        self.writer.next(from)
-    }
-    fn observe(&mut self, step: u64, state: &State) {
-        self.writer.observe(step, state);
-    }
-}
-
-impl Saver for NpzFile {
-    fn finish(self: Box<Self>) -> Result<(), SaveError> {
-        let NpzFile { writer, file, path } = *self;
-        let file = writer.finish(file)?;
-        persist(file, &path)
-    }
-}
-
-fn persist(file: NamedTempFile, path: &std::path::Path) -> Result<(), SaveError> {
-    file.persist(path)
-        .map_err(|error| SaveError::Io(error.error))?;
-    Ok(())
 }

@@ -1,7 +1,148 @@
-//! One trajectory that somebody else computed: is it right, and which scheme is it really?
+//! `springcheck compare FILE --scene SCENE`: one trajectory that somebody else computed. Is it right, and which
+//! scheme is it really?
 
-mod args;
-mod plan;
+use crate::measure::identify::Undecided;
+use crate::report::json::Tool;
+use crate::scene::Scene;
+use crate::solvers::Solver;
+use crate::solvers::external::{Failure, Program, Recording, Task};
+use crate::trajectory::{self, Expected, Rows, SaveError, limits};
+use crate::truth::Demand;
+use crate::verbs::cli::flags::{self, demand};
+use crate::verbs::cli::output::{self, Output};
+use crate::verbs::cli::terminal::Terminal;
+use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity};
+use crate::verbs::session::Session;
+use crate::verbs::{Body, Report};
+use anyhow::{Context, bail};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
 
-pub use args::{Args, compare};
-pub use plan::Comparison;
+#[derive(Debug, clap::Args)]
+#[command(mut_arg("output", |arg| arg.help("Where a report goes. Default: nowhere")))]
+pub struct Args {
+    /// What some program computed: CSV (`t,id,x,y,z[,vx,vy,vz]`), NPZ (`t`, `x`, `v`) or NPY.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+
+    /// The scene it simulates (YAML).
+    #[arg(long, value_name = "SCENE")]
+    scene: PathBuf,
+
+    /// The step it took, seconds; rows may lie several of them apart. Default: the scene's.
+    #[arg(long, value_name = "H")]
+    timestep: Option<f64>,
+
+    /// What errors are measured against, as in `run`.
+    #[arg(long, default_value = "auto", value_parser = demand(), value_name = "KIND")]
+    truth: Demand,
+
+    #[command(flatten)]
+    output: Output,
+}
+
+/// No scheme, or more than one, explains the file.
+const UNDECIDED: u8 = 3;
+
+/// Runs the verb.
+pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
+    let mut scene = flags::scene(&args.scene, None)?;
+    let timestep = args.timestep.unwrap_or(scene.solver.timestep);
+    if !(timestep.is_finite() && timestep > 0.0) {
+        bail!("--timestep {timestep}: expected a positive number of seconds");
+    }
+    let name = args.file.display().to_string();
+    let bytes = read(&args.file).with_context(|| format!("cannot read {name}"))?;
+    let rows = trajectory::read(&bytes, &name, None, &Expected::new(&scene, timestep))?;
+    drop(bytes);
+    // The file says how long it is.
+    scene.duration = rows
+        .steps
+        .last()
+        .map_or(scene.duration, |n| *n as f64 * timestep);
+    let file_name = args.file.file_name();
+    let name = file_name.map_or(name, |n| n.to_string_lossy().into_owned());
+    let steps = rows.steps.last().copied().unwrap_or(0);
+    let terminal = Terminal::new(steps, 0.0, quiet);
+    let report = report(&scene, &Arc::new(rows), &name, args.truth, &terminal)?;
+    let place = args.output.asked_place(&args.file);
+    let report = output::written(report, place.as_ref())?;
+    if args.output.is_human() {
+        output::print(&output::table(&report, place.as_ref()))?;
+    } else {
+        let reports = std::slice::from_ref(&report);
+        args.output.print(&Tool::this(), reports)?;
+    }
+    Ok(ExitCode::from(code(&report)))
+}
+
+/// The file, no further than the reader would look at it.
+fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let limit = limits::FILE_BYTES as u64 + 1;
+    File::open(path)?.take(limit).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// 0: it follows a scheme throughout; 1: it has a fault; 3: which scheme it follows is open.
+fn code(report: &Report) -> u8 {
+    if let Body::Compare { fault: Some(_), .. } = report.body {
+        return 1;
+    }
+    let found = report
+        .outcomes()
+        .first()
+        .and_then(|o| o.identified.as_ref());
+    match found.map(|found| found.undecided) {
+        // Which of several names one map has is no question the data could answer.
+        Some(None | Some(Undecided::SameMap)) => 0,
+        _ => UNDECIDED,
+    }
+}
+
+/// Rows that are there already.
+struct Recorded(Arc<Rows>);
+
+impl Program for Recorded {
+    fn record(&self, _task: &Task) -> Result<Recording, Failure> {
+        Ok(Recording {
+            rows: Rows::clone(&self.0),
+            seconds: None,
+        })
+    }
+}
+
+/// Errors, energy, identity over every step, and the first fault: a report with one outcome of this name. The
+/// scene's duration is that of the rows.
+fn report(
+    scene: &Scene,
+    rows: &Arc<Rows>,
+    name: &str,
+    truth: Demand,
+    session: &dyn Session,
+) -> Result<Report, SaveError> {
+    let choice = Choice {
+        solvers: vec![Solver::program(name, Arc::new(Recorded(Arc::clone(rows))))],
+        timesteps: vec![rows.timestep],
+        truth,
+        order: Orders::Never,
+        // Every step of the rows is replayed below, not some of those recorded.
+        identify: false,
+        prove: false,
+        expectations: Expectations::Ignored,
+    };
+    let plan = Plan::new(scene, &choice);
+    let mut report = plan.execute(session)?;
+    let (identified, fault) = identity::of_rows(&plan, rows);
+    if let Body::Run { outcomes } = &mut report.body {
+        let mut outcomes = std::mem::take(outcomes);
+        for outcome in &mut outcomes {
+            outcome.identified.clone_from(&identified);
+        }
+        report.body = Body::Compare { outcomes, fault };
+    }
+    Ok(report)
+}

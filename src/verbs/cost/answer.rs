@@ -1,49 +1,49 @@
 //! From points to curves and answers.
 
 use super::CostChoice;
-use super::errors::Errors;
-use super::sweep::{Sweep, Swept};
-use crate::scene::Scene;
-use crate::solvers::Kind;
-use crate::solvers::Solver;
-use crate::truth::TruthKind;
+use super::runs::{Curve, Setup};
+use super::settings::Sweep;
+use crate::solvers::{Kind, Solver};
 use crate::verbs::cost::rank;
 use crate::verbs::cost::{Cost, CostCurve};
 
-pub fn answer(
-    scene: &Scene,
-    errors: &Errors,
-    choice: &CostChoice,
-    sweeps: &[Sweep],
-    swept: Vec<Swept>,
-) -> Cost {
-    let curves: Vec<CostCurve> = sweeps
-        .iter()
-        .zip(swept)
-        .map(|(sweep, swept)| curve(sweep, swept))
-        .collect();
-    let target = |&error: &f64| rank::target(&curves, error, unjudged(errors, error));
+pub fn answer(setup: &Setup, choice: &CostChoice, sweeps: &[Sweep], curves: Vec<Curve>) -> Cost {
+    let curve = |(sweep, curve): (&Sweep, Curve)| {
+        let points = curve.points;
+        let slope = rank::slope(&points);
+        CostCurve {
+            engine: sweep.solver.id.to_string(),
+            kind: sweep.solver.kind,
+            order: sweep.order,
+            observed_order: slope.as_ref().map(|slope| slope.order),
+            slope_points: slope.map_or_else(Vec::new, |slope| slope.points),
+            pareto: rank::pareto(&points),
+            points,
+            explanation: explanation(&sweep.solver),
+        }
+    };
+    let curves: Vec<CostCurve> = sweeps.iter().zip(curves).map(curve).collect();
+    let floor = setup.floor();
+    let target = |&error: &f64| {
+        // Why the truth cannot tell who is within this error.
+        let open = match floor {
+            None => Some(format!(
+                "no truth to hold errors against: {}",
+                setup.truth.reason
+            )),
+            Some(floor) if error < floor => {
+                Some(format!("below the truth's own floor of {floor:.1e} m"))
+            }
+            Some(_) => None,
+        };
+        rank::target(&curves, error, open)
+    };
     Cost {
-        duration_s: scene.duration,
-        horizon_s: errors.floor().map(|_| errors.truth.horizon),
-        floor_m: errors.floor(),
+        duration_s: setup.scene.duration,
+        horizon_s: floor.map(|_| setup.truth.horizon),
+        floor_m: floor,
         targets: choice.targets.iter().map(target).collect(),
         curves,
-    }
-}
-
-fn curve(sweep: &Sweep, swept: Swept) -> CostCurve {
-    let points = swept.points;
-    let slope = rank::slope(&points);
-    CostCurve {
-        engine: sweep.solver.id.to_string(),
-        kind: sweep.solver.kind,
-        order: sweep.order,
-        observed_order: slope.as_ref().map(|slope| slope.order),
-        slope_points: slope.map_or_else(Vec::new, |slope| slope.points),
-        pareto: rank::pareto(&points),
-        points,
-        explanation: explanation(&sweep.solver),
     }
 }
 
@@ -62,18 +62,4 @@ fn explanation(solver: &Solver) -> Option<String> {
               a world that also has contacts), not a fault"
             .to_owned(),
     })
-}
-
-/// Why the truth cannot tell who is within this error, m.
-fn unjudged(errors: &Errors, error: f64) -> Option<String> {
-    match errors.floor() {
-        None if errors.truth.kind == TruthKind::None => Some(format!(
-            "no truth to hold errors against: {}",
-            errors.truth.reason
-        )),
-        Some(floor) if error < floor => {
-            Some(format!("below the truth's own floor of {floor:.1e} m"))
-        }
-        _ => None,
-    }
 }

@@ -2,17 +2,12 @@
 
 use crate::scene::{self, Scene};
 use crate::solvers::Solver;
-use crate::verbs;
+use crate::truth::Demand;
 use crate::verbs::Report;
-use crate::verbs::cli::announce;
-use crate::verbs::cli::cache::Cache;
-use crate::verbs::cli::chosen;
-use crate::verbs::cli::chosen::Truth;
-use crate::verbs::cli::host::host;
-use crate::verbs::cli::progress::Progress;
-use crate::verbs::cli::rapier::Custom;
-use crate::verbs::cli::shown::{self, HUMAN, format_ids};
-use crate::verbs::cli::time::Time;
+use crate::verbs::cli::flags::{self, Time, demand};
+use crate::verbs::cli::output::{self, Output};
+use crate::verbs::cli::solvers::{Custom, chosen, without_timestep};
+use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::cost::{self, CostChoice, CostPlan};
 use anyhow::{Context, bail};
 use std::path::PathBuf;
@@ -62,16 +57,11 @@ pub struct Args {
 
     /// What errors are measured against: a closed form or else a converged reference (auto), a
     /// closed form or nothing (closed), nothing (none).
-    #[arg(long, value_enum, default_value_t = Truth::Auto, value_name = "KIND")]
-    truth: Truth,
+    #[arg(long, default_value = "auto", value_parser = demand(), value_name = "KIND")]
+    truth: Demand,
 
-    /// What goes to stdout.
-    #[arg(long, default_value = HUMAN, value_parser = format_ids())]
-    format: String,
-
-    /// Where reports go [default: reports; with a --format other than human, nowhere].
-    #[arg(long, value_name = "DIR")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    output: Output,
 }
 
 /// What shortens this verb.
@@ -91,27 +81,20 @@ fn target(text: &str) -> Result<f64, String> {
 pub fn cost(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let scene = read(args)?;
     let plan = CostPlan::new(&scene, &choice(args, &scene)?);
-    let place = shown::place(args.output.as_deref(), &args.format, &args.scene);
+    let place = args.output.place(&args.scene);
     let estimates = plan.estimate();
     let expected = estimates.iter().map(|e| e.seconds).sum();
-    if !quiet {
-        announce::announce(&estimates, expected, SHORTER);
-    }
-    let progress = Progress::new(plan.work(), expected, quiet);
-    let report = plan.execute(&host(&progress, None, &Cache::new()));
-    progress.finish();
-    let report = shown::written(report, place.as_ref())?;
-    let next = next(args, &scene, &report);
-    let otherwise = "springcheck cost --help";
-    shown::print_one(&args.format, &report, place.as_ref(), next, otherwise)?;
+    terminal::announce(&estimates, expected, SHORTER, quiet);
+    let report = plan.execute(&Terminal::new(plan.work(), expected, quiet));
+    let report = output::written(report, place.as_ref())?;
+    let (next, otherwise) = (next(args, &scene, &report), "springcheck cost --help");
+    args.output
+        .print_one(&report, place.as_ref(), next, otherwise)?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn read(args: &Args) -> anyhow::Result<Scene> {
-    let mut scene = scene::read(&args.scene, verbs::names())?;
-    if let Some(duration) = args.duration {
-        scene.duration = duration;
-    }
+    let scene = flags::scene(&args.scene, args.duration)?;
     let file = args.scene.display();
     if args.timestep.is_empty() {
         // The file's step is not run here, so a duration below it is none of its business.
@@ -128,7 +111,7 @@ fn read(args: &Args) -> anyhow::Result<Scene> {
 }
 
 fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
-    chosen::without_timestep(&args.rapier, "swept; leave dt out, or give --timestep")?;
+    without_timestep(&args.rapier, "swept; leave dt out, or give --timestep")?;
     if args.targets.len() > MOST || args.timestep.len() > MOST {
         bail!("at most {MOST} targets and {MOST} timesteps");
     }
@@ -136,19 +119,19 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
     let mut targets = args.targets.clone();
     targets.sort_by(|a, b| b.total_cmp(a));
     targets.dedup();
-    let mut solvers = chosen::with_pairs(&args.integrators, scene, &usual.solvers)?;
-    solvers.extend(chosen::engines(
-        &args.engines,
-        &args.rapier,
-        &usual.solvers,
-    )?);
     let choice = CostChoice {
-        solvers,
+        solvers: chosen(
+            &args.integrators,
+            &args.engines,
+            &args.rapier,
+            scene,
+            &usual.solvers,
+        )?,
         targets,
         settings: args.steps as usize,
         budget_s: args.budget.0.as_secs_f64(),
         timesteps: (!args.timestep.is_empty()).then(|| args.timestep.clone()),
-        truth: args.truth.demand(),
+        truth: args.truth,
     };
     if choice.solvers.is_empty() {
         bail!("nothing to sweep: no integrators and no engines");
@@ -162,10 +145,10 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
 
 /// The classic picture, or after it the cheapest integrator in a cross-check.
 fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
-    let path = shown::quoted(&args.scene)?;
+    let path = output::quoted(&args.scene)?;
     let flag = |duration| format!(" --duration {duration}");
     let duration = args.duration.map_or_else(String::new, flag);
-    let step = |h: f64| shown::rounded(h).min(scene.duration);
+    let step = |h: f64| output::rounded(h).min(scene.duration);
     if args.timestep.is_empty() {
         let h = scene.solver.timestep;
         let mut steps = [4.0 * h, 2.0 * h, h].map(|h| step(h).to_string()).to_vec();

@@ -6,17 +6,13 @@
 
 mod answer;
 mod args;
-mod clock;
-mod errors;
 mod figures;
 mod panels;
-mod price;
 pub mod rank;
-mod refine;
 mod result;
-mod sampler;
+mod runs;
+mod samples;
 mod settings;
-mod sweep;
 mod text;
 
 pub use args::{Args, cost};
@@ -27,19 +23,17 @@ pub use result::{
 pub(super) use text::{page, view};
 
 use crate::integrators;
-use crate::measure;
 use crate::physics::ParticleSystem;
 use crate::report::Header;
 use crate::scene::Scene;
 use crate::solvers::rapier::Settings;
-use crate::solvers::{self, Limits, Setting, Solver};
+use crate::solvers::{self, Setting, Solver};
 use crate::truth::{self, Demand};
-use crate::verbs::host::{Estimate, Host, Label};
-use crate::verbs::run::{ledger, truths};
-use crate::verbs::{Beside, Body, Report, Series};
-use errors::Errors;
+use crate::verbs::session::{Estimate, Label, Session};
+use crate::verbs::{Beside, Body, Report, Series, facts};
 use rayon::prelude::*;
-use sweep::{Ground, Sweep, Swept};
+use runs::{Curve, Setup};
+use settings::Sweep;
 
 /// What is asked.
 #[derive(Debug, Clone)]
@@ -103,7 +97,7 @@ pub struct CostPlan<'a> {
 impl<'a> CostPlan<'a> {
     pub fn new(scene: &'a Scene, choice: &CostChoice) -> Self {
         let system = ParticleSystem::new(scene);
-        let sweeps = sweep::plan(scene, &system, choice);
+        let sweeps = settings::plan(scene, &system, choice);
         Self {
             scene,
             system,
@@ -112,7 +106,7 @@ impl<'a> CostPlan<'a> {
         }
     }
 
-    /// What a progress bar counts against and [`Host::progress`] is told: nominal microseconds.
+    /// What a progress bar counts against and [`Session::progress`] is told: nominal microseconds.
     pub fn work(&self) -> u64 {
         self.sweeps.iter().map(Sweep::work).sum()
     }
@@ -132,56 +126,34 @@ impl<'a> CostPlan<'a> {
     }
 
     /// Sweeps, times and judges. Whatever an engine does is a point with its reason.
-    pub fn execute(&self, host: &dyn Host) -> Report {
+    pub fn execute(&self, session: &dyn Session) -> Report {
         let (scene, system) = (self.scene, &self.system);
-        let truth = truth::find(scene, system, self.choice.truth, self.until(), host.store());
-        let scale = measure::energy_scale(scene, system, truths::peak(system, &truth));
-        // When a run stops must not depend on whether a truth was asked for.
-        let before = measure::energy_scale(scene, system, None);
-        let limit = measure::divergence_limit(scene, before);
-        let limits = Limits::new(system.clone(), limit).now_and_then();
-        let errors = Errors::new(scene, system, &truth, scale);
-        let named = self.choice.timesteps.is_some();
-        let ground = Ground {
-            scene,
-            system,
-            errors: &errors,
-            limits: &limits,
-            host,
-            panels: named,
-        };
-        let run = |sweep: &Sweep| {
-            let mut swept = ground.sweep(sweep, !named);
-            if !named {
-                refine::toward(&ground, sweep, &mut swept, &self.choice.targets);
-            }
-            swept
-        };
-        let mut swept: Vec<Swept> = self.sweeps.par_iter().map(run).collect();
-        for (sweep, swept) in self.sweeps.iter().zip(&mut swept) {
-            clock::time(&ground, sweep, swept);
+        // When the last run ends, s.
+        let named = self.choice.timesteps.as_deref();
+        let ends = named.unwrap_or_default().iter();
+        let ends = ends.map(|h| scene.steps(*h) as f64 * h);
+        let until = ends.fold(scene.duration, f64::max);
+        let truth = truth::find(scene, system, self.choice.truth, until, session.store());
+        let scale = facts::energy_scale(scene, system, &truth);
+        let setup = Setup::new(scene, system, &truth, scale, session, named.is_some());
+        let sweep = |sweep: &Sweep| setup.sweep(sweep, &self.choice.targets);
+        let mut curves: Vec<Curve> = self.sweeps.par_iter().map(sweep).collect();
+        for (sweep, curve) in self.sweeps.iter().zip(&mut curves) {
+            setup.time(sweep, curve);
         }
-        let counted = Swept::evaluations(&swept, &self.sweeps);
-        let panels = named.then(|| panels::panels(scene, &errors, &self.sweeps, &swept));
-        let facts = ledger::facts(scene, ledger::effects(scene, system, counted), scale);
-        let cost = answer::answer(scene, &errors, &self.choice, &self.sweeps, swept);
+        let counted = Curve::evaluations(&curves, &self.sweeps);
+        let panels = named.map(|_| panels::panels(&setup, &self.sweeps, &curves));
+        let cost = answer::answer(&setup, &self.choice, &self.sweeps, curves);
         Report {
             header: Header {
-                scene: facts,
-                truth: truths::facts(&truth),
-                checks: ledger::no_scale(scale).into_iter().collect(),
+                scene: facts::scene(scene, system, counted, scale),
+                truth: facts::truth(&truth),
+                checks: facts::no_scale(scale).into_iter().collect(),
             },
             body: Body::Cost { outcomes: [], cost },
             beside: panels.map_or(Beside::Nothing, |panels| {
                 Beside::Here(Series::Panels(panels))
             }),
         }
-    }
-
-    /// When the last run ends, s.
-    fn until(&self) -> f64 {
-        let asked = self.choice.timesteps.iter().flatten();
-        let ends = asked.map(|h| self.scene.steps(*h) as f64 * h);
-        ends.fold(self.scene.duration, f64::max)
     }
 }

@@ -1,12 +1,75 @@
-//! The steps a solver is tried at: evenly spaced in ln h, from where it becomes stable to where its
-//! share of the budget ends.
+//! The plan of a sweep: the settings each solver is tried at, evenly spaced in ln h, from where it becomes stable
+//! to where its share of the budget ends.
 
-use super::price;
+use super::CostChoice;
 use crate::integrators::Stable;
-use crate::measure::stability::{Limit, Linearised};
-use crate::scene::Scene;
-use crate::solvers::Kind;
-use crate::solvers::{Setting, Solver};
+use crate::measure::stability::{Effort, Limit, Linearised};
+use crate::physics::{ParticleSystem, System};
+use crate::scene::{Scene, limits};
+use crate::solvers::{Kind, Setting, Solver};
+
+/// A solver and the settings it is planned to run at: one line of the diagram.
+pub struct Sweep {
+    pub solver: Solver,
+    /// Order on this scene; None where nothing is stated.
+    pub order: Option<u32>,
+    /// Coarse to fine.
+    pub settings: Vec<Setting>,
+    /// Nominal nanoseconds a step.
+    each: f64,
+}
+
+impl Sweep {
+    /// Nominal microseconds of the run that finds the error.
+    pub fn of_error(&self, setting: &Setting) -> u64 {
+        (1e-3 * self.run(setting)) as u64
+    }
+
+    /// Nominal microseconds of the runs that are timed.
+    pub fn of_timing(&self, setting: &Setting) -> u64 {
+        (1e-3 * (TIMED * self.run(setting)).max(TIMED_LEAST)) as u64
+    }
+
+    /// Nominal microseconds of all.
+    pub fn work(&self) -> u64 {
+        let each = |setting| self.of_error(setting) + self.of_timing(setting);
+        self.settings.iter().map(each).sum()
+    }
+
+    /// Nanoseconds.
+    fn run(&self, setting: &Setting) -> f64 {
+        self.each * setting.steps() as f64
+    }
+}
+
+/// The sweeps of all solvers, in the order of the curves.
+pub fn plan(scene: &Scene, system: &ParticleSystem, choice: &CostChoice) -> Vec<Sweep> {
+    // Pairs choose their own steps: with steps named there is nothing to sweep.
+    let timesteps = choice.timesteps.as_deref();
+    let swept = |solver: &&Solver| timesteps.is_none() || solver.as_pair().is_none();
+    let solvers: Vec<&Solver> = choice.solvers.iter().filter(swept).collect();
+    let share = choice.budget_s / solvers.len().max(1) as f64;
+    let start = ParticleSystem::initial_state(scene);
+    let linearised = Linearised::new(system, &start, Effort::BRIEF);
+    let sweep = |solver: &Solver| {
+        let coarsest = coarsest(scene, &linearised, solver);
+        let each = price_of_step(scene, system, solver, &coarsest);
+        let coarsest = afforded(scene, &linearised, solver, coarsest, each, share);
+        let count = choice.settings;
+        let settings = match (timesteps, solver.as_pair()) {
+            (Some(timesteps), _) => named(scene, timesteps),
+            (None, Some(pair)) => tolerances(scene, &linearised, pair.order, each, count, share),
+            (None, None) => spaced(scene, &coarsest, each, count, share),
+        };
+        Sweep {
+            order: solver.order(system.kinds().depends_on_velocity()),
+            solver: solver.clone(),
+            settings,
+            each,
+        }
+    };
+    solvers.into_iter().map(sweep).collect()
+}
 
 /// h w_max at which a method starts that is stable at no step, and one that is at every step.
 const NEVER: f64 = 0.2;
@@ -28,7 +91,7 @@ const LEAST_RANGE: f64 = 4.0;
 const LEAST_SETTINGS: usize = 3;
 
 /// Exactly these steps, coarse to fine.
-pub fn named(scene: &Scene, timesteps: &[f64]) -> Vec<Setting> {
+fn named(scene: &Scene, timesteps: &[f64]) -> Vec<Setting> {
     let mut timesteps = timesteps.to_vec();
     timesteps.sort_by(|a, b| b.total_cmp(a));
     timesteps.dedup();
@@ -40,20 +103,17 @@ pub fn named(scene: &Scene, timesteps: &[f64]) -> Vec<Setting> {
 }
 
 /// Where an engine starts: just inside its limit, or at the loosest tolerance.
-pub fn coarsest(scene: &Scene, linearised: &Linearised, solver: &Solver) -> Setting {
+fn coarsest(scene: &Scene, linearised: &Linearised, solver: &Solver) -> Setting {
     if let Some(pair) = solver.as_pair() {
         return tolerance(scene, rate(linearised), pair.order, LOOSEST, 1);
     }
     let steps = (scene.duration / start(scene, linearised, solver)).max(FEWEST);
-    Setting::divided(
-        scene.duration,
-        steps.min(crate::scene::limits::STEPS) as u64 + 1,
-    )
+    Setting::divided(scene.duration, steps.min(limits::STEPS) as u64 + 1)
 }
 
 /// The same, coarser where three settings from there on would take more than the share: an engine that is
 /// stable at every step can be tried at larger ones, one that is not cannot.
-pub fn afforded(
+fn afforded(
     scene: &Scene,
     linearised: &Linearised,
     solver: &Solver,
@@ -61,7 +121,7 @@ pub fn afforded(
     each: f64,
     share_s: f64,
 ) -> Setting {
-    let runs = (1.0 + price::TIMED) * least_runs(LEAST_SETTINGS);
+    let runs = (1.0 + TIMED) * least_runs(LEAST_SETTINGS);
     let most = (1e9 * share_s / each / runs).max(FEWEST);
     let always = match solver.follows {
         None => solver.kind == Kind::Rapier,
@@ -86,7 +146,7 @@ fn least_runs(settings: usize) -> f64 {
 /// `settings` of them from the coarsest on, or fewer where whole numbers of steps coincide or the least
 /// range takes more than the share. `each` is what a step takes, nominal ns; `share_s` what all runs of this
 /// engine may take, nominal seconds.
-pub fn spaced(
+fn spaced(
     scene: &Scene,
     coarsest: &Setting,
     each: f64,
@@ -96,12 +156,12 @@ pub fn spaced(
     let duration = scene.duration;
     let first = coarsest.steps() as f64;
     let step = 1e-9 * each;
-    let at_most = crate::scene::limits::STEPS.max(first);
+    let at_most = limits::STEPS.max(first);
     let settings = affordable(settings.max(2), first * step, share_s);
-    let share = share_s - 1e-9 * price::TIMED_LEAST * settings as f64;
+    let share = share_s - 1e-9 * TIMED_LEAST * settings as f64;
     // Runs grow by a factor r from one to the next: together they are r / (r - 1) times the finest.
     let finest = |ratio: f64| {
-        let all = (1.0 + price::TIMED) * ratio / (ratio - 1.0);
+        let all = (1.0 + TIMED) * ratio / (ratio - 1.0);
         (share.max(0.0) / all / step)
             .max(LEAST_RANGE * first)
             .min(at_most)
@@ -128,7 +188,7 @@ pub fn spaced(
 fn affordable(asked: usize, coarsest: f64, share_s: f64) -> usize {
     let takes = |settings: usize| {
         let runs = least_runs(settings);
-        (1.0 + price::TIMED) * coarsest * runs + 1e-9 * price::TIMED_LEAST * settings as f64
+        (1.0 + TIMED) * coarsest * runs + 1e-9 * TIMED_LEAST * settings as f64
     };
     let fewer = (LEAST_SETTINGS..asked).rev();
     let fits = |settings: &usize| takes(*settings) <= share_s;
@@ -158,14 +218,14 @@ fn tolerance(scene: &Scene, rate: f64, order: u32, tolerance: f64, most: u64) ->
     Setting::Tolerance {
         tolerance,
         duration: scene.duration,
-        steps: steps.clamp(1.0, crate::scene::limits::STEPS) as u64,
+        steps: steps.clamp(1.0, limits::STEPS) as u64,
         most,
     }
 }
 
 /// Tolerances evenly spaced in their logarithm, down to what the share allows. `each` and `share_s` as in
 /// [`spaced`].
-pub fn tolerances(
+fn tolerances(
     scene: &Scene,
     linearised: &Linearised,
     order: u32,
@@ -175,9 +235,9 @@ pub fn tolerances(
 ) -> Vec<Setting> {
     let rate = rate(linearised);
     let settings = settings.max(2);
-    let share = share_s - 1e-9 * price::TIMED_LEAST * settings as f64;
+    let share = share_s - 1e-9 * TIMED_LEAST * settings as f64;
     // One run must not take all that was meant for a dozen and their timing.
-    let most = (1e9 * share.max(0.0) / each / (1.0 + price::TIMED)).max(LEAST_STEPS) as u64;
+    let most = (1e9 * share.max(0.0) / each / (1.0 + TIMED)).max(LEAST_STEPS) as u64;
     let at = |tightest: f64, k: usize| {
         let part = k as f64 / (settings - 1) as f64;
         let own = LOOSEST * (tightest / LOOSEST).powf(part);
@@ -185,7 +245,7 @@ pub fn tolerances(
     };
     let takes = |tightest: f64| {
         let all = (0..settings).map(|k| at(tightest, k).steps() as f64);
-        all.sum::<f64>() * each * 1e-9 * (1.0 + price::TIMED)
+        all.sum::<f64>() * each * 1e-9 * (1.0 + TIMED)
     };
     let mut tightest = TIGHTEST;
     while takes(tightest) > share && tightest < LOOSEST * 1e-2 {
@@ -216,4 +276,54 @@ fn start(scene: &Scene, linearised: &Linearised, solver: &Solver) -> f64 {
         _ if method.oscillator.stable == Stable::Always => over(ALWAYS) * many,
         _ => over(NEVER) * many,
     }
+}
+
+/// Nanoseconds on the nominal machine. A step beside its forces, and each particle in it:
+const STEP: f64 = 30.0;
+const PARTICLE: f64 = 4.0;
+/// An evaluation beside its members, and each particle and spring in it:
+const CALL: f64 = 35.0;
+const EVALUATION: f64 = 4.0;
+const SPRING: f64 = 10.0;
+/// A linear solve of n free particles, n^1.5 of these while it is small and dense, n of the others:
+const DENSE: f64 = 280.0;
+const SPARSE: f64 = 2_500.0;
+/// A step of rapier, each body and joint in it, and in each of its substeps:
+const WORLD: f64 = 1_000.0;
+const BODY: f64 = 250.0;
+const SWEPT: f64 = 90.0;
+/// Steps the counts are taken from.
+const SAMPLE: u64 = 4;
+
+/// Runs a timing takes, and the least time it takes, ns.
+const TIMED: f64 = 3.5;
+const TIMED_LEAST: f64 = 1.2e7;
+
+/// What a step is expected to take on the nominal machine, ns, from what it counts: the same on every machine,
+/// so that all sweep the same settings.
+fn price_of_step(
+    scene: &Scene,
+    system: &ParticleSystem,
+    solver: &Solver,
+    setting: &Setting,
+) -> f64 {
+    let (particles, springs) = (scene.particles.len() as f64, scene.springs.len() as f64);
+    if solver.kind == Kind::Rapier {
+        let substeps = f64::from(solver.substeps);
+        return WORLD + (particles + springs) * (BODY + SWEPT * substeps);
+    }
+    let Ok(mut run) = solver.start(scene, system, setting) else {
+        return STEP;
+    };
+    // A step that fails ends the sample.
+    let _ = run.advance(SAMPLE);
+    let counts = run.counts();
+    let each = |count: Option<u64>| count.unwrap_or(0) as f64 / run.taken().max(1) as f64;
+    let pairs = scene.gravitational.len() as f64;
+    let evaluation = CALL + EVALUATION * particles + SPRING * (springs + 2.0 * pairs);
+    let free = scene.particles.iter().filter(|p| !p.fixed).count() as f64;
+    let solve = (DENSE * free.powf(1.5)).min(SPARSE * free);
+    STEP + PARTICLE * particles
+        + evaluation * each(counts.all_force_passes())
+        + solve * each(counts.linear_solves)
 }

@@ -1,9 +1,7 @@
 //! `springcheck list integrators|effects|engines|mistakes`
 
-use crate::integrators;
-
 use crate::integrators::adaptive::Estimate;
-use crate::integrators::{EnergyLaw, Method, PerStep, Stable};
+use crate::integrators::{self, EnergyLaw, Method, PerStep, Stable};
 use crate::measure::identify::{MISTAKES, Mistake, Wrong};
 use crate::physics::effects;
 use crate::solvers::Kind;
@@ -59,7 +57,7 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
             .to_string()
         }
     };
-    crate::verbs::cli::print(&format!("{text}\n"))?;
+    crate::verbs::cli::output::print(&format!("{text}\n"))?;
     Ok(ExitCode::SUCCESS)
 }
 

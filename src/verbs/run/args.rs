@@ -4,19 +4,13 @@ use crate::measure::CheckStatus;
 use crate::report::json::Tool;
 use crate::scene::{self, Scene};
 use crate::truth::Demand;
-use crate::verbs;
 use crate::verbs::Report;
-use crate::verbs::cli::announce;
-use crate::verbs::cli::cache::Cache;
-use crate::verbs::cli::chosen;
-use crate::verbs::cli::chosen::Truth;
 use crate::verbs::cli::external::{self, External};
-use crate::verbs::cli::host::host;
-use crate::verbs::cli::progress::Progress;
-use crate::verbs::cli::rapier::Custom;
+use crate::verbs::cli::flags::{self, Time, demand};
+use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::save::{FileKind, Files};
-use crate::verbs::cli::shown::{self, HUMAN, format_ids};
-use crate::verbs::cli::time::Time;
+use crate::verbs::cli::solvers::{Custom, chosen};
+use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::run::{Choice, Expectations, Orders, Plan};
 use anyhow::{Context, bail};
 use std::path::{Path, PathBuf};
@@ -66,20 +60,15 @@ pub struct Args {
 
     /// What errors are measured against: a closed form or else a converged reference (auto), a
     /// closed form or nothing (closed), nothing (none).
-    #[arg(long, value_enum, default_value_t = Truth::Auto, value_name = "KIND")]
-    truth: Truth,
+    #[arg(long, default_value = "auto", value_parser = demand(), value_name = "KIND")]
+    truth: Demand,
 
     /// Measure every integrator's order, also where that takes long.
     #[arg(long)]
     order: bool,
 
-    /// What goes to stdout.
-    #[arg(long, default_value = HUMAN, value_parser = format_ids())]
-    format: String,
-
-    /// Where reports go [default: reports; with a --format other than human, nowhere].
-    #[arg(long, value_name = "DIR")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    output: Output,
 
     /// Save every step of every engine beside the report.
     #[arg(long, value_enum, value_name = "FORMAT")]
@@ -90,45 +79,41 @@ pub struct Args {
     every: u64,
 }
 
+/// What shortens this verb.
+const SHORTER: &str = "--duration, a larger --timestep, --integrators A,B, --engines none";
+
 /// Runs the verb.
 pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     // All scenes are read before any runs: a typo in the last one costs nothing.
-    let scenes = args
-        .scenes
-        .iter()
-        .map(|path| read(args, path))
-        .collect::<anyhow::Result<Vec<_>>>()?;
+    let read = |path: &PathBuf| read(args, path);
+    let scenes = args.scenes.iter().map(read);
+    let scenes = scenes.collect::<anyhow::Result<Vec<_>>>()?;
     distinct(args)?;
     external::distinct(&args.external)?;
     let mut reports = Vec::new();
-    for (read, path) in scenes.iter().zip(&args.scenes) {
-        let report = one(args, quiet, read, path)?;
-        if args.format == HUMAN {
+    for ((scene, stated), path) in scenes.iter().zip(&args.scenes) {
+        let report = one(args, quiet, scene, *stated, path)?;
+        if args.output.is_human() {
             let several = if reports.is_empty() { "" } else { "\n" };
-            crate::verbs::cli::print(&format!("{several}{}", human(args, path, &report)))?;
+            let (place, next) = (args.output.place(path), next(args, path, &report));
+            let text = output::human(&report, place.as_ref(), next, "springcheck run --help");
+            output::print(&format!("{several}{text}"))?;
         }
         reports.push(report);
     }
-    if args.format != HUMAN {
-        shown::print(&args.format, &Tool::this(), &reports)?;
+    if !args.output.is_human() {
+        args.output.print(&Tool::this(), &reports)?;
     }
-    let failed = |report: &Report| {
-        report
-            .header
-            .checks
-            .iter()
-            .any(|c| c.status == CheckStatus::Fail)
-    };
-    Ok(ExitCode::from(u8::from(reports.iter().any(failed))))
+    let mut checks = reports.iter().flat_map(|report| &report.header.checks);
+    let failed = checks.any(|check| check.status == CheckStatus::Fail);
+    Ok(ExitCode::from(u8::from(failed)))
 }
 
-/// Reads a scene and applies the flags that change it.
-fn read(args: &Args, path: &Path) -> anyhow::Result<Read> {
-    let mut scene = scene::read(path, verbs::names())?;
+/// A scene with the flags that change it applied, and the duration its file states, s.
+fn read(args: &Args, path: &Path) -> anyhow::Result<(Scene, f64)> {
+    let mut scene = flags::scene(path, None)?;
     let stated = scene.duration;
-    if let Some(duration) = args.duration {
-        scene.duration = duration;
-    }
+    scene.duration = args.duration.unwrap_or(stated);
     let custom = args.rapier.iter().filter_map(|c| c.timestep.as_ref());
     // A flag replaces the file's timestep, which then need not fit.
     let common = if args.timestep.is_empty() {
@@ -140,53 +125,47 @@ fn read(args: &Args, path: &Path) -> anyhow::Result<Read> {
         scene::check_times(timestep, scene.duration)
             .with_context(|| format!("{}: timestep {timestep}", path.display()))?;
     }
-    Ok(Read { scene, stated })
+    Ok((scene, stated))
 }
 
-/// A scene as it will run.
-struct Read {
-    scene: Scene,
-    /// The duration its file states, s.
+fn one(
+    args: &Args,
+    quiet: bool,
+    scene: &Scene,
     stated: f64,
-}
-
-fn one(args: &Args, quiet: bool, read: &Read, path: &Path) -> anyhow::Result<Report> {
-    let scene = &read.scene;
-    let place = shown::place(args.output.as_deref(), &args.format, path);
+    path: &Path,
+) -> anyhow::Result<Report> {
+    let place = args.output.place(path);
     let files = match (args.save, &place) {
         (None, _) => None,
-        (Some(kind), Some(place)) => Some(Files::new(kind, place, args.every)),
+        (Some(kind), Some(place)) => Some(Files {
+            kind,
+            folder: place.folder().to_owned(),
+            every: args.every,
+        }),
         (Some(_), None) => bail!("--save needs --output when --format is not human"),
     };
     let mut choice = choice(args, scene)?;
-    choice.expectations = expectations(args, read);
+    choice.expectations = expectations(args, scene, stated);
     let programs = external::chosen(&args.external, path, args.external_timeout);
     choice.solvers.extend(programs);
     let plan = Plan::new(scene, &choice);
     let estimates = plan.estimate();
-    let expected = announce::expected(&estimates);
-    if !quiet {
-        announce::announce(
-            &estimates,
-            expected,
-            "--duration, a larger --timestep, --integrators A,B, --engines none",
-        );
-    }
+    let expected = terminal::expected(&estimates);
+    terminal::announce(&estimates, expected, SHORTER, quiet);
     if let Some(place) = &place {
         place.create()?;
     }
     let steps = plan.cases.iter().map(|case| case.label.steps).sum();
-    let progress = Progress::new(steps, expected, quiet);
-    let report = plan.execute(&host(&progress, files.as_ref(), &Cache::new()))?;
-    progress.finish();
-    shown::written(report, place.as_ref())
+    let terminal = Terminal::new(steps, expected, quiet).saving(files);
+    output::written(plan.execute(&terminal)?, place.as_ref())
 }
 
-/// What the scene expects of what ran, unless flags changed what it is about.
-fn expectations(args: &Args, read: &Read) -> Expectations {
-    if read.scene.duration != read.stated {
-        Expectations::Skipped(format!("they are about {:?} s", read.stated))
-    } else if args.truth.demand() != Demand::Auto {
+/// What becomes of the scene's expectations: flags may have changed what they are about.
+fn expectations(args: &Args, scene: &Scene, stated: f64) -> Expectations {
+    if scene.duration != stated {
+        Expectations::Skipped(format!("they are about {stated:?} s"))
+    } else if args.truth != Demand::Auto {
         let why = "they are about errors and energies against the truth, and --truth changed it";
         Expectations::Skipped(why.to_owned())
     } else {
@@ -196,69 +175,48 @@ fn expectations(args: &Args, read: &Read) -> Expectations {
 
 /// Two scenes must not write into one folder.
 fn distinct(args: &Args) -> anyhow::Result<()> {
+    let folder = |path: &PathBuf| Some(args.output.place(path)?.folder().to_owned());
     for (at, path) in args.scenes.iter().enumerate() {
-        let place = |path: &Path| shown::place(args.output.as_deref(), &args.format, path);
-        let Some(own) = place(path) else {
+        let Some(own) = folder(path) else {
             return Ok(());
         };
-        let same = |other: &&PathBuf| place(other).is_some_and(|p| p.folder() == own.folder());
+        let same = |other: &&PathBuf| folder(other).as_ref() == Some(&own);
         if let Some(other) = args.scenes[..at].iter().find(same) {
-            bail!(
-                "{} and {} would both write to {}",
-                other.display(),
-                path.display(),
-                own.folder().display()
-            );
+            let (other, path, own) = (other.display(), path.display(), own.display());
+            bail!("{other} and {path} would both write to {own}");
         }
     }
     Ok(())
 }
 
-/// The table and, as its last three lines, verdict, report path, next command.
-fn human(args: &Args, path: &Path, report: &Report) -> String {
-    let place = shown::place(args.output.as_deref(), &args.format, path);
-    shown::human(
-        report,
-        place.as_ref(),
-        next(args, path, report),
-        "springcheck run --help",
-    )
-}
-
 /// A command worth trying next: other steps, or other integrators; None where the path cannot be
 /// written down.
 fn next(args: &Args, path: &Path, report: &Report) -> Option<String> {
-    let path = shown::quoted(path)?;
+    let path = output::quoted(path)?;
     if args.timestep.len() > 1 {
         return Some(format!("springcheck run {path} --integrators all"));
     }
-    let h = args
-        .timestep
-        .first()
-        .copied()
-        .unwrap_or(report.header.scene.timestep);
+    let scene = &report.header.scene;
+    let h = args.timestep.first().copied().unwrap_or(scene.timestep);
     // Six digits are enough for a suggestion.
     let steps: Vec<String> = [2.0 * h, h, 0.5 * h]
         .iter()
         .filter_map(|h| format!("{h:.5e}").parse::<f64>().ok())
-        .filter(|h| *h <= report.header.scene.duration)
+        .filter(|h| *h <= scene.duration)
         .map(|h| h.to_string())
         .collect();
-    Some(format!(
-        "springcheck run {path} --timestep {}",
-        steps.join(",")
-    ))
+    let steps = steps.join(",");
+    Some(format!("springcheck run {path} --timestep {steps}"))
 }
 
 fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
     let mut choice = Choice::default_for(scene);
-    choice.truth = args.truth.demand();
+    choice.truth = args.truth;
     if args.order {
         choice.order = Orders::Always;
     }
-    let engines = chosen::engines(&args.engines, &args.rapier, &choice.solvers)?;
-    choice.solvers = chosen::integrators(&args.integrators, scene, &choice.solvers)?;
-    choice.solvers.extend(engines);
+    let usual = &choice.solvers;
+    choice.solvers = chosen(&args.integrators, &args.engines, &args.rapier, scene, usual)?;
     if !args.timestep.is_empty() {
         choice.timesteps.clear();
         for &timestep in &args.timestep {

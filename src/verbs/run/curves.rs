@@ -1,10 +1,9 @@
 //! The curves behind the plots.
 
+use super::execute::Record;
 use super::plan::Plan;
-use super::ran::Run;
 use super::truths::Truths;
-use crate::measure::EnergySeries;
-use crate::measure::Known;
+use crate::measure::{EnergySeries, Known};
 use crate::scene::Scene;
 use crate::solvers::Status;
 use crate::verbs::run::{Curves, Figures, PlotAxis, TruthCurves};
@@ -14,20 +13,19 @@ const PATHS: usize = 8;
 
 pub fn figures(
     plan: &Plan,
-    runs: &[Run],
+    records: &[Record],
     energies: &[Option<EnergySeries>],
     truths: &Truths,
     scale: Option<f64>,
 ) -> Figures {
     let scene = plan.scene;
-    let plane = plane(scene, runs);
+    let plane = plane(scene, records);
     let drawn = drawn(scene);
     let mut curves = Vec::new();
-    for (outcome, (run, energy)) in runs.iter().zip(energies).enumerate() {
-        let Run::Ran(ran) = run else {
+    for (outcome, (record, energy)) in records.iter().zip(energies).enumerate() {
+        let Some(trajectory) = &record.trajectory else {
             continue;
         };
-        let trajectory = &ran.trajectory;
         let instants = match energy {
             Some(energy) => &energy.instants,
             // Without velocities there is motion all the same.
@@ -110,8 +108,8 @@ const FLAT: f64 = 0.02;
 
 /// The two coordinates that show the motion: `up` vertically where anything happens along it, and
 /// the wider of the other two; without `up`, those two.
-fn plane(scene: &Scene, runs: &[Run]) -> [usize; 2] {
-    let extents = [0, 1, 2].map(|axis| extent(scene, runs, axis));
+fn plane(scene: &Scene, records: &[Record]) -> [usize; 2] {
+    let extents = [0, 1, 2].map(|axis| extent(scene, records, axis));
     let up = scene.up.index();
     let [first, second] = match up {
         0 => [1, 2],
@@ -128,11 +126,10 @@ fn plane(scene: &Scene, runs: &[Run]) -> [usize; 2] {
 }
 
 /// How wide the scene's start and the first completed run are along an axis, m.
-fn extent(scene: &Scene, runs: &[Run], axis: usize) -> f64 {
-    let calm = runs.iter().find_map(|run| match run {
-        Run::Ran(ran) if ran.status == Status::Completed => Some(&ran.trajectory),
-        _ => None,
-    });
+fn extent(scene: &Scene, records: &[Record], axis: usize) -> f64 {
+    let completed = |record: &&Record| record.status == Status::Completed;
+    let calm = records.iter().find(completed);
+    let calm = calm.and_then(|record| record.trajectory.as_ref());
     let start = scene.particles.iter().map(|p| p.position[axis]);
     let moved = calm.into_iter().flat_map(|run| {
         (0..run.len()).flat_map(move |k| run.x(k)[axis..].iter().step_by(3).copied())

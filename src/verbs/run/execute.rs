@@ -2,75 +2,86 @@
 
 use super::plan::{Case, Plan};
 use super::program;
-use super::ran::{Ran, Run};
-use crate::solvers::Status;
-use crate::solvers::external::Program;
-use crate::solvers::{Ended, Limits};
-use crate::trajectory::{Recorder, SaveError, Unwatched};
+use crate::solvers::{Counts, Ended, Limits, Status};
+use crate::trajectory::{Recorder, SaveError, Trajectory, Unwatched};
 use crate::verbs::clock::{WallTime, spread};
-use crate::verbs::host::{Host, Label};
+use crate::verbs::session::{Label, Session};
 use rayon::prelude::*;
 use std::time::Instant;
 
+/// What one case left: raw, before anything is measured.
+pub struct Record {
+    pub status: Status,
+    /// Why it did not run to its end.
+    pub reason: Option<String>,
+    /// Steps taken.
+    pub steps: u64,
+    /// None where nothing is known of it but the reason.
+    pub trajectory: Option<Trajectory>,
+    pub counts: Counts,
+    /// None of a file, and where nothing ran.
+    pub wall: Option<WallTime>,
+    /// What else is to be said of it.
+    pub remarks: Vec<String>,
+}
+
+impl Record {
+    /// Of a case that did not run.
+    pub fn none(status: Status, reason: String) -> Self {
+        Self {
+            status,
+            reason: Some(reason),
+            steps: 0,
+            trajectory: None,
+            counts: Counts::default(),
+            wall: None,
+            remarks: Vec::new(),
+        }
+    }
+}
+
 /// All engines in parallel and, beside them, the programs one after the other: they may print and
 /// use as many threads as they like.
-pub fn all(plan: &Plan, limits: &Limits, host: &dyn Host) -> Result<Vec<Run>, SaveError> {
-    let mut engines: Vec<(usize, &Case)> = Vec::new();
-    let mut programs: Vec<(usize, &Case, &dyn Program)> = Vec::new();
-    for (at, case) in plan.cases.iter().enumerate() {
-        match case.solver.as_program() {
-            None => engines.push((at, case)),
-            Some(program) => programs.push((at, case, program)),
-        }
-    }
+pub fn all(plan: &Plan, limits: &Limits, session: &dyn Session) -> Result<Vec<Record>, SaveError> {
+    let engine = |case: &Case| match case.solver.as_program() {
+        None => one(plan, case, limits, session).map(Some),
+        Some(_) => Ok(None),
+    };
+    let program = |case: &Case| {
+        let program = case.solver.as_program()?;
+        Some(program::one(plan, case, program, limits, session))
+    };
     let (ours, theirs) = rayon::join(
-        || -> Result<Vec<(usize, Run)>, SaveError> {
-            let engines = engines.par_iter();
-            engines
-                .map(|(at, case)| Ok((*at, one(plan, case, limits, host)?)))
-                .collect()
-        },
-        || -> Vec<(usize, Run)> {
-            let programs = programs.iter();
-            programs
-                .map(|(at, case, program)| (*at, program::one(plan, case, *program, limits, host)))
-                .collect()
-        },
+        || plan.cases.par_iter().map(engine).collect::<Result<_, _>>(),
+        || plan.cases.iter().map(program).collect::<Vec<_>>(),
     );
-    let mut runs = ours?;
-    runs.extend(theirs);
-    runs.sort_by_key(|(at, _)| *at);
-    Ok(runs.into_iter().map(|(_, run)| run).collect())
+    let ours: Vec<Option<Record>> = ours?;
+    let either = ours.into_iter().zip(theirs).filter_map(|(a, b)| a.or(b));
+    Ok(either.collect())
 }
 
-/// Times short runs again, one after the other, when nothing else runs.
-pub fn time_again(plan: &Plan, runs: &mut [Run], limits: &Limits) {
-    for (case, run) in plan.cases.iter().zip(runs) {
-        if let Run::Ran(ran) = run
-            && let Some(wall) = &mut ran.wall
-        {
-            time(plan, case, limits, wall);
-        }
-    }
-}
-
-fn one(plan: &Plan, case: &Case, limits: &Limits, host: &dyn Host) -> Result<Run, SaveError> {
+fn one(
+    plan: &Plan,
+    case: &Case,
+    limits: &Limits,
+    session: &dyn Session,
+) -> Result<Record, SaveError> {
     let Label {
         steps, timestep, ..
     } = case.label;
     let mut run = match case.start(plan) {
         Ok(run) => run,
         Err(unsupported) => {
-            host.progress(steps);
-            return Ok(Run::Unsupported(unsupported));
+            session.progress(steps);
+            return Ok(Record::none(Status::Unsupported, unsupported.reason));
         }
     };
     let dim = 3 * plan.scene.particles.len();
     let mut recorder = Recorder::new(steps, dim, timestep);
     let start = Instant::now();
     let coarse = limits.now_and_then();
-    let mut ended = run.finish(&coarse, &mut recorder, &|taken| host.progress(taken));
-    let first = start.elapsed().as_secs_f64();
+    let mut ended = run.finish(&coarse, &mut recorder, &|taken| session.progress(taken));
+    let wall = spread(vec![start.elapsed().as_secs_f64()]);
     if ended != Ended::Completed
         && let Ok(again) = case.start(plan)
     {
@@ -79,7 +90,7 @@ fn one(plan: &Plan, case: &Case, limits: &Limits, host: &dyn Host) -> Result<Run
         recorder = Recorder::new(steps, dim, timestep);
         ended = run.finish(limits, &mut recorder, &|_| {});
     }
-    if let Some(mut saver) = host.saver(&case.label)? {
+    if let Some(mut saver) = session.saver(&case.label)? {
         // The same run once more, to the file: bits are the same, and the timed run writes nothing.
         if let Ok(mut again) = case.start(plan) {
             again.finish(limits, saver.as_mut(), &|_| {});
@@ -93,47 +104,46 @@ fn one(plan: &Plan, case: &Case, limits: &Limits, host: &dyn Host) -> Result<Run
             let reason = format!("in step {}: {reason}", step - 1);
             (Status::Diverged, Some(reason), step)
         }
-        Ended::Failed { step, error } => (
-            Status::Failed,
-            Some(format!("in step {step}: {error}")),
-            step,
-        ),
+        Ended::Failed { step, error } => {
+            let reason = format!("in step {step}: {error}");
+            (Status::Failed, Some(reason), step)
+        }
     };
-    host.progress(steps.saturating_sub(taken));
-    Ok(Run::Ran(Box::new(Ran {
+    session.progress(steps.saturating_sub(taken));
+    Ok(Record {
         status,
         reason,
         steps: taken,
-        trajectory: recorder.finish(),
+        trajectory: Some(recorder.finish()),
         counts: run.counts(),
-        wall: Some(WallTime {
-            min: first,
-            median: first,
-            mad: None,
-        }),
+        wall: Some(wall),
         remarks: Vec::new(),
-    })))
+    })
 }
 
 /// Repeated at most this often, within this many seconds in all.
 const REPEATS: usize = 5;
 const PATIENCE: f64 = 0.02;
 
-/// Times a case that takes less than the patience; the run that was recorded, beside others, was its
-/// warm-up. A longer one keeps the time of that run.
-fn time(plan: &Plan, case: &Case, limits: &Limits, wall: &mut WallTime) {
-    let mut times = Vec::new();
+/// Times the cases again that take less than the patience, one after the other, when nothing else runs;
+/// the run that was recorded, beside others, was their warm-up. A longer one keeps the time of that run.
+pub fn time_again(plan: &Plan, records: &mut [Record], limits: &Limits) {
     let coarse = limits.now_and_then();
-    while times.len() < REPEATS && times.iter().sum::<f64>() + wall.min < PATIENCE {
-        let Ok(mut run) = case.start(plan) else {
-            return;
+    for (case, record) in plan.cases.iter().zip(records) {
+        let Some(wall) = &mut record.wall else {
+            continue;
         };
-        let start = Instant::now();
-        run.finish(&coarse, &mut Unwatched, &|_| {});
-        times.push(start.elapsed().as_secs_f64());
+        let mut times = Vec::new();
+        while times.len() < REPEATS && times.iter().sum::<f64>() + wall.min < PATIENCE {
+            let Ok(mut run) = case.start(plan) else {
+                break;
+            };
+            let start = Instant::now();
+            run.finish(&coarse, &mut Unwatched, &|_| {});
+            times.push(start.elapsed().as_secs_f64());
+        }
+        if !times.is_empty() {
+            *wall = spread(times);
+        }
     }
-    if times.is_empty() {
-        return;
-    }
-    *wall = spread(times);
 }

@@ -1,24 +1,23 @@
 //! Which scheme each trajectory follows.
 
 use super::plan::{Case, Plan};
-use super::ran::Ran;
+use super::program::begin_with;
 use crate::integrators::Settings;
-use crate::measure::identify::{Fault, Identified};
-use crate::measure::identify::{Question, first_fault, identify, moved_anchor};
+use crate::measure::identify::{Fault, Identified, Question, first_fault, identify, moved_anchor};
 use crate::physics::ParticleSystem;
 use crate::solvers::Kind;
-use crate::trajectory::Rows;
+use crate::trajectory::{Rows, Trajectory};
 use std::borrow::Cow;
 
 /// Steps replayed of a run: enough to name it, few enough to be quick. A file is replayed whole.
 const TRANSITIONS: usize = 16;
 
 /// The scheme of a run, by some of its steps.
-pub fn of_run(plan: &Plan, case: &Case, run: &Ran) -> Option<Identified> {
+pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Option<Identified> {
     let question = Question {
         transitions: Some(TRANSITIONS),
         hint: expected(plan, case),
-        ..question(plan, run.trajectory.rows())
+        ..question(plan, run.rows())
     };
     identify(&question)?.report()
 }
@@ -53,13 +52,8 @@ fn from_the_start<'a>(plan: &Plan, rows: &'a Rows) -> Cow<'a, Rows> {
     if first == 0 || first > longest.unwrap_or(0) {
         return Cow::Borrowed(rows);
     }
-    let start = ParticleSystem::initial_state(plan.scene);
     let mut rows = rows.clone();
-    rows.steps.insert(0, 0);
-    rows.x.splice(0..0, start.x);
-    if let Some(v) = &mut rows.v {
-        v.splice(0..0, start.v);
-    }
+    begin_with(&mut rows, &ParticleSystem::initial_state(plan.scene));
     Cow::Owned(rows)
 }
 

@@ -3,10 +3,9 @@
 use crate::integrators;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::solvers::Kind;
-use crate::solvers::{self, Setting, Solver, Unsupported};
+use crate::solvers::{self, Kind, Run, Setting, Solver, Unsupported};
 use crate::truth::Demand;
-use crate::verbs::host::{Estimate, Label};
+use crate::verbs::session::{Estimate, Label};
 use std::time::{Duration, Instant};
 
 /// What the caller wants run; [`Choice::default_for`] is what a run without flags does.
@@ -105,32 +104,16 @@ pub struct Case {
 }
 
 impl Case {
-    fn new(scene: &Scene, solver: &Solver, timestep: f64) -> Self {
-        Self {
-            label: Label {
-                engine: solver.id.to_string(),
-                timestep,
-                steps: scene.steps(timestep),
-                particles: scene.particles.len(),
-            },
-            solver: solver.clone(),
-        }
-    }
-
-    /// What it runs at.
-    pub fn setting(&self) -> Setting {
-        Setting::Steps {
-            timestep: self.label.timestep,
-            steps: self.label.steps,
-        }
-    }
-
     /// A fresh run from the plan's start.
     ///
     /// # Errors
     /// [`Unsupported`] as [`Solver::start`] has it.
-    pub fn start(&self, plan: &Plan) -> Result<solvers::Run, Unsupported> {
-        self.solver.start(plan.scene, &plan.system, &self.setting())
+    pub fn start(&self, plan: &Plan) -> Result<Run, Unsupported> {
+        let Label {
+            timestep, steps, ..
+        } = self.label;
+        let setting = Setting::Steps { timestep, steps };
+        self.solver.start(plan.scene, &plan.system, &setting)
     }
 }
 
@@ -139,15 +122,8 @@ pub struct Plan<'a> {
     pub scene: &'a Scene,
     pub system: ParticleSystem,
     pub cases: Vec<Case>,
-    pub demand: Demand,
-    /// As [`Choice::order`].
-    pub order: Orders,
-    /// As [`Choice::identify`].
-    pub identify: bool,
-    /// As [`Choice::prove`].
-    pub prove: bool,
-    /// As [`Choice::expectations`].
-    pub expectations: Expectations,
+    /// What it is made from.
+    pub choice: Choice,
 }
 
 impl<'a> Plan<'a> {
@@ -156,25 +132,23 @@ impl<'a> Plan<'a> {
         for solver in &choice.solvers {
             let own = solver.timestep.as_ref().map(std::slice::from_ref);
             for &timestep in own.unwrap_or(&choice.timesteps) {
-                cases.push(Case::new(scene, solver, timestep));
+                cases.push(Case {
+                    solver: solver.clone(),
+                    label: Label {
+                        engine: solver.id.to_string(),
+                        timestep,
+                        steps: scene.steps(timestep),
+                        particles: scene.particles.len(),
+                    },
+                });
             }
         }
         Self {
             scene,
             system: ParticleSystem::new(scene),
             cases,
-            demand: choice.truth,
-            order: choice.order,
-            identify: choice.identify,
-            prove: choice.prove,
-            expectations: choice.expectations.clone(),
+            choice: choice.clone(),
         }
-    }
-
-    /// When the last run ends, s.
-    pub fn until(&self) -> f64 {
-        let ends = self.cases.iter().map(|case| case.label.end());
-        ends.fold(0.0, f64::max)
     }
 
     /// How long each case will take, from its first few steps. Nobody knows it of a program.
@@ -183,15 +157,9 @@ impl<'a> Plan<'a> {
         let estimate = |case| estimate(self, case);
         self.cases.iter().filter_map(estimate).collect()
     }
-
-    /// Whether every case is another program's: nothing is computed here.
-    pub fn only_records(&self) -> bool {
-        let mut kinds = self.cases.iter().map(|case| case.solver.kind);
-        kinds.all(|kind| kind == Kind::External)
-    }
 }
 
-/// Long enough to be above the clock's grain, short enough not to be felt, and taken as often.
+/// A sample is longer than the clock's grain and too short to be noticed.
 const SAMPLE: Duration = Duration::from_millis(1);
 const SAMPLES: usize = 2;
 

@@ -1,14 +1,13 @@
 //! Runs other people's programs and makes of their rows what measures read.
 
+use super::execute::Record;
 use super::plan::{Case, Plan};
-use super::ran::{Ran, Run};
 use crate::physics::{ParticleSystem, Power, State, System};
-use crate::solvers::Status;
 use crate::solvers::external::{Program, Recording, Task};
-use crate::solvers::{Counts, Limits};
+use crate::solvers::{Counts, Limits, Status};
 use crate::trajectory::{Precision, Rows, Trajectory};
-use crate::verbs::clock::WallTime;
-use crate::verbs::host::Host;
+use crate::verbs::clock::spread;
+use crate::verbs::session::Session;
 
 /// One case of a program, from its start to what came of it.
 pub fn one(
@@ -16,8 +15,8 @@ pub fn one(
     case: &Case,
     program: &dyn Program,
     limits: &Limits,
-    host: &dyn Host,
-) -> Run {
+    session: &dyn Session,
+) -> Record {
     let task = Task {
         scene: plan.scene,
         system: &plan.system,
@@ -25,19 +24,19 @@ pub fn one(
         steps: case.label.steps,
     };
     let answer = program.record(&task);
-    host.progress(case.label.steps);
+    session.progress(case.label.steps);
     match answer {
         Ok(recording) => made_of(recording, &task, limits),
-        Err(failure) => Run::Failed(failure.to_string()),
+        Err(failure) => Record::none(Status::Failed, failure.to_string()),
     }
 }
 
 /// The run behind a recording.
-fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Run {
+fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
     let Recording { mut rows, seconds } = recording;
     let start = ParticleSystem::initial_state(task.scene);
     if let Some(wrong) = misfit(&rows, &start, task.timestep) {
-        return Run::Failed(wrong);
+        return Record::none(Status::Failed, wrong);
     }
     let mut remarks: Vec<String> = other_start(&rows, &start).into_iter().collect();
     complete(&mut rows, &start, task.steps);
@@ -81,19 +80,15 @@ fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Run {
     if status == Status::Completed && seconds.is_some() {
         remarks.push("the time is of the whole program, taken once".to_owned());
     }
-    Run::Ran(Box::new(Ran {
+    Record {
         status,
         reason,
         steps,
-        trajectory: Trajectory::of_rows(&rows, &work, task.steps, diverged),
+        trajectory: Some(Trajectory::of_rows(&rows, &work, task.steps, diverged)),
         counts: Counts::default(),
-        wall: seconds.map(|seconds| WallTime {
-            min: seconds,
-            median: seconds,
-            mad: None,
-        }),
+        wall: seconds.map(|seconds| spread(vec![seconds])),
         remarks,
-    }))
+    }
 }
 
 /// Why rows are not states of this scene, for a program that did not read them from a file.
@@ -147,11 +142,16 @@ fn complete(rows: &mut Rows, start: &State, last: u64) {
         v.truncate(kept * rows.dim);
     }
     if rows.steps.first() != Some(&0) {
-        rows.steps.insert(0, 0);
-        rows.x.splice(0..0, start.x.iter().copied());
-        if let Some(v) = &mut rows.v {
-            v.splice(0..0, start.v.iter().copied());
-        }
+        begin_with(rows, start);
+    }
+}
+
+/// The scene's start as step 0 in front of rows that begin later.
+pub fn begin_with(rows: &mut Rows, start: &State) {
+    rows.steps.insert(0, 0);
+    rows.x.splice(0..0, start.x.iter().copied());
+    if let Some(v) = &mut rows.v {
+        v.splice(0..0, start.v.iter().copied());
     }
 }
 

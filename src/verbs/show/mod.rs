@@ -1,11 +1,9 @@
 //! `springcheck show FILE.json`
 
-use crate::report::json;
-use crate::report::json::Tool;
-use crate::verbs::cli::output::Place;
-use crate::verbs::cli::shown::{self, HUMAN, format_ids};
-use crate::verbs::series;
-use crate::verbs::{Beside, Body, Report};
+use crate::report::json::{self, Tool};
+use crate::verbs::cli::output::{self, Output, Place};
+use crate::verbs::{Beside, Body, Report, series};
+
 use anyhow::{Context, bail};
 use std::fs::File;
 use std::io::{ErrorKind, Read, Write};
@@ -13,18 +11,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, clap::Args)]
+#[command(mut_arg("output", |arg| arg.help("Where the report's files go, figures among them. Default: nowhere")))]
 pub struct Args {
     /// What `--format json` printed, or the report.json, stability.json or cost.json a verb wrote.
     #[arg(value_name = "FILE.json")]
     file: PathBuf,
 
-    /// What goes to stdout.
-    #[arg(long, default_value = HUMAN, value_parser = format_ids())]
-    format: String,
-
-    /// Where the report's files go, figures among them. Default: nowhere.
-    #[arg(long, value_name = "DIR")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    output: Output,
 }
 
 /// More than this is no report.
@@ -38,17 +32,16 @@ pub fn show(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         place.create()?;
         place.write(&tool, report)?;
     }
-    if args.format == HUMAN {
+    if args.output.is_human() {
         let places = places.iter().map(Option::as_ref);
         let tables = reports.iter().zip(places);
-        let tables: Vec<String> = tables.map(|(r, place)| shown::table(r, place)).collect();
-        crate::verbs::cli::print(&tables.join("\n"))?;
+        let tables: Vec<String> = tables.map(|(r, place)| output::table(r, place)).collect();
+        output::print(&tables.join("\n"))?;
     } else {
-        shown::print(&args.format, &tool, &reports)?;
+        args.output.print(&tool, &reports)?;
     }
     let missing = |report: &Report| matches!(report.beside, Beside::Missing);
-    let drawn = args.output.is_some() || args.format == "markdown";
-    if drawn && !quiet && reports.iter().any(missing) {
+    if args.output.draws() && !quiet && reports.iter().any(missing) {
         let _ = writeln!(
             anstream::stderr(),
             "figures of curves over time are left out: {} is missing, or of another run",
@@ -87,28 +80,26 @@ fn read(file: &Path, most: u64) -> std::io::Result<Vec<u8>> {
 
 /// Where each report goes: by its scene, as the verb that made it had it; a comparison by its file's name.
 fn places(args: &Args, reports: &[Report]) -> anyhow::Result<Vec<Option<Place>>> {
-    let Some(output) = &args.output else {
-        return Ok(vec![None; reports.len()]);
-    };
     let mut places: Vec<Option<Place>> = Vec::new();
     for report in reports {
         let about = match &report.body {
             Body::Compare { outcomes, .. } => outcomes.first().map(|o| &o.engine),
             _ => None,
         };
-        let place = Place::new(output, about.unwrap_or(&report.header.scene.file).as_ref());
-        let taken = |(other, at): (&Report, &Option<Place>)| {
-            let same = at.as_ref().is_some_and(|at| at.folder() == place.folder());
-            same && other.stem() == report.stem()
-        };
-        if reports.iter().zip(&places).any(taken) {
-            bail!(
-                "{}: two of its reports would be written to {}",
-                args.file.display(),
-                place.folder().display()
-            );
+        let about = about.unwrap_or(&report.header.scene.file);
+        let place = args.output.asked_place(about.as_ref());
+        if let Some(place) = &place {
+            let file = place.report(report);
+            let mut others = reports.iter().zip(places.iter().flatten());
+            if others.any(|(other, at)| at.report(other) == file) {
+                bail!(
+                    "{}: two of its reports would be written to {}",
+                    args.file.display(),
+                    place.folder().display()
+                );
+            }
         }
-        places.push(Some(place));
+        places.push(place);
     }
     Ok(places)
 }

@@ -10,7 +10,7 @@ use crate::integrators::{self, Integrator, Settings};
 use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
 use crate::solvers::advance;
-use crate::verbs::stability::{Admissible, AdmissiblePanel};
+use crate::verbs::stability::{Admissible, AdmissiblePanel, StabilityError};
 use rayon::prelude::*;
 
 /// The method the picture is about.
@@ -23,27 +23,14 @@ const REACH: f64 = 3.0;
 /// What rounding may add to a force that stays as it is, relative to the spring's force at l = 0.
 const ROUNDING: f64 = 1e-12;
 
-/// A scene the picture is not about.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "the admissible region is a picture of two free particles and one spring with a rest length, \
-     and of nothing else that acts: {found}"
-)]
-pub struct NotAdmissible {
-    /// What the scene has instead.
-    pub found: String,
-}
-
 /// One panel for each stiffness, N/m, at a timestep in seconds.
 pub fn draw(
     scene: &Scene,
     timestep: f64,
     stiffnesses: &[f64],
-) -> Result<Admissible, NotAdmissible> {
-    check(scene)?;
-    let refuse = |found: &str| NotAdmissible {
-        found: found.to_owned(),
-    };
+) -> Result<Admissible, StabilityError> {
+    check(scene).map_err(StabilityError::NotAdmissible)?;
+    let refuse = |found: &str| StabilityError::NotAdmissible(found.to_owned());
     let ([first, second], [spring]) = (scene.particles.as_slice(), scene.springs.as_slice()) else {
         return Err(refuse("other particles"));
     };
@@ -86,21 +73,21 @@ pub fn draw(
     })
 }
 
-fn check(scene: &Scene) -> Result<(), NotAdmissible> {
-    let refuse = |found: String| Err(NotAdmissible { found });
+/// What a scene has that the picture is not about.
+fn check(scene: &Scene) -> Result<(), String> {
     let (particles, springs) = (scene.particles.len(), scene.springs.len());
     if particles != 2 || springs != 1 {
-        return refuse(format!("particles: {particles}, springs: {springs}"));
+        return Err(format!("particles: {particles}, springs: {springs}"));
     }
     if let Some(fixed) = scene.particles.iter().position(|p| p.fixed) {
-        return refuse(format!("particle {fixed} is fixed"));
+        return Err(format!("particle {fixed} is fixed"));
     }
     if scene.springs.iter().any(|spring| spring.rest_length == 0.0) {
-        return refuse("its rest length is 0".to_owned());
+        return Err("its rest length is 0".to_owned());
     }
     let system = ParticleSystem::new(scene);
     let other = system.effects().iter().find(|(row, _)| !row.elastic);
-    other.map_or(Ok(()), |(row, _)| refuse(format!("{} acts too", row.id)))
+    other.map_or(Ok(()), |(row, _)| Err(format!("{} acts too", row.id)))
 }
 
 /// The middles of so many cells over the reach.

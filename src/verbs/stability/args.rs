@@ -3,17 +3,13 @@
 use crate::scene::{self, Scene, limits};
 use crate::solvers;
 use crate::verbs::Report;
-use crate::verbs::cli::announce;
-use crate::verbs::cli::cache::Cache;
-use crate::verbs::cli::chosen;
-use crate::verbs::cli::host::host;
-use crate::verbs::cli::progress::Progress;
-use crate::verbs::cli::rapier::Custom;
-use crate::verbs::cli::shown::{self, HUMAN, format_ids};
-use crate::verbs::host::Estimate;
+use crate::verbs::cli::flags;
+use crate::verbs::cli::output::{self, Output};
+use crate::verbs::cli::solvers::{Custom, chosen, without_timestep};
+use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::run::{Choice, Plan};
-use crate::verbs::stability::StabilityRow;
-use crate::verbs::stability::{MapPlan, Range, StabilityPlan, Vary};
+use crate::verbs::session::Estimate;
+use crate::verbs::stability::{MapPlan, Range, StabilityPlan, StabilityRow, Vary};
 use anyhow::{Context, bail};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -64,13 +60,8 @@ pub struct Args {
     #[arg(long, value_name = "K,...", value_delimiter = ',')]
     admissible: Vec<f64>,
 
-    /// What goes to stdout.
-    #[arg(long, default_value = HUMAN, value_parser = format_ids())]
-    format: String,
-
-    /// Where reports go [default: reports; with a --format other than human, nowhere].
-    #[arg(long, value_name = "DIR")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    output: Output,
 }
 
 /// What shortens this verb.
@@ -84,34 +75,23 @@ pub fn stability(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let scene = read(args)?;
     let plan = plan(args, &scene)?;
     // Before anything runs, so that a budget that cannot be kept leaves no folder behind.
-    let place = shown::place(args.output.as_deref(), &args.format, &args.scene);
+    let place = args.output.place(&args.scene);
     let estimates = estimates(&plan)?;
-    let expected = announce::expected(&estimates);
-    if !quiet {
-        announce::announce(&estimates, expected, SHORTER);
-    }
-    let progress = Progress::new(plan.steps()?, expected, quiet);
-    let report = plan.execute(&host(&progress, None, &Cache::new()))?;
-    progress.finish();
-    let report = shown::written(report, place.as_ref())?;
-    let next = next(args, &scene, &report);
-    let otherwise = "springcheck stability --help";
-    shown::print_one(&args.format, &report, place.as_ref(), next, otherwise)?;
-    let rows = report.stability().into_iter().flat_map(|s| &s.rows);
-    let unanswered = rows.filter(|row| !answered(row)).count();
-    Ok(ExitCode::from(if unanswered > 0 { UNANSWERED } else { 0 }))
-}
-
-/// A limit, or why this engine has none.
-fn answered(row: &StabilityRow) -> bool {
-    row.limit().is_some() || row.unsupported
+    let expected = terminal::expected(&estimates);
+    terminal::announce(&estimates, expected, SHORTER, quiet);
+    let report = plan.execute(&Terminal::new(plan.steps()?, expected, quiet))?;
+    let report = output::written(report, place.as_ref())?;
+    let (next, otherwise) = (next(args, &scene, &report), "springcheck stability --help");
+    args.output
+        .print_one(&report, place.as_ref(), next, otherwise)?;
+    let mut rows = report.stability().into_iter().flat_map(|s| &s.rows);
+    // A limit, or why this engine has none.
+    let answered = rows.all(|row| row.limit().is_some() || row.unsupported);
+    Ok(ExitCode::from(if answered { 0 } else { UNANSWERED }))
 }
 
 fn read(args: &Args) -> anyhow::Result<Scene> {
-    let mut scene = scene::read(&args.scene, crate::verbs::names())?;
-    if let Some(duration) = args.duration {
-        scene.duration = duration;
-    }
+    let scene = flags::scene(&args.scene, args.duration)?;
     let own = scene.solver.timestep;
     scene::check_times(own, scene.duration)
         .with_context(|| format!("{}: timestep {own}", args.scene.display()))?;
@@ -119,27 +99,34 @@ fn read(args: &Args) -> anyhow::Result<Scene> {
 }
 
 fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> {
-    chosen::without_timestep(&args.rapier, "searched; leave dt out")?;
+    without_timestep(&args.rapier, "searched; leave dt out")?;
     let mut usual = crate::solvers::methods(&scene.solver.method);
     usual.extend(solvers::find("rapier"));
     let map = match &args.vary {
         None => None,
         Some(text) => Some(MapPlan {
             vary: Vary::parse(text, scene).with_context(|| "--vary")?,
-            timesteps: timesteps(args.steps)?,
+            timesteps: args.steps,
             budget: args.budget,
         }),
     };
+    for h in args.steps.iter().flat_map(|range| [range.low, range.high]) {
+        within(h, limits::TIMESTEP).context("--steps")?;
+    }
     for &k in &args.admissible {
         within(k, limits::STIFFNESS).context("--admissible")?;
     }
     let timestep = args.timestep.unwrap_or(scene.solver.timestep);
     within(timestep, limits::TIMESTEP).context("--timestep")?;
-    let mut solvers = chosen::integrators(&args.integrators, scene, &usual)?;
-    solvers.extend(chosen::engines(&args.engines, &args.rapier, &usual)?);
     let plan = StabilityPlan {
         scene,
-        solvers,
+        solvers: chosen(
+            &args.integrators,
+            &args.engines,
+            &args.rapier,
+            scene,
+            &usual,
+        )?,
         timestep,
         map,
         admissible: args.admissible.clone(),
@@ -148,14 +135,6 @@ fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> 
         bail!("nothing to look at: no integrators and no engines");
     }
     Ok(plan)
-}
-
-fn timesteps(range: Option<Range>) -> anyhow::Result<Option<Range>> {
-    if let Some(range) = range {
-        within(range.low, limits::TIMESTEP).context("--steps")?;
-        within(range.high, limits::TIMESTEP).context("--steps")?;
-    }
-    Ok(range)
 }
 
 fn within(value: f64, quantity: limits::Quantity) -> anyhow::Result<()> {
@@ -184,31 +163,24 @@ fn estimates(plan: &StabilityPlan) -> anyhow::Result<Vec<Estimate>> {
         solvers: plan.solvers.clone(),
         ..Choice::default_for(plan.scene)
     };
-    let estimates = Plan::new(plan.scene, &choice).estimate();
-    // Engines that cannot run the scene have no estimate, but keep their place: rows and estimates
-    // are in the same order otherwise.
-    let ids = plan.solvers.iter().map(|solver| solver.id.clone());
-    let by_id: Vec<_> = ids.zip(by_row).collect();
-    let scaled = estimates.into_iter().map(|mut estimate| {
-        let row = by_id.iter().find(|(id, _)| *id == estimate.label.engine);
-        let each = row.map_or(0, |(_, steps)| *steps) + of_map;
-        estimate.seconds *= each as f64 / estimate.label.steps.max(1) as f64;
-        estimate.label.steps = each;
-        estimate
-    });
-    Ok(scaled.collect())
+    // A case for each solver: none has a timestep of its own here.
+    let mut runs = Plan::new(plan.scene, &choice);
+    for (case, steps) in runs.cases.iter_mut().zip(by_row) {
+        case.label.steps = steps + of_map;
+    }
+    Ok(runs.estimate())
 }
 
 /// A map worth drawing, or after a map a run at a step that is well inside.
 fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
-    let path = shown::quoted(&args.scene)?;
+    let path = output::quoted(&args.scene)?;
     if args.vary.is_none() {
         let stiffest = scene
             .springs
             .iter()
             .fold(0.0, |k: f64, s| k.max(s.stiffness));
         return Some(if stiffest > 0.0 {
-            let [low, high] = [stiffest / 100.0, stiffest * 100.0].map(shown::rounded);
+            let [low, high] = [stiffest / 100.0, stiffest * 100.0].map(output::rounded);
             format!("springcheck stability {path} --vary springs.stiffness={low}..{high}")
         } else {
             format!("springcheck stability {path} --vary particles.drag=0.01..100")
@@ -218,7 +190,7 @@ fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
     let own = own.filter(|row| report.header.is_own(&row.engine));
     let limit = own.filter_map(StabilityRow::limit).next()?;
     let h = if limit > 0.0 && limit.is_finite() {
-        shown::rounded(0.9 * limit).min(scene.duration)
+        output::rounded(0.9 * limit).min(scene.duration)
     } else {
         scene.solver.timestep
     };

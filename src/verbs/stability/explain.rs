@@ -1,6 +1,6 @@
 //! The sentences of a row: what prediction and measurement say, and why they differ.
 
-use super::Asked;
+use super::Shared;
 use crate::integrators::{Amplification, Stage};
 use crate::measure::stability::{Limit, Measured, Prediction};
 use crate::solvers::Solver;
@@ -11,7 +11,7 @@ const RESOLUTION: f64 = 1e-3;
 
 /// What there is to say of one row.
 pub fn remarks(
-    asked: &Asked,
+    shared: &Shared,
     solver: &Solver,
     row: &StabilityRow,
     predicted: Option<&Prediction>,
@@ -27,17 +27,17 @@ pub fn remarks(
         remarks.push(format!("not measured: {why}"));
     }
     remarks.extend(measured.reason.clone());
-    remarks.extend(tightest(asked, row));
+    remarks.extend(tightest(shared, row));
     remarks.extend(predicted.and_then(|predicted| {
         let (from, to) = (&predicted.limit, &measured.limit);
         let amplification = solver.follows.map(|method| method.amplification);
-        if !asked.linear {
+        if !shared.linear {
             difference(from, to)
         } else if !differ(from, to) {
             None
         } else if !measured.linear {
             Some(turning(amplification))
-        } else if undoes(asked, amplification, to) {
+        } else if undoes(shared, amplification, to) {
             Some(BACKWARD.to_owned())
         } else {
             Some(FAULT.to_owned())
@@ -47,9 +47,9 @@ pub fn remarks(
 }
 
 /// Where along the way the limit is below that of the start.
-fn tightest(asked: &Asked, row: &StabilityRow) -> Option<String> {
+fn tightest(shared: &Shared, row: &StabilityRow) -> Option<String> {
     let tightest = row.tightest.as_ref()?;
-    let method = asked.path.method?;
+    let method = shared.path.method?;
     let start = row.predicted_limit_s?;
     (tightest.limit_s < start * (1.0 - RESOLUTION)).then(|| {
         format!(
@@ -132,7 +132,7 @@ const BACKWARD: &str = "beyond the measured limit its substeps backward in time 
                         doubles hold: they multiply what rounding left of the forward ones, which \
                         theory in exact arithmetic does not see";
 
-fn undoes(asked: &Asked, amplification: Option<Amplification>, measured: &Limit) -> bool {
+fn undoes(shared: &Shared, amplification: Option<Amplification>, measured: &Limit) -> bool {
     let Some(Amplification::Composition(stages, _)) = amplification else {
         return false;
     };
@@ -144,5 +144,5 @@ fn undoes(asked: &Asked, amplification: Option<Amplification>, measured: &Limit)
     let (Limit::At(h) | Limit::Between(_, h)) = measured else {
         return false;
     };
-    most * h * asked.linearised.damping_max() > DROWNED
+    most * h * shared.linearised.damping_max() > DROWNED
 }

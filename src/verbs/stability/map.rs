@@ -2,20 +2,19 @@
 
 use super::rows::{as_keys, predicted, start};
 use super::vary::{COUNT, Range, Vary};
-use crate::measure::stability::Cell;
-use crate::measure::stability::{Effort, Linearised, classify};
+use crate::measure::stability::{Cell, Effort, Linearised, classify};
 use crate::physics::ParticleSystem;
 use crate::scene::{Scene, limits};
 use crate::solvers::{Solver, Tally};
-use crate::verbs::host::Host;
-use crate::verbs::stability::{MapPanel, StabilityMap};
+use crate::verbs::session::Session;
+use crate::verbs::stability::{MapPanel, StabilityError, StabilityMap};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Steps times particles of a whole map, unless the caller says otherwise: some seconds.
 const BUDGET: u64 = 40_000_000;
 /// A cell of fewer steps tells nothing.
-const FEWEST: u64 = 100;
+pub(super) const FEWEST: u64 = 100;
 /// A map of a large scene takes this many where nobody sets a budget.
 const USUAL: u64 = 256;
 /// The steps over which a run is called stable: more are not needed.
@@ -32,42 +31,21 @@ pub struct MapPlan {
     pub budget: Option<u64>,
 }
 
-/// A budget too small for its map.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error(
-    "a budget of {budget} leaves each of {cells} cells {steps} steps of {particles} particles, and \
-     fewer than {FEWEST} tell nothing: {needed} would do, or fewer values, steps or engines"
-)]
-pub struct BudgetError {
-    pub budget: u64,
-    pub cells: u64,
-    pub steps: u64,
-    pub particles: u64,
-    pub needed: u64,
-}
-
-/// A map about to be run.
-pub struct Cells<'a> {
-    plan: &'a MapPlan,
-    /// Each value's scene.
-    scenes: Vec<Scene>,
-    count: u64,
-    steps: u64,
-}
-
 impl MapPlan {
-    /// With this many panels.
-    pub fn cells(&self, scene: &Scene, panels: usize) -> Result<Cells<'_>, BudgetError> {
+    /// The cells of a map with this many panels, and the steps each may take.
+    ///
+    /// # Errors
+    /// A budget that leaves them too few.
+    pub fn cells(&self, scene: &Scene, panels: usize) -> Result<[u64; 2], StabilityError> {
         let columns = self.timesteps.map_or(COUNT, |range| range.count);
-        let values = &self.vary.values;
-        let count = (panels.max(1) * values.len() * columns) as u64;
+        let cells = (panels.max(1) * self.vary.values.len() * columns) as u64;
         let particles = scene.particles.len().max(1) as u64;
-        let each = count.saturating_mul(particles).max(1);
+        let each = cells.saturating_mul(particles).max(1);
         let steps = match self.budget {
             Some(budget) if budget / each < FEWEST => {
-                return Err(BudgetError {
+                return Err(StabilityError::Budget {
                     budget,
-                    cells: count,
+                    cells,
                     steps: budget / each,
                     particles,
                     needed: each.saturating_mul(FEWEST),
@@ -76,32 +54,22 @@ impl MapPlan {
             Some(budget) => budget / each,
             None => (BUDGET / each).max(USUAL),
         };
-        Ok(Cells {
-            plan: self,
-            scenes: values
-                .iter()
-                .map(|value| self.vary.apply(scene, *value))
-                .collect(),
-            count,
-            steps: steps.min(MOST),
-        })
-    }
-}
-
-impl Cells<'_> {
-    /// Of all cells, at most.
-    pub fn steps(&self) -> u64 {
-        self.count.saturating_mul(self.steps)
+        Ok([cells, steps.min(MOST)])
     }
 
+    /// A panel for each solver; `steps_per_cell` as [`cells`](Self::cells) has them.
     pub fn run(
         &self,
         scene: &Scene,
         solvers: &[Solver],
+        steps_per_cell: u64,
         tally: &Arc<Tally>,
-        host: &dyn Host,
+        session: &dyn Session,
     ) -> StabilityMap {
-        let linearised: Vec<Linearised> = self.scenes.par_iter().map(linearised).collect();
+        let values = &self.vary.values;
+        let scenes = values.iter().map(|value| self.vary.apply(scene, *value));
+        let scenes: Vec<Scene> = scenes.collect();
+        let linearised: Vec<Linearised> = scenes.par_iter().map(linearised).collect();
         // By solver, then by value.
         let limits: Vec<Vec<(Option<f64>, bool)>> = solvers
             .par_iter()
@@ -113,7 +81,7 @@ impl Cells<'_> {
                 linearised.iter().map(limit).collect()
             })
             .collect();
-        let range = self.plan.timesteps.unwrap_or_else(|| {
+        let range = self.timesteps.unwrap_or_else(|| {
             let (low, high) = decades(scene, &linearised, &limits);
             Range {
                 low,
@@ -123,17 +91,17 @@ impl Cells<'_> {
         });
         let timesteps = range.values();
         let places: Vec<(usize, usize, usize)> = (0..solvers.len())
-            .flat_map(|s| (0..self.scenes.len()).map(move |v| (s, v)))
+            .flat_map(|s| (0..scenes.len()).map(move |v| (s, v)))
             .flat_map(|(s, v)| (0..timesteps.len()).map(move |h| (s, v, h)))
             .collect();
         let cells: Vec<Option<Cell>> = places
             .into_par_iter()
             .map(|(s, v, h)| {
-                let (solver, scene, h) = (&solvers[s], &self.scenes[v], timesteps[h]);
+                let (solver, scene, h) = (&solvers[s], &scenes[v], timesteps[h]);
                 start(solver, scene, h, tally).ok()?;
                 let make = |scene: &Scene, h| start(solver, scene, h, tally);
-                let tick = |steps| host.progress(steps);
-                Some(classify(scene, &make, h, self.steps, &tick))
+                let tick = |steps| session.progress(steps);
+                Some(classify(scene, &make, h, steps_per_cell, &tick))
             })
             .collect();
         let mut rows = cells.chunks(timesteps.len().max(1)).map(<[_]>::to_vec);
@@ -142,16 +110,16 @@ impl Cells<'_> {
             .zip(limits)
             .map(|(solver, limits)| MapPanel {
                 engine: solver.id.to_string(),
-                cells: rows.by_ref().take(self.scenes.len()).collect(),
+                cells: rows.by_ref().take(scenes.len()).collect(),
                 predicted_limit_s: limits.into_iter().map(|(limit, _)| limit).collect(),
             })
             .collect();
         StabilityMap {
-            vary: self.plan.vary.id(),
-            unit: self.plan.vary.unit().to_owned(),
-            values: self.plan.vary.values.clone(),
+            vary: self.vary.id(),
+            unit: self.vary.unit().to_owned(),
+            values: values.clone(),
             timesteps_s: timesteps,
-            steps_per_cell: self.steps,
+            steps_per_cell,
             engines,
         }
     }

@@ -12,25 +12,22 @@ mod rows;
 mod text;
 mod vary;
 
-pub use admissible::NotAdmissible;
 pub(super) use figures::FIGURES;
-pub use map::{BudgetError, MapPlan};
+pub use map::MapPlan;
 pub(super) use text::{page, view};
 pub use vary::{COUNT, Range, Vary, VaryError};
 
 pub use args::{Args, stability};
 pub use result::{Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow};
 
-use crate::measure;
 use crate::measure::stability::{Effort, Linearised, is_linear};
 use crate::physics::ParticleSystem;
-use crate::report::{Header, TruthFacts};
+use crate::report::Header;
 use crate::scene::Scene;
 use crate::solvers::{Solver, Tally};
-use crate::truth::TruthKind;
-use crate::verbs::host::Host;
-use crate::verbs::run::ledger;
-use crate::verbs::{Beside, Body, Report};
+use crate::truth::Truth;
+use crate::verbs::session::Session;
+use crate::verbs::{Beside, Body, Report, facts};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -49,14 +46,16 @@ pub struct StabilityPlan<'a> {
 }
 
 /// What all rows share.
-pub struct Asked<'a> {
+pub struct Shared<'a> {
     pub plan: &'a StabilityPlan<'a>,
-    pub system: &'a ParticleSystem,
-    pub linearised: &'a Linearised,
+    pub system: ParticleSystem,
+    /// The scene about its start.
+    pub linearised: Linearised,
+    /// Whether every force is linear.
     pub linear: bool,
-    pub path: &'a path::Path,
+    pub path: path::Path,
     /// What integrators evaluated, over all runs.
-    pub tally: &'a Arc<Tally>,
+    pub tally: Arc<Tally>,
 }
 
 impl StabilityPlan<'_> {
@@ -66,62 +65,50 @@ impl StabilityPlan<'_> {
     /// # Errors
     /// Before anything runs: a budget that leaves the map's cells too few steps, or a picture of a
     /// scene that is not two free particles on one spring.
-    pub fn execute(&self, host: &dyn Host) -> Result<Report, StabilityError> {
+    pub fn execute(&self, session: &dyn Session) -> Result<Report, StabilityError> {
         let scene = self.scene;
-        let pair = match self.admissible.as_slice() {
+        let admissible = match self.admissible.as_slice() {
             [] => None,
             stiffnesses => Some(admissible::draw(scene, self.timestep, stiffnesses)?),
         };
-        let tally = Arc::new(Tally::default());
-        let map = match &self.map {
-            Some(map) => Some(map.cells(scene, self.solvers.len())?),
-            None => None,
-        };
+        let [_, steps_per_cell] = self.cells()?;
         let system = ParticleSystem::new(scene);
         let start = ParticleSystem::initial_state(scene);
         let linearised = Linearised::new(&system, &start, Effort::FULL);
         let linear = is_linear(scene);
-        let path = path::of(self, &system, &linearised, linear);
-        let asked = Asked {
+        let shared = Shared {
             plan: self,
-            system: &system,
-            linearised: &linearised,
+            path: path::of(self, &system, &linearised, linear),
+            system,
+            linearised,
             linear,
-            path: &path,
-            tally: &tally,
+            tally: Arc::default(),
         };
-        let rows = self
-            .solvers
-            .par_iter()
-            .map(|solver| rows::row(&asked, solver, host))
-            .collect();
-        let map = map.map(|cells| cells.run(scene, &self.solvers, &tally, host));
+        let (solvers, tally) = (&self.solvers, &shared.tally);
+        let row = |solver| rows::row(&shared, solver, session);
+        let rows = solvers.par_iter().map(row).collect();
+        let map = self.map.as_ref();
+        let map = map.map(|map| map.run(scene, solvers, steps_per_cell, tally, session));
+        let Shared {
+            system, linearised, ..
+        } = &shared;
         let stability = Stability {
             omega_max_rad_s: linearised.omega_max().filter(|w| w.is_finite()),
             unsure: linearised.is_unsure(),
-            horizon_s: path.until,
+            horizon_s: shared.path.until,
             timestep_s: self.timestep,
             linear,
             excluded: linearised.excluded().to_vec(),
             rows,
             map,
-            admissible: pair,
+            admissible,
         };
-        let scale = measure::energy_scale(scene, &system, None);
+        let truth = Truth::none("stability compares nothing with a truth");
+        let scale = facts::energy_scale(scene, system, &truth);
         Ok(Report {
             header: Header {
-                scene: ledger::facts(
-                    scene,
-                    ledger::effects(scene, &system, tally.evaluations()),
-                    scale,
-                ),
-                truth: TruthFacts {
-                    kind: TruthKind::None,
-                    method: None,
-                    error_bound_m: None,
-                    horizon_s: None,
-                    reason: Some("stability compares nothing with a truth".to_owned()),
-                },
+                scene: facts::scene(scene, system, tally.evaluations(), scale),
+                truth: facts::truth(&truth),
                 checks: Vec::new(),
             },
             body: Body::Stability {
@@ -136,16 +123,16 @@ impl StabilityPlan<'_> {
     ///
     /// # Errors
     /// A budget that leaves the map's cells too few steps.
-    pub fn steps(&self) -> Result<u64, BudgetError> {
-        let of_map = match &self.map {
-            Some(map) => map.cells(self.scene, self.solvers.len())?.steps(),
-            None => 0,
-        };
-        Ok(self
-            .steps_by_row()
-            .iter()
-            .sum::<u64>()
-            .saturating_add(of_map))
+    pub fn steps(&self) -> Result<u64, StabilityError> {
+        let [cells, each] = self.cells()?;
+        let rows: u64 = self.steps_by_row().iter().sum();
+        Ok(rows.saturating_add(cells.saturating_mul(each)))
+    }
+
+    /// The map's cells and the steps each may take; 0 without a map.
+    fn cells(&self) -> Result<[u64; 2], StabilityError> {
+        let cells = |map: &MapPlan| map.cells(self.scene, self.solvers.len());
+        self.map.as_ref().map_or(Ok([0, 0]), cells)
     }
 
     /// Of each row's search, in the order of the rows: what it mostly takes.
@@ -158,8 +145,23 @@ impl StabilityPlan<'_> {
 /// Why a plan cannot be carried out.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StabilityError {
-    #[error(transparent)]
-    Budget(#[from] BudgetError),
-    #[error(transparent)]
-    NotAdmissible(#[from] NotAdmissible),
+    /// A budget too small for its map.
+    #[error(
+        "a budget of {budget} leaves each of {cells} cells {steps} steps of {particles} particles, and \
+         fewer than {} tell nothing: {needed} would do, or fewer values, steps or engines",
+        map::FEWEST
+    )]
+    Budget {
+        budget: u64,
+        cells: u64,
+        steps: u64,
+        particles: u64,
+        needed: u64,
+    },
+    /// A scene the picture is not about, and what it has instead.
+    #[error(
+        "the admissible region is a picture of two free particles and one spring with a rest length, \
+         and of nothing else that acts: {0}"
+    )]
+    NotAdmissible(String),
 }

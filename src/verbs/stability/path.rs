@@ -2,11 +2,11 @@
 
 use super::StabilityPlan;
 use crate::integrators::Method;
-use crate::measure;
 use crate::measure::stability::{Along, Linearised};
 use crate::physics::{ParticleSystem, State};
-use crate::solvers::{Limits, Setting, Solver};
+use crate::solvers::{Setting, Solver};
 use crate::trajectory::Observer;
+use crate::verbs::facts;
 
 /// States kept of a path.
 const STATES: u64 = 100;
@@ -52,13 +52,11 @@ pub fn of(
     let Ok(mut run) = Solver::method(method).start(scene, system, &setting) else {
         return nowhere;
     };
-    let scale = measure::energy_scale(scene, system, None);
-    let limits = Limits::new(system.clone(), measure::divergence_limit(scene, scale));
     let mut kept = Kept {
         every: steps.div_ceil(STATES).max(1),
         states: Vec::new(),
     };
-    run.finish(&limits, &mut kept, &|_| {});
+    run.finish(&facts::limits(scene, system), &mut kept, &|_| {});
     // Where it ended early, what it ended in is no place to linearise about.
     kept.states.retain(State::is_finite);
     Path {

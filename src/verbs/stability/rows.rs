@@ -1,14 +1,12 @@
 //! One engine's limits.
 
-use super::{Asked, explain};
+use super::{Shared, explain};
 use crate::integrators::Method;
-use crate::measure::stability::TightestLimit;
-use crate::measure::stability::{Limit, Linearised, Measured, Prediction, measure};
+use crate::measure::stability::{Limit, Linearised, Prediction, TightestLimit, measure};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::solvers::Kind;
-use crate::solvers::{Run, Setting, Solver, Tally, Unsupported};
-use crate::verbs::host::Host;
+use crate::solvers::{Kind, Run, Setting, Solver, Tally, Unsupported};
+use crate::verbs::session::Session;
 use crate::verbs::stability::StabilityRow;
 use std::sync::Arc;
 
@@ -80,47 +78,59 @@ fn follows(solver: &Solver) -> Option<(&'static Method, f64)> {
     Some((solver.follows?, f64::from(solver.substeps)))
 }
 
-pub fn row(asked: &Asked, solver: &Solver, host: &dyn Host) -> StabilityRow {
-    let timestep = asked.plan.timestep;
-    let predicted = predicted(asked.linearised, solver, timestep);
-    let tightest = tightest(asked, solver);
+pub fn row(shared: &Shared, solver: &Solver, session: &dyn Session) -> StabilityRow {
+    let (scene, timestep) = (shared.plan.scene, shared.plan.timestep);
+    let start = |scene: &Scene, h| start(solver, scene, h, &shared.tally);
+    let predicted = predicted(&shared.linearised, solver, timestep);
+    let keys = predicted
+        .as_ref()
+        .map(|predicted| as_keys(&predicted.limit));
+    let (predicted_limit_s, unconditional) = keys.unwrap_or_default();
+    let tightest = tightest(shared, solver);
     let mut row = StabilityRow {
         engine: solver.id.to_string(),
         kind: solver.kind,
         unsupported: false,
-        predicted_limit_s: None,
+        predicted_limit_s,
         measured_limit_s: None,
         measured_between_s: None,
-        unconditional: false,
+        unconditional,
         measured_unconditional: false,
-        growth_per_s: None,
+        growth_per_s: predicted.as_ref().and_then(|p| growth(p.growth_per_s)),
         measured_growth_per_s: None,
-        smooth_below_s: None,
+        smooth_below_s: predicted.as_ref().and_then(|p| finite(p.smooth_below_s)),
         measured_smooth_below_s: None,
         tightest,
         reason: None,
         remarks: Vec::new(),
     };
-    if let Some(predicted) = &predicted {
-        (row.predicted_limit_s, row.unconditional) = as_keys(&predicted.limit);
-        row.growth_per_s = predicted.growth_per_s.and_then(growth);
-        row.smooth_below_s = predicted.smooth_below_s.filter(|h| h.is_finite());
-    }
     // Asked before anything is searched: what cannot run has no limit to be found.
-    if let Err(unsupported) = start(solver, asked.plan.scene, timestep, asked.tally) {
+    if let Err(unsupported) = start(scene, timestep) {
         row.unsupported = true;
-        row.remarks
-            .push(format!("unsupported: {}", unsupported.reason));
+        let why = format!("unsupported: {}", unsupported.reason);
+        row.remarks.push(why);
     } else {
-        let measured = measured(asked, solver, &row, host);
+        let along = row.tightest.as_ref().map(|tightest| tightest.limit_s);
+        let near = [predicted_limit_s, along].into_iter().flatten();
+        let near = near.filter(|h| *h > 0.0).reduce(f64::min);
+        let patience = patience(scene, solver, timestep, &shared.tally);
+        let tick = |steps| session.progress(steps);
+        let measured = measure(
+            scene,
+            &shared.system,
+            &start,
+            timestep,
+            near,
+            patience,
+            &tick,
+        );
         (row.measured_limit_s, row.measured_unconditional) = as_keys(&measured.limit);
-        row.measured_between_s = match measured.limit {
-            Limit::Between(low, high) => Some([low, high]),
-            _ => None,
-        };
-        row.measured_growth_per_s = measured.growth_per_s.and_then(growth);
-        row.measured_smooth_below_s = measured.smooth_below_s.filter(|h| h.is_finite());
-        row.remarks = explain::remarks(asked, solver, &row, predicted.as_ref(), &measured);
+        if let Limit::Between(low, high) = measured.limit {
+            row.measured_between_s = Some([low, high]);
+        }
+        row.measured_growth_per_s = growth(measured.growth_per_s);
+        row.measured_smooth_below_s = finite(measured.smooth_below_s);
+        row.remarks = explain::remarks(shared, solver, &row, predicted.as_ref(), &measured);
     }
     row.reason = (!row.remarks.is_empty()).then(|| row.remarks.join("; "));
     row
@@ -140,30 +150,11 @@ pub fn predicted(linearised: &Linearised, solver: &Solver, timestep: f64) -> Opt
     Some(prediction)
 }
 
-fn tightest(asked: &Asked, solver: &Solver) -> Option<TightestLimit> {
+fn tightest(shared: &Shared, solver: &Solver) -> Option<TightestLimit> {
     let (method, substeps) = follows(solver)?;
-    let tightest = asked.path.along.as_ref()?.tightest(method)?;
-    let limit_s = tightest.limit_s * substeps;
-    (limit_s.is_finite() && tightest.t_s.is_finite()).then_some(TightestLimit {
-        limit_s,
-        ..tightest
-    })
-}
-
-fn measured(asked: &Asked, solver: &Solver, row: &StabilityRow, host: &dyn Host) -> Measured {
-    let scene = asked.plan.scene;
-    let along = row.tightest.as_ref().map(|tightest| tightest.limit_s);
-    let near = [row.predicted_limit_s, along].into_iter().flatten();
-    let near = near.filter(|h| *h > 0.0).reduce(f64::min);
-    measure(
-        scene,
-        asked.system,
-        &|scene, h| start(solver, scene, h, asked.tally),
-        asked.plan.timestep,
-        near,
-        patience(scene, solver, asked.plan.timestep, asked.tally),
-        &|steps| host.progress(steps),
-    )
+    let TightestLimit { limit_s, t_s } = shared.path.along.as_ref()?.tightest(method)?;
+    let limit_s = limit_s * substeps;
+    (limit_s.is_finite() && t_s.is_finite()).then_some(TightestLimit { limit_s, t_s })
 }
 
 /// Limit and whether there is none, as the report's keys have it.
@@ -177,6 +168,10 @@ pub fn as_keys(limit: &Limit) -> (Option<f64>, bool) {
 }
 
 /// Growth is stated where there is some.
-fn growth(per_s: f64) -> Option<f64> {
-    (per_s.is_finite() && per_s > 0.0).then_some(per_s)
+fn growth(per_s: Option<f64>) -> Option<f64> {
+    finite(per_s).filter(|rate| *rate > 0.0)
+}
+
+fn finite(value: Option<f64>) -> Option<f64> {
+    value.filter(|value| value.is_finite())
 }

@@ -180,18 +180,13 @@ fn written(changed: Option<(&Part, &Row, &str)>) -> String {
     text
 }
 
-/// The numbers as one value of the row, and what else the file then needs: a run takes a step.
-fn with(part: &Part, row: &Row, numbers: &[f64]) -> String {
+/// The numbers as one value of the row.
+fn yaml(row: &Row, numbers: &[f64]) -> String {
     let list: Vec<String> = numbers.iter().map(|x| format!("{x:e}")).collect();
-    let value = match row.kind {
-        Kind::Numbers(..) => format!("[{}]", list.join(", ")),
-        _ => list.join(", "),
-    };
-    let text = written(Some((part, row, &value)));
-    match row.key {
-        "timestep" => format!("{text}\nduration: {value}"),
-        "duration" => text.replace("timestep: 0.01", &format!("timestep: {value}")),
-        _ => text,
+    let list = list.join(", ").replace("NaN", ".nan");
+    match row.kind {
+        Kind::Numbers(..) => format!("[{list}]"),
+        _ => list,
     }
 }
 
@@ -210,7 +205,14 @@ fn numbers_are_read_at_their_bounds_and_refused_beyond() {
             if count == 1 {
                 numbers[0] = value;
             }
-            let text = with(part, row, &numbers);
+            let value = yaml(row, &numbers);
+            let mut text = written(Some((part, row, &value)));
+            // One step is as long as the run.
+            match row.key {
+                "timestep" => text += &format!("\nduration: {value}"),
+                "duration" => text = text.replace("0.01", &value),
+                _ => {}
+            }
             let scene = parse(&text).unwrap_or_else(|e| panic!("{e}"));
             let at = (part.count)(&scene) - 1;
             let read: Vec<_> = row.values(&scene, at).collect();
@@ -231,7 +233,7 @@ fn numbers_are_read_at_their_bounds_and_refused_beyond() {
         for (value, expected) in beyond {
             let mut numbers = vec![0.5; count];
             numbers[count - 1] = value;
-            let text = with(part, row, &numbers).replace("NaN", ".nan");
+            let text = written(Some((part, row, &yaml(row, &numbers))));
             let error = parse(&text).expect_err(&text);
             // The second particle, else the first member.
             let mut path = part.path(Some(usize::from(part.key == "particles")), row.key);

@@ -110,6 +110,10 @@ fn formula_law(row: &Method, formula: Option<&str>) -> Result<(), String> {
         let Some((own, found)) = computed(row.oscillator.energy, z) else {
             continue;
         };
+        // The row states none.
+        if formula.is_none() && own == "|R(iz)|²" {
+            continue;
+        }
         for (found, wanted) in found.iter().zip(stated(formula.unwrap_or(own), z)) {
             // Near its limit the upper edge of a band multiplies roundings of z by 1/(1 - z/2).
             if (found / wanted - 1.0).abs() > 1e-14 {

@@ -8,8 +8,8 @@ use springcheck::integrators::{Integrator, StepError, fixed};
 use springcheck::physics::{State, System};
 use springcheck::scene::{Scene, Wanted};
 use springcheck::solvers::{Solver, rapier::Settings};
-use springcheck::verbs::host::Quiet;
 use springcheck::verbs::run::{Choice, Plan};
+use springcheck::verbs::session::Quiet;
 
 /// Largest position error against the truth, m, of every method of the registry; then the mutant's.
 fn errors(scene: &Scene) -> (Vec<f64>, f64) {

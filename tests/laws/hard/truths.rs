@@ -1,8 +1,8 @@
-//! A host that computes a truth once, however many runs ask for it.
+//! A session that computes a truth once, however many runs ask for it.
 
 use springcheck::trajectory::SaveError;
 use springcheck::truth::Store;
-use springcheck::verbs::host::{Host, Label, Saver};
+use springcheck::verbs::session::{Label, Saver, Session};
 use std::collections::HashMap;
 use std::sync::Mutex;
 
@@ -16,7 +16,7 @@ pub fn remembering() -> &'static Remembering {
     &ONE
 }
 
-impl Host for Remembering {
+impl Session for Remembering {
     fn saver(&self, _case: &Label) -> Result<Option<Box<dyn Saver>>, SaveError> {
         Ok(None)
     }

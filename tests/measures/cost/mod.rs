@@ -10,7 +10,7 @@ use springcheck::solvers::Solver;
 use springcheck::truth::Demand;
 use springcheck::verbs::cost::{Cost, CostCurve};
 use springcheck::verbs::cost::{CostChoice, CostPlan};
-use springcheck::verbs::host::Quiet;
+use springcheck::verbs::session::Quiet;
 
 /// These methods over a small budget, no engines.
 fn choice(methods: Vec<&'static Method>) -> CostChoice {

@@ -9,7 +9,7 @@ use springcheck::solvers::{Kind, Status};
 use springcheck::truth::Demand;
 use springcheck::verbs::cost::Cost;
 use springcheck::verbs::cost::{CostChoice, CostPlan};
-use springcheck::verbs::host::Quiet;
+use springcheck::verbs::session::Quiet;
 use springcheck::verbs::{Body, Report};
 
 /// Everything but the clock's: points, slopes, fronts, who reaches what and why not.

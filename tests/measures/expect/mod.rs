@@ -6,8 +6,8 @@ mod table;
 use crate::testkit::scenes::parsed;
 use springcheck::scene::Scene;
 use springcheck::verbs::Report;
-use springcheck::verbs::host::Quiet;
 use springcheck::verbs::run::{Choice, Plan};
+use springcheck::verbs::session::Quiet;
 
 /// One mass on one spring without rest length, a turn and a half in 100 steps; with this `expect`.
 fn oscillator(expect: &str) -> Scene {

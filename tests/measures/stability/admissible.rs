@@ -2,7 +2,7 @@
 
 use crate::testkit::scenes::shipped;
 use springcheck::scene::Scene;
-use springcheck::verbs::host::Quiet;
+use springcheck::verbs::session::Quiet;
 use springcheck::verbs::stability::Admissible;
 use springcheck::verbs::stability::StabilityPlan;
 

@@ -10,9 +10,9 @@ use springcheck::solvers::Solver;
 use springcheck::solvers::external::{Failure, Program, Recording, Task};
 use springcheck::solvers::{Kind, Status};
 use springcheck::trajectory::{Precision, Rows};
-use springcheck::verbs::host::Quiet;
 use springcheck::verbs::run::Outcome;
 use springcheck::verbs::run::{Choice, Plan};
+use springcheck::verbs::session::Quiet;
 use std::sync::Arc;
 
 /// A program in this process.

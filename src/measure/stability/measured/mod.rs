@@ -1,9 +1,9 @@
 //! Limits found by running a scene at many steps.
 
+mod experiment;
 mod perturbation;
 mod probe;
 mod search;
-mod setup;
 mod smooth;
 mod watched;
 
@@ -12,12 +12,11 @@ use crate::measure::energy_scale;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
+use experiment::Experiment;
 use perturbation::Perturbation;
-use probe::{Budget, Fate, Watch, probe};
-use search::Search;
+use probe::{Budget, Fate, Runs, Watch, probe};
 use serde::{Deserialize, Serialize};
-use setup::Setup;
-use watched::{ExcessEnergy, Runs};
+use watched::ExcessEnergy;
 
 /// What a run at one step does: one cell of a stability map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,8 +77,8 @@ pub fn measure(
 ) -> Measured {
     let start = ParticleSystem::initial_state(scene);
     let unit = predicted::shortest(system, &start).unwrap_or(timestep);
-    let mut setup = match Setup::new(scene, system, make, 0.5 * unit, patience, tick) {
-        Ok(setup) => setup,
+    let mut experiment = match Experiment::new(scene, system, make, unit, patience, tick) {
+        Ok(experiment) => experiment,
         Err(Unsupported { reason }) => {
             return Measured {
                 limit: Limit::Unknown(reason),
@@ -92,22 +91,22 @@ pub fn measure(
         }
     };
     let near = near.filter(|near| *near > 0.0 && near.is_finite());
-    let (limit, reason) = Search::new(&mut setup, unit).limit(near, patience);
-    let growth = (limit == Limit::Never).then(|| setup.growth(timestep, unit));
+    let (limit, reason) = experiment.limit(near, patience);
+    let growth = (limit == Limit::Never).then(|| experiment.growth(timestep));
     let upto = match limit {
         Limit::At(h) => Some(h),
         _ => None,
     };
-    let linear = setup.is_linear();
+    let linear = experiment.is_linear();
     Measured {
         growth_per_s: growth.flatten().filter(|growth| growth.is_finite()),
         smooth_below_s: linear
-            .then(|| smooth::below(&mut setup, unit, upto))
+            .then(|| smooth::below(&mut experiment, upto))
             .flatten(),
         linear,
         limit,
         reason,
-        steps: setup.budget.taken,
+        steps: experiment.budget.taken,
     }
 }
 

@@ -1,4 +1,4 @@
-//! Small deterministic perturbations of a scene's start.
+//! Deterministic perturbations of a scene's start, and their energy.
 
 use crate::measure::energy_scale;
 use crate::physics::{ParticleSystem, State, System};
@@ -22,15 +22,10 @@ const UNIT: f64 = 1.0;
 impl Perturbation {
     /// For linear scenes, where the size changes nothing: as large as the scene, so that rounding is far
     /// below it, with half of its energy in velocities, so that stiff modes do not drown soft ones.
-    /// `quadratic` is the potential energy of a displacement, J.
-    pub fn large(
-        scene: &Scene,
-        system: &ParticleSystem,
-        quadratic: &mut dyn FnMut(&[f64]) -> f64,
-    ) -> Self {
+    pub fn large(scene: &Scene, system: &ParticleSystem, quadratic: &mut Quadratic) -> Self {
         let size = Some(scene.size()).filter(|l| *l > 0.0).unwrap_or(UNIT);
         let x = noise(system.inverse_mass(), 1, |_| size);
-        let potential = quadratic(&x);
+        let potential = quadratic.potential(&x);
         let energy = Some(potential)
             .filter(|u| *u > 0.0 && u.is_finite())
             .or_else(|| energy_scale(scene, system, None))
@@ -91,6 +86,56 @@ impl Perturbation {
             }
         }
         perturbed
+    }
+}
+
+/// What counts as rounding, in positions and velocities.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// K(dv) + the potential energy of dx under linear forces.
+#[derive(Clone)]
+pub(super) struct Quadratic {
+    system: ParticleSystem,
+    /// Forces at the origin, at rest: what does not depend on the state.
+    constant: Vec<f64>,
+    zero: Vec<f64>,
+    force: Vec<f64>,
+}
+
+impl Quadratic {
+    pub fn new(system: &ParticleSystem) -> Self {
+        let zero = vec![0.0; system.dim()];
+        let mut constant = zero.clone();
+        system.forces(0.0, &zero, &zero, &mut constant);
+        Self {
+            system: system.clone(),
+            constant,
+            force: zero.clone(),
+            zero,
+        }
+    }
+
+    /// -½ dx · (f(dx) - f(0)), J. Free coordinates only: `dx` is 0 on fixed ones.
+    pub fn potential(&mut self, dx: &[f64]) -> f64 {
+        self.system.forces(0.0, dx, &self.zero, &mut self.force);
+        let work = dx.iter().zip(self.force.iter().zip(&self.constant));
+        -0.5 * work.map(|(dx, (f, f0))| dx * (f - f0)).sum::<f64>()
+    }
+
+    pub fn energy(&mut self, of: &Perturbation) -> f64 {
+        self.potential(&of.x) + self.system.kinetic(&of.v)
+    }
+
+    /// Of the roundings of a state, every other coordinate the other way, so that no translation hides it.
+    pub fn rounding(&mut self, State { x, v, .. }: &State) -> f64 {
+        let signs = [ROUNDING, -ROUNDING].into_iter().cycle();
+        let free = x.iter().zip(self.system.inverse_mass());
+        let x = free.zip(signs.clone());
+        self.energy(&Perturbation {
+            x: x.map(|((x, w), s)| if *w > 0.0 { x * s } else { 0.0 })
+                .collect(),
+            v: v.iter().zip(signs).map(|(v, s)| v * s).collect(),
+        })
     }
 }
 

@@ -6,8 +6,12 @@
 //! steps to reach 1e4 only from δ = 1.2 % on at ζ = 0.1. Largest values, not means: near a limit the energy
 //! swings by orders of magnitude, but comes back to the same height.
 
-use super::perturbation::scramble;
-use super::watched::{Gauge, Runs};
+use super::Make;
+use super::perturbation::{Perturbation, scramble};
+use crate::integrators::StepError;
+use crate::physics::State;
+use crate::scene::Scene;
+use crate::solvers::{Run, Unsupported};
 
 /// What becomes of runs.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,6 +70,71 @@ impl Probed {
         let why = format!("it left the range of finite numbers within {step} steps");
         Self::grows(why, true, None)
     }
+}
+
+/// Runs at one timestep from different starts, advanced together.
+pub(super) struct Runs(Vec<Run>);
+
+/// What a linear solve counts as, in force passes.
+const SOLVE: u64 = 3;
+
+impl Runs {
+    /// One from the start of each scene, at `h` seconds.
+    pub fn new(make: &Make, h: f64, scenes: &[&Scene]) -> Result<Self, Unsupported> {
+        let runs = scenes.iter().map(|scene| make(scene, h));
+        Ok(Self(runs.collect::<Result<_, _>>()?))
+    }
+
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// A step of each.
+    pub fn step(&mut self) -> Result<(), StepError> {
+        self.0.iter_mut().try_for_each(|run| run.advance(1))
+    }
+
+    pub fn state(&self, run: usize) -> &State {
+        self.0[run].state()
+    }
+
+    /// The state of one run less that of the first.
+    pub fn difference(&self, run: usize) -> Perturbation {
+        let mut difference = Perturbation::default();
+        difference.set_difference(self.state(0), self.state(run));
+        difference
+    }
+
+    /// Force passes so far, linear solves turned into such, where engines count them.
+    pub fn passes(&self) -> u64 {
+        let passes = self.0.iter().map(|run| {
+            let counts = run.counts();
+            counts.all_force_passes().unwrap_or(0) + SOLVE * counts.linear_solves.unwrap_or(0)
+        });
+        passes.sum()
+    }
+}
+
+/// What is watched of runs.
+pub(super) trait Gauge {
+    /// Where the energy is after so many steps.
+    ///
+    /// # Errors
+    /// What became of the runs, where the energy leaves no other answer.
+    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed>;
+
+    /// Whether what is watched is no larger than rounding.
+    fn is_rounding(&mut self, _runs: &Runs) -> bool {
+        false
+    }
+}
+
+/// An energy against its start or its scale.
+pub(super) struct Level {
+    /// Its logarithm.
+    pub log: f64,
+    /// Too high to stay there.
+    pub high: bool,
 }
 
 /// How long to watch, and how much is growth.

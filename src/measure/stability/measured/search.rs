@@ -1,7 +1,7 @@
 //! Where to probe next: from a guess to the first step that fails, to 5e-4 of itself.
 
+use super::experiment::{Experiment, Found, STEPS, Stop};
 use super::probe::{Fate, Probed, span};
-use super::setup::{Found, STEPS, Setup, Stop};
 use crate::measure::stability::Limit;
 use crate::solvers::Unsupported;
 
@@ -10,15 +10,6 @@ use crate::solvers::Unsupported;
 struct Tried {
     h: f64,
     probed: Probed,
-}
-
-/// One search.
-pub(super) struct Search<'a, 'b> {
-    setup: &'a mut Setup<'b>,
-    /// The shortest time scale, s.
-    unit: f64,
-    /// The step found stable and the one found unstable, s, that a spent budget leaves behind.
-    known: (Option<f64>, Option<f64>),
 }
 
 /// Relative width to which a limit is promised.
@@ -47,27 +38,19 @@ const VISIBLE: f64 = 4.0;
 /// Growth rates that belong to one power of h have exponents this close.
 const SAME_POWER: f64 = 0.4;
 
-impl<'a, 'b> Search<'a, 'b> {
-    pub fn new(setup: &'a mut Setup<'b>, unit: f64) -> Self {
-        Self {
-            setup,
-            unit,
-            known: (None, None),
-        }
-    }
-
+impl Experiment<'_> {
     /// The limit and what there is to say of it. `near` and `patience` as in [`measure`](super::measure).
     pub fn limit(&mut self, near: Option<f64>, patience: u64) -> (Limit, Option<String>) {
         let bracket = self.bracket(near);
         match bracket.and_then(|(stable, unstable)| self.within(stable, unstable)) {
             Ok((limit, mut reason)) | Err(Stop::Found((limit, mut reason))) => {
-                if self.setup.steps < STEPS {
-                    reason += &format!("; seen over {} steps at most", self.setup.steps);
+                if self.steps < STEPS {
+                    reason += &format!("; seen over {} steps at most", self.steps);
                 }
                 (limit, Some(reason))
             }
             Err(Stop::Unsupported(Unsupported { reason })) => (Limit::Unknown(reason), None),
-            Err(Stop::Impatient) => unfinished(self.known, patience),
+            Err(Stop::Spent) => unfinished(self.known, patience),
         }
     }
 
@@ -92,12 +75,12 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     fn try_at(&mut self, h: f64, steps: u64, extensions: u32) -> Result<Tried, Stop> {
-        let probed = self.setup.probe(h, steps, extensions)?;
+        let probed = self.probe(h, steps, extensions)?;
         Ok(Tried { h, probed })
     }
 
     fn full(&mut self, h: f64) -> Result<Tried, Stop> {
-        self.try_at(h, self.setup.steps, 2)
+        self.try_at(h, self.steps, 2)
     }
 
     /// From an unstable step to smaller ones, until one is stable.
@@ -138,8 +121,8 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Whether rates fall like a power of the step, to one too small to be seen at the next.
     fn power_law(&self, unstable: &[Tried]) -> bool {
-        let seen = VISIBLE * self.setup.clear();
-        power_law(unstable).is_some_and(|next| next * span(self.setup.steps) < seen)
+        let seen = VISIBLE * self.clear();
+        power_law(unstable).is_some_and(|next| next * span(self.steps) < seen)
     }
 
     /// From a stable step to larger ones, until one is not.
@@ -153,7 +136,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 break;
             };
             self.known = (Some(stable.h), None);
-            let tried = match self.try_at(stable.h * ratio, self.setup.steps / shorter, 0) {
+            let tried = match self.try_at(stable.h * ratio, self.steps / shorter, 0) {
                 Err(Stop::Unsupported(Unsupported { reason })) => {
                     let ended = format!("; beyond it cannot run: {reason}");
                     return Err(unconditional(stable.h, &ended));
@@ -167,7 +150,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         // Briefly they were; once more at length, where nothing was tried at length yet.
         let last = match self.full(stable.h) {
-            Err(Stop::Impatient) => return Err(unconditional(stable.h, ", looked at briefly")),
+            Err(Stop::Spent) => return Err(unconditional(stable.h, ", looked at briefly")),
             last => last?,
         };
         if last.probed.unstable() {
@@ -186,7 +169,7 @@ impl<'a, 'b> Search<'a, 'b> {
         for k in (1..=BELOW).rev() {
             self.known = (Some(stable.h), Some(unstable.h));
             let h = stable.h * 0.5_f64.powf(0.5 * f64::from(k));
-            let tried = self.try_at(h, self.setup.steps.min(STEPS / BRIEF), 0)?;
+            let tried = self.try_at(h, self.steps.min(STEPS / BRIEF), 0)?;
             if tried.probed.unstable() {
                 let (lower, tried) = match lower {
                     Some(lower) => (lower, tried),

@@ -1,8 +1,8 @@
 //! Up to which step nothing changes sign from one step to the next.
 
+use super::experiment::Experiment;
 use super::perturbation::Perturbation;
 use super::search::bisect;
-use super::setup::Setup;
 use crate::measure::stability::{Effort, Linearised};
 use crate::physics::{ForceKinds, ParticleSystem, System};
 use crate::scene::Scene;
@@ -27,17 +27,18 @@ const FAR: f64 = 1e3;
 /// The largest step, s, at which every decaying motion decays without changing sign from step to
 /// step, on a linear map, searched up to its limit `upto`; None where something oscillates in truth,
 /// nothing decays, the scene is too large, or, without a limit, no step up to a thousand of the
-/// shortest time scales `unit` changes sign.
-pub(super) fn below(setup: &mut Setup, unit: f64, upto: Option<f64>) -> Option<f64> {
-    let decays = setup.system.kinds().has(ForceKinds::DISSIPATIVE);
-    if !decays || may_oscillate(setup.scene, setup.system) {
+/// shortest time scales changes sign.
+pub(super) fn below(experiment: &mut Experiment, upto: Option<f64>) -> Option<f64> {
+    let decays = experiment.system.kinds().has(ForceKinds::DISSIPATIVE);
+    if !decays || may_oscillate(experiment.scene, experiment.system) {
         return None;
     }
+    let unit = experiment.unit;
     let mut smooth = |h: f64| -> Option<bool> {
-        setup
+        experiment
             .budget
             .spend((2 * ROUNDS * (DIFFERENCES + 2)) as u64, 0);
-        sign_kept(setup, h)
+        sign_kept(experiment, h)
     };
     let end = upto.unwrap_or(FAR * unit);
     let mut low = (unit / 16.0).min(0.5 * end);
@@ -61,13 +62,13 @@ pub(super) fn below(setup: &mut Setup, unit: f64, upto: Option<f64>) -> Option<f
 
 /// Whether the mode that decays fastest keeps its sign in a step: whether its factor, told from
 /// successive differences of high order, is real and not negative.
-fn sign_kept(setup: &Setup, h: f64) -> Option<bool> {
-    let system = setup.system;
-    let mut shape = setup.perturbation.clone();
+fn sign_kept(experiment: &Experiment, h: f64) -> Option<bool> {
+    let system = experiment.system;
+    let mut shape = experiment.perturbation.clone();
     let size = norm(system, &shape);
     let mut kept = None;
     for _ in 0..ROUNDS {
-        let differences = differences(setup, &shape, h)?;
+        let differences = differences(experiment, &shape, h)?;
         let Some(Differences { rows, rounding }) = differences else {
             // Not finite: nothing decays.
             return Some(false);
@@ -104,9 +105,13 @@ struct Differences {
 }
 
 /// Of the perturbation `shape`; the inner None where it leaves the finite numbers.
-fn differences(setup: &Setup, shape: &Perturbation, h: f64) -> Option<Option<Differences>> {
-    let system = setup.system;
-    let mut runs = setup.pair(h, shape).ok()?;
+fn differences(
+    experiment: &Experiment,
+    shape: &Perturbation,
+    h: f64,
+) -> Option<Option<Differences>> {
+    let system = experiment.system;
+    let mut runs = experiment.pair(h, shape).ok()?;
     let mut rows: Vec<Perturbation> = Vec::with_capacity(DIFFERENCES + 3);
     let mut largest = 0.0_f64;
     for step in 0..DIFFERENCES + 3 {

@@ -37,7 +37,7 @@ fn growth(modulus: f64, h: f64) -> f64 {
     modulus.clamp(f64::MIN_POSITIVE, f64::MAX).ln() / h
 }
 
-/// Of a composition on modes damped by themselves.
+/// What a composition does to modes that are damped by themselves.
 fn by_modes(
     stages: &'static [Stage],
     damping: DampingTreatment,
@@ -63,12 +63,7 @@ fn by_modes(
         });
         // What oscillates from the first cell on is not smooth up to anything worth saying.
         let smooth = smooth.filter(|smooth| *smooth > NEAR / mode.rate() * 0.5);
-        let one = Prediction {
-            smooth_below_s: smooth,
-            binding: Some(mode),
-            ..Prediction::only(limit)
-        };
-        one.growing(Some(growth(at(h).modulus(), h)), h)
+        Prediction::of(mode, limit, growth(at(h).modulus(), h), smooth, h)
     });
     each.reduce(Prediction::and)
 }
@@ -100,8 +95,8 @@ fn first_failure(rate: f64, upto: f64, holds: &dyn Fn(f64) -> bool) -> Option<f6
 /// A modulus above 1 by no more than this is rounding of a composition of nine factors.
 const ROUNDING: f64 = 1e-12;
 
-/// The two eigenvalues of a composition's map of one mode; without stiffness, 0 instead of the 1 of the
-/// place.
+/// The two eigenvalues of a composition's map of one mode. Without stiffness the place keeps its value; that
+/// eigenvalue 1 is left out, and 0 stands for it.
 struct Pair {
     half_trace: f64,
     determinant: f64,

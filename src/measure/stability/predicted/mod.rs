@@ -13,6 +13,7 @@ use super::Limit;
 use crate::integrators::{Amplification, Method};
 use crate::physics::{State, System};
 use crate::scene::{DampingModel, Scene};
+pub(super) use parts::shortest;
 pub use prediction::Prediction;
 use serde::{Deserialize, Serialize};
 use spectrum::{Known, Spectrum};
@@ -123,11 +124,12 @@ impl Linearised {
                 other => maps::predict(other, part, timestep, &self.effort),
             });
         let all = parts.chain(self.failed.map(Prediction::unknown));
-        let whole = all.reduce(Prediction::and);
+        // All motion is free: nothing grows.
+        let whole = all
+            .reduce(Prediction::and)
+            .unwrap_or_else(|| Prediction::only(Limit::Unconditional).growing(Some(0.0), timestep));
         let (undamped, modes) = self.undamped();
-        whole
-            .unwrap_or_else(Prediction::at_rest)
-            .explained(undamped, modes)
+        whole.explained(undamped, modes)
     }
 
     /// Modes that neither decay nor rest, and all that do not rest; zeros where nobody counted.
@@ -146,14 +148,6 @@ impl Linearised {
         }
         counts
     }
-}
-
-/// A time, s, no longer than the shortest time scale of the forces about a state: from the row sums of the
-/// Jacobians (Gershgorin). None where no force depends on the state.
-pub(super) fn shortest<S: System + ?Sized>(system: &S, state: &State) -> Option<f64> {
-    let parts = parts::parts(system, state)?;
-    let rate = parts.iter().map(|part| part.rate()).fold(0.0, f64::max);
-    (rate > 0.0 && rate.is_finite()).then(|| 1.0 / rate)
 }
 
 /// Sizes, in coordinates that couple, up to which things are done, and how far Krylov spaces go.

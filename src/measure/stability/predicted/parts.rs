@@ -98,6 +98,34 @@ fn scaled(n: usize, inverse_mass: &[f64], triplets: &Triplets) -> Option<Matrix>
     Some(Matrix::new(n, kept))
 }
 
+/// A time, s, no longer than the shortest time scale of the forces about a state: from the row sums of the
+/// Jacobians (Gershgorin). None where no force depends on the state.
+///
+/// Entries are scaled once they are summed, unlike those of [`parts`]: a search starts from this time, and
+/// what a chaotic scene does at a step depends on its last bit.
+pub(in crate::measure::stability) fn shortest<S: System + ?Sized>(
+    system: &S,
+    state: &State,
+) -> Option<f64> {
+    let State { t, x, v, .. } = state;
+    let mut jacobian = Jacobian::default();
+    system.jacobian(*t, x, v, Linearization::Exact, &mut jacobian);
+    let weights = system.inverse_mass();
+    let largest = |triplets: &Triplets| {
+        let mut matrix = Matrix::new(system.dim(), triplets.iter().copied());
+        for (row, entries) in matrix.rows.iter_mut().enumerate() {
+            for (column, value) in entries {
+                *value *= (weights[row] * weights[*column]).sqrt();
+            }
+        }
+        matrix.norm()
+    };
+    let rate = largest(&jacobian.position)
+        .sqrt()
+        .max(largest(&jacobian.velocity));
+    (rate > 0.0 && rate.is_finite()).then(|| 1.0 / rate)
+}
+
 /// Splits by what is coupled; fixed coordinates are in no part. Matrices that are symmetric but for
 /// rounding are made so.
 fn separate(whole: &[Matrix; 3], inverse_mass: &[f64]) -> Vec<Part> {
@@ -144,7 +172,7 @@ fn separate(whole: &[Matrix; 3], inverse_mass: &[f64]) -> Vec<Part> {
     members.iter().map(part).collect()
 }
 
-/// A square sparse matrix. Of each row its columns, ascending, and their entries.
+/// A square sparse matrix: the columns of each row, ascending, and their entries.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Matrix {
     rows: Vec<Vec<(usize, f64)>>,

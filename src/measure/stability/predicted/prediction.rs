@@ -8,7 +8,7 @@ use super::spectrum::Mode;
 pub struct Prediction {
     pub limit: Limit,
     /// ln(spectral radius) / h of the amplitude at the timestep asked for, 1/s; at most 0 where it
-    /// is stable, 0 where nothing moves but freely. None where it would take the full spectrum of too
+    /// is stable, 0 where all motion is free. None where it would take the full spectrum of too
     /// many coordinates.
     pub growth_per_s: Option<f64>,
     /// Where nothing oscillates (drag alone, overdamped modes): the largest step, s, up to which every
@@ -22,14 +22,6 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// Of nothing that moves but freely.
-    pub(super) fn at_rest() -> Self {
-        Self {
-            growth_per_s: Some(0.0),
-            ..Self::only(Limit::Unconditional)
-        }
-    }
-
     pub(super) fn unknown(why: impl Into<String>) -> Self {
         Self::only(Limit::Unknown(why.into()))
     }
@@ -44,7 +36,18 @@ impl Prediction {
         }
     }
 
-    /// With this growth at `h`, s: a step that is stable does not grow, whatever rounding says.
+    /// The prediction for one mode, with its growth at `h`, s.
+    pub(super) fn of(mode: Mode, limit: Limit, growth: f64, smooth: Option<f64>, h: f64) -> Self {
+        let of = Self {
+            smooth_below_s: smooth,
+            binding: Some(mode),
+            ..Self::only(limit)
+        };
+        of.growing(Some(growth), h)
+    }
+
+    /// The same with its growth at `h`, s. A stable step does not grow, so a positive rate there is rounding
+    /// and becomes 0.
     pub(super) fn growing(self, growth: Option<f64>, h: f64) -> Self {
         let stable = self.limit.allows(h);
         let growth = growth.map(|growth| if stable { growth.min(0.0) } else { growth });
@@ -54,7 +57,8 @@ impl Prediction {
         }
     }
 
-    /// Of both together: never beats unknown, unknown beats what is known.
+    /// The prediction for two parts together. A limit of never outranks an unknown one, and an unknown one
+    /// outranks a known one.
     pub(super) fn and(self, other: Self) -> Self {
         let growth_per_s = match (self.growth_per_s, other.growth_per_s) {
             (Some(a), Some(b)) => Some(a.max(b)),
@@ -84,9 +88,9 @@ impl Prediction {
         }
     }
 
-    /// Of the whole scene, in words: `undamped` of its `modes` that do not rest neither decay. Until then
-    /// the reason says how sure the limit is, where it is not, and a step that is smooth without bound is
-    /// infinite.
+    /// The prediction of a whole scene with its reason in words. `modes` counts what does not rest and
+    /// `undamped` what of these does not decay. Before this call the reason only says how sure a limit is,
+    /// and a step that is smooth without bound is infinite.
     pub(super) fn explained(self, undamped: usize, modes: usize) -> Self {
         let mode = self.binding.map(Mode::words);
         let reason = match &self.limit {

@@ -33,18 +33,15 @@ fn of_eigenvalues(
             Stable::Below(u) => (Limit::At(u / rate), u / rate),
             Stable::Always | Stable::AlwaysAlong { .. } => (Limit::Unconditional, f64::INFINITY),
         };
-        let one = Prediction {
-            smooth_below_s: (value.im == 0.0).then(|| bound.min(sign_change / rate)),
-            binding: Some(mode),
-            ..Prediction::only(limit)
-        };
-        one.growing(Some(rational.log_modulus(value, h) / h), h)
+        let smooth = (value.im == 0.0).then(|| bound.min(sign_change / rate));
+        let growth = rational.log_modulus(value, h) / h;
+        Prediction::of(mode, limit, growth, smooth, h)
     });
     each.reduce(Prediction::and)
 }
 
-/// Between two samples there may be any mode: what they say holds where the stiffest, which is
-/// known, is the one that binds, or where nothing does.
+/// Between two samples there may be any mode. So a limit holds only where the stiffest mode, which is known,
+/// sets it, or where there is none.
 pub(super) fn stiffest_binds(found: Prediction, modes: &[Mode]) -> Option<Prediction> {
     let binds = found.binding == modes.last().copied();
     if binds || !matches!(found.limit, Limit::At(_)) {
@@ -55,8 +52,8 @@ pub(super) fn stiffest_binds(found: Prediction, modes: &[Mode]) -> Option<Predic
     ))
 }
 
-/// Of outermost eigenvalues: the others lie within the least of them, and where the half disc of that
-/// radius is stable too, nothing was missed.
+/// From outermost eigenvalues. The others are no larger than the least of them, so nothing was missed where
+/// the half disc of that radius is stable.
 fn of_outermost(
     rational: &Rational,
     outermost: &[(Complex<f64>, Mode)],
@@ -101,7 +98,7 @@ fn of_outermost(
     }
 }
 
-/// Of the stiffest vector, and a radius no eigenvalue is beyond.
+/// From the stiffest vector and a radius that no eigenvalue exceeds.
 fn of_bound(rational: &Rational, bound: Bound, known: Option<Prediction>) -> Prediction {
     let stable = rational.half_disc();
     let sure = stable / bound.radius;

@@ -81,6 +81,18 @@ impl Springs {
     pub fn parts(&self) -> usize {
         self.network.parts.len()
     }
+
+    /// Without `ELASTIC` the forces of the dampers alone.
+    #[inline(always)]
+    fn add<const ELASTIC: bool>(&self, x: &[f64], v: &[f64], f: &mut [f64]) -> f64 {
+        let (arch, parts, at) = (self.arch, &self.network.parts, Motion::new(x, v));
+        match self.damping {
+            Damping::None if !ELASTIC => 0.0,
+            Damping::None => kernel::add::<NONE, true>(arch, parts, at, f),
+            Damping::Axial => kernel::add::<AXIAL, ELASTIC>(arch, parts, at, f),
+            Damping::Isotropic => kernel::add::<ISOTROPIC, ELASTIC>(arch, parts, at, f),
+        }
+    }
 }
 
 impl Effect for Springs {
@@ -93,12 +105,7 @@ impl Effect for Springs {
     }
 
     fn add_force(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
-        let (arch, parts, at) = (self.arch, &self.network.parts, Motion::new(x, v));
-        let dissipated = match self.damping {
-            Damping::None => kernel::add::<NONE, true>(arch, parts, at, f),
-            Damping::Axial => kernel::add::<AXIAL, true>(arch, parts, at, f),
-            Damping::Isotropic => kernel::add::<ISOTROPIC, true>(arch, parts, at, f),
-        };
+        let dissipated = self.add::<true>(x, v, f);
         Power {
             dissipated,
             injected: 0.0,
@@ -118,12 +125,7 @@ impl Effect for Springs {
     }
 
     fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
-        let (arch, parts, at) = (self.arch, &self.network.parts, Motion::new(x, w));
-        match self.damping {
-            Damping::None => 0.0,
-            Damping::Axial => kernel::add::<AXIAL, false>(arch, parts, at, f),
-            Damping::Isotropic => kernel::add::<ISOTROPIC, false>(arch, parts, at, f),
-        };
+        self.add::<false>(x, w, f);
     }
 
     fn add_jacobian(

@@ -1,17 +1,22 @@
 //! `--external NAME='COMMAND ...'`: one more row, computed by another program.
 
 mod process;
-mod program;
-mod tree;
 
+use super::flags::Time;
 use crate::integrators;
-use crate::solvers::external::Command;
+use crate::solvers::external::{
+    Command, CommandError, Failure, Flat, Placeholder, Program, Recording, Task,
+};
 use crate::solvers::{Solver, rapier};
-use crate::verbs::cli::time::Time;
+use crate::trajectory::{self, Expected, Layout};
 use anyhow::bail;
-use std::path::Path;
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// The flag's value: what reports call the program, and how it is started.
 #[derive(Debug, Clone)]
@@ -41,9 +46,7 @@ impl FromStr for External {
         }
         Ok(Self {
             name: name.to_owned(),
-            command: command
-                .parse()
-                .map_err(|error: crate::solvers::external::CommandError| error.to_string())?,
+            command: command.parse().map_err(|e: CommandError| e.to_string())?,
         })
     }
 }
@@ -67,7 +70,7 @@ pub fn distinct(externals: &[External]) -> anyhow::Result<()> {
 /// The programs, ready to run on this scene.
 pub fn chosen(externals: &[External], scene: &Path, timeout: Time) -> Vec<Solver> {
     let ready = |external: &External| {
-        let program = program::Started {
+        let program = Started {
             command: external.command.clone(),
             scene: std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned()),
             timeout: timeout.0,
@@ -75,6 +78,75 @@ pub fn chosen(externals: &[External], scene: &Path, timeout: Time) -> Vec<Solver
         Solver::program(&external.name, Arc::new(program))
     };
     externals.iter().map(ready).collect()
+}
+
+/// More than this is not taken from a program, bytes.
+const LIMIT: usize = 1 << 30;
+
+/// A command that is started anew for each task.
+struct Started {
+    command: Command,
+    /// The scene file, absolute.
+    scene: PathBuf,
+    timeout: Duration,
+}
+
+impl Program for Started {
+    fn record(&self, task: &Task) -> Result<Recording, Failure> {
+        // Removed with everything in it when it goes out of scope.
+        let folder = tempfile::Builder::new()
+            .prefix("springcheck-")
+            .tempdir()
+            .map_err(Failure::io("make a temporary folder"))?;
+        let json = folder.path().join("scene.json");
+        let output = folder.path().join("trajectory.npz");
+        if self.command.uses(Placeholder::SceneJson) {
+            write(&json, task)?;
+        }
+        let words = self.command.words(|placeholder| match placeholder {
+            Placeholder::Scene => self.scene.clone().into_os_string(),
+            Placeholder::SceneJson => json.clone().into_os_string(),
+            // The fewest digits that read back to the same bits.
+            Placeholder::Timestep => OsString::from(format!("{:?}", task.timestep)),
+            Placeholder::Duration => OsString::from(format!("{:?}", task.scene.duration)),
+            Placeholder::Output => output.clone().into_os_string(),
+        });
+        let ended = process::run(&words, self.timeout, LIMIT)?;
+        let expected = Expected::new(task.scene, task.timestep);
+        let rows = if self.command.uses(Placeholder::Output) {
+            let bytes = read(&output)?;
+            trajectory::read(&bytes, "{output}", Some(Layout::Npz), &expected)?
+        } else if ended.stdout.is_empty() {
+            return Err(Failure::Silent);
+        } else {
+            trajectory::read(&ended.stdout, "stdout", None, &expected)?
+        };
+        Ok(Recording {
+            rows,
+            seconds: Some(ended.seconds),
+        })
+    }
+}
+
+fn write(path: &Path, task: &Task) -> Result<(), Failure> {
+    let doing = Failure::io("write {scene_json}");
+    let bytes = serde_json::to_vec(&Flat(task)).map_err(std::io::Error::other);
+    std::fs::write(path, bytes.map_err(&doing)?).map_err(doing)
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    let doing = Failure::io("read {output}");
+    let file = match File::open(path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Err(Failure::NoFile),
+        Err(error) => return Err(doing(error)),
+    };
+    let mut bytes = Vec::new();
+    let wanted = file.take(LIMIT as u64 + 1).read_to_end(&mut bytes);
+    if wanted.map_err(doing)? > LIMIT {
+        return Err(Failure::TooMuch { limit: LIMIT });
+    }
+    Ok(bytes)
 }
 
 #[cfg(test)]

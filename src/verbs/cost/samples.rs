@@ -1,52 +1,43 @@
-//! States of a run at some instants, few enough to be kept of every run of a sweep.
+//! What is kept of a run: few enough states for every run of a sweep to be kept.
 
 use crate::physics::{State, Work};
 use crate::solvers::Setting;
 use crate::trajectory::Observer;
+use crate::truth::States;
 
 /// States of a run at some instants, the start and the end among them.
 #[derive(Debug, Clone, Default)]
 pub struct Samples {
-    pub dim: usize,
     /// Seconds, ascending.
     pub t: Vec<f64>,
-    pub x: Vec<f64>,
-    pub v: Vec<f64>,
+    pub states: States,
     pub work: Vec<Work>,
 }
 
 impl Samples {
-    fn push(&mut self, t: f64, state: &State) {
-        self.dim = state.x.len();
-        self.t.push(t);
-        self.x.extend_from_slice(&state.x);
-        self.v.extend_from_slice(&state.v);
+    fn push(&mut self, state: &State) {
+        self.t.push(state.t);
+        self.states.dim = state.x.len();
+        self.states.push(&state.x, &state.v);
         self.work.push(state.work);
     }
 
     /// Every other instant, beginning with the first.
     fn halve(&mut self) {
-        let dim = self.dim;
-        let kept = (0..self.t.len()).step_by(2);
-        for (to, from) in kept.enumerate() {
+        let dim = self.states.dim;
+        let left = self.t.len().div_ceil(2);
+        for to in 0..left {
+            let from = 2 * to;
             self.t[to] = self.t[from];
             self.work[to] = self.work[from];
-            self.x.copy_within(from * dim..(from + 1) * dim, to * dim);
-            self.v.copy_within(from * dim..(from + 1) * dim, to * dim);
+            for values in [&mut self.states.x, &mut self.states.v] {
+                values.copy_within(from * dim..(from + 1) * dim, to * dim);
+            }
         }
-        let left = self.t.len().div_ceil(2);
         self.t.truncate(left);
         self.work.truncate(left);
-        self.x.truncate(left * dim);
-        self.v.truncate(left * dim);
-    }
-
-    pub fn x(&self, k: usize) -> &[f64] {
-        &self.x[k * self.dim..(k + 1) * self.dim]
-    }
-
-    pub fn v(&self, k: usize) -> &[f64] {
-        &self.v[k * self.dim..(k + 1) * self.dim]
+        self.states.x.truncate(left * dim);
+        self.states.v.truncate(left * dim);
     }
 }
 
@@ -92,13 +83,13 @@ impl Observer for Sampler {
             self.stride *= 2;
         }
         if self.last.is_some() || step.is_multiple_of(self.stride) {
-            self.samples.push(state.t, state);
+            self.samples.push(state);
         }
     }
 
     fn observe_end(&mut self, _step: u64, state: &State) {
         if self.samples.t.last() != Some(&state.t) {
-            self.samples.push(state.t, state);
+            self.samples.push(state);
         }
     }
 }

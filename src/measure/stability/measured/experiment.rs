@@ -1,9 +1,9 @@
-//! What a probe needs: the scene, what solves it, how it is perturbed and what is watched.
+//! A scene and what solves it, ready to be probed: how it is perturbed, what is watched, what is known.
 
 use super::Make;
-use super::perturbation::Perturbation;
-use super::probe::{Budget, Probed, Watch, probe};
-use super::watched::{DifferenceEnergy, ExcessEnergy, Quadratic, Runs};
+use super::perturbation::{Perturbation, Quadratic};
+use super::probe::{Budget, Probed, Runs, Watch, probe};
+use super::watched::{DifferenceEnergy, ExcessEnergy};
 use crate::measure::energy_scale;
 use crate::measure::stability::Limit;
 use crate::physics::ParticleSystem;
@@ -35,7 +35,7 @@ const ROUNDS: usize = 6;
 const TRACE: f64 = 1e-6;
 
 /// One scene and one solver.
-pub(super) struct Setup<'a> {
+pub(super) struct Experiment<'a> {
     pub scene: &'a Scene,
     pub system: &'a ParticleSystem,
     make: &'a Make<'a>,
@@ -46,7 +46,11 @@ pub(super) struct Setup<'a> {
     scale: f64,
     /// Steps of a full probe.
     pub steps: u64,
+    /// The shortest time scale, s.
+    pub unit: f64,
     pub budget: Budget<'a>,
+    /// The step found stable and the one found unstable, s, that a spent budget leaves behind.
+    pub known: (Option<f64>, Option<f64>),
 }
 
 /// A limit, and in words how the first failing step fails, or how far was looked.
@@ -58,7 +62,7 @@ pub(super) enum Stop {
     Found(Found),
     Unsupported(Unsupported),
     /// The budget is spent.
-    Impatient,
+    Spent,
 }
 
 impl From<Unsupported> for Stop {
@@ -67,20 +71,20 @@ impl From<Unsupported> for Stop {
     }
 }
 
-impl<'a> Setup<'a> {
-    /// `h`: a step well inside every limit, s. `patience` is in steps of the whole search; `tick` is called
-    /// with steps taken.
+impl<'a> Experiment<'a> {
+    /// `unit`: the shortest time scale, s. `patience` is in steps of the whole search; `tick` is called with
+    /// steps taken.
     pub fn new(
         scene: &'a Scene,
         system: &'a ParticleSystem,
         make: &'a Make<'a>,
-        h: f64,
+        unit: f64,
         patience: u64,
         tick: &'a (dyn Fn(u64) + Sync),
     ) -> Result<Self, Unsupported> {
         let mut quadratic = Quadratic::new(system);
-        let large = Perturbation::large(scene, system, &mut |dx| quadratic.potential(dx));
-        let linear = linear(scene, make, &large, h)?;
+        let large = Perturbation::large(scene, system, &mut quadratic);
+        let linear = linear(scene, make, &large, 0.5 * unit)?;
         let scale = energy_scale(scene, system, None).unwrap_or(1.0);
         let scale = scale.max(SEEN * rounding(scene));
         Ok(Self {
@@ -96,7 +100,9 @@ impl<'a> Setup<'a> {
             scale,
             // Two runs a probe where the map is linear.
             steps: (patience / PROBES / if linear { 2 } else { 1 }).clamp(FEWEST, STEPS),
+            unit,
             budget: Budget::new(patience, tick),
+            known: (None, None),
         })
     }
 
@@ -132,7 +138,7 @@ impl<'a> Setup<'a> {
             let mut gauge = ExcessEnergy::new(&runs, system, &scene, self.scale, LOST, never);
             probe(&mut runs, &mut gauge, watch, &mut self.budget)
         };
-        probed.ok_or(Stop::Impatient)
+        probed.ok_or(Stop::Spent)
     }
 
     /// Two runs of a linear map.
@@ -147,9 +153,9 @@ impl<'a> Setup<'a> {
     }
 
     /// ln(amplitude) per second at `h`, once what grows fastest has outgrown the rest: that is
-    /// brought about beforehand at `coarse`, where growth is steep. None where the map is not linear:
+    /// brought about beforehand at the shortest time scale, where growth is steep. None where the map is not linear:
     /// what grows there changes its rate.
-    pub fn growth(&mut self, h: f64, coarse: f64) -> Option<f64> {
+    pub fn growth(&mut self, h: f64) -> Option<f64> {
         let mut quadratic = self.quadratic.clone()?;
         let wanted = quadratic.energy(&self.perturbation);
         let mut shape = self.perturbation.clone();
@@ -159,7 +165,7 @@ impl<'a> Setup<'a> {
             clear: CLEAR_LINEAR,
         };
         for _ in 0..ROUNDS {
-            let mut runs = self.pair(coarse, &shape).ok()?;
+            let mut runs = self.pair(self.unit, &shape).ok()?;
             let probed = self.watch_pair(&mut runs, watch);
             let grown = runs.difference(1);
             let energy = quadratic.energy(&grown);
@@ -189,7 +195,7 @@ fn rounding(scene: &Scene) -> f64 {
     f64::EPSILON * gravity * heights.sum::<f64>()
 }
 
-/// Whether twice the perturbation makes twice the difference, to rounding. What the scene is made of
+/// Whether at `h`, a step well inside every limit, twice the perturbation makes twice the difference, to rounding. What the scene is made of
 /// does not tell: some methods are not linear where the forces are.
 fn linear(scene: &Scene, make: &Make, by: &Perturbation, h: f64) -> Result<bool, Unsupported> {
     let starts = [scene, &by.apply(scene), &by.scaled(2.0).apply(scene)];

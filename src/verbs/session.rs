@@ -5,7 +5,7 @@ use crate::trajectory::SaveError;
 use crate::truth::{NoStore, Store};
 
 /// What a run needs from the outside: files to save to, somebody to show progress.
-pub trait Host: Sync {
+pub trait Session: Sync {
     /// Where every step of this case goes; None if nowhere.
     ///
     /// # Errors
@@ -30,11 +30,11 @@ pub trait Saver: Observer {
     fn finish(self: Box<Self>) -> Result<(), SaveError>;
 }
 
-/// A host that saves nothing and shows nothing.
+/// A session that saves nothing and shows nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Quiet;
 
-impl Host for Quiet {
+impl Session for Quiet {
     fn saver(&self, _case: &Label) -> Result<Option<Box<dyn Saver>>, SaveError> {
         Ok(None)
     }

@@ -1,23 +1,35 @@
-//! The order each integrator shows on the scene.
+//! The checks of a plan beside its runs: the twin proof, and the order each integrator shows on the scene.
 
-use super::plan::{Orders, Plan};
+use super::plan::{Case, Orders, Plan};
 use crate::integrators::Method;
 use crate::measure::order::{Study, check};
+use crate::measure::twin;
 use crate::measure::{Check, CheckStatus};
 use crate::physics::System;
+use crate::solvers::Kind;
 use crate::truth::Truth;
 use rayon::prelude::*;
+
+/// That rapier's world and ours are the same scene, by a few steps of it; nothing unless it is asked for, and
+/// where nothing is computed here.
+pub fn proofs(plan: &Plan) -> Vec<Check> {
+    let computed = |case: &Case| case.solver.kind != Kind::External;
+    if !plan.choice.prove || !plan.cases.iter().any(computed) {
+        return Vec::new();
+    }
+    twin::prove(plan.scene, plan.scene.solver.timestep)
+}
 
 /// Steps times coordinates of the scene's own run up to which orders are measured unasked: measuring
 /// costs about two such runs.
 const UNASKED: u64 = 500_000;
-/// Of such runs, for one method.
+/// The budget of one method, in runs of the scene.
 const RUNS: u64 = 4;
-/// At most so much where the scene's own run is short.
+/// The budget of one method is not below this, in steps times coordinates.
 const LEAST: u64 = 1_000_000;
 
 /// A check for each integrator; one that says why there are none; nothing without a truth.
-pub fn checks(plan: &Plan, truth: &Truth) -> Vec<Check> {
+pub fn orders(plan: &Plan, truth: &Truth) -> Vec<Check> {
     let (Some(motion), scene) = (truth.motion(), plan.scene) else {
         return Vec::new();
     };
@@ -29,10 +41,10 @@ pub fn checks(plan: &Plan, truth: &Truth) -> Vec<Check> {
     }
     let steps = scene.steps(scene.solver.timestep);
     let cost = steps.saturating_mul(plan.system.dim() as u64);
-    if methods.is_empty() || plan.order == Orders::Never {
+    if methods.is_empty() || plan.choice.order == Orders::Never {
         return Vec::new();
     }
-    if cost > UNASKED && plan.order != Orders::Always {
+    if cost > UNASKED && plan.choice.order != Orders::Always {
         return vec![skipped()];
     }
     let until = truth.horizon.min(scene.duration);

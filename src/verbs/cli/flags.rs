@@ -1,7 +1,32 @@
-//! A length of time as flags state it.
+//! What flags of several verbs mean: the scene with its duration, `--truth`, lengths of time.
 
+use crate::scene::{self, Scene};
+use crate::truth::Demand;
+use crate::verbs;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
+
+/// The scene of a file, with another duration, s, where a flag states one.
+///
+/// # Errors
+/// Where the file is no scene. Whether the duration fits a timestep is
+/// [`check_times`](scene::check_times)'s to say.
+pub fn scene(path: &Path, duration: Option<f64>) -> anyhow::Result<Scene> {
+    let mut scene = scene::read(path, verbs::names())?;
+    scene.duration = duration.unwrap_or(scene.duration);
+    Ok(scene)
+}
+
+/// What `--truth` takes.
+pub fn demand() -> impl TypedValueParser<Value = Demand> {
+    PossibleValuesParser::new(["auto", "closed", "none"]).map(|kind| match kind.as_str() {
+        "closed" => Demand::Closed,
+        "none" => Demand::None,
+        _ => Demand::Auto,
+    })
+}
 
 /// `60s`, `2m`, `1.5h`, `500ms`, or seconds without a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]

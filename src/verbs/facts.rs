@@ -1,0 +1,105 @@
+//! What the reports of all verbs state of a scene and its truth, and what their runs share: the energy scale,
+//! and when a run counts as diverged.
+
+use crate::measure::{self, Check, CheckStatus};
+use crate::physics::effects::Effect;
+use crate::physics::{ParticleSystem, System};
+use crate::report::{EffectUse, SceneFacts, TruthFacts};
+use crate::scene::Scene;
+use crate::solvers::Limits;
+use crate::truth::{Truth, TruthKind};
+use std::time::{Duration, Instant};
+
+/// The scale S of energy errors, J, with the largest kinetic energy of the truth up to its horizon.
+pub fn energy_scale(scene: &Scene, system: &ParticleSystem, truth: &Truth) -> Option<f64> {
+    let peak = truth.motion().map(|motion| {
+        let times = motion.landmarks(truth.horizon);
+        let states = motion.states(&times);
+        let kinetic = (0..times.len()).map(|k| system.kinetic(states.v(k)));
+        kinetic.fold(0.0, f64::max)
+    });
+    measure::energy_scale(scene, system, peak.filter(|peak| peak.is_finite()))
+}
+
+/// When a run of this scene counts as diverged, which must not depend on whether a truth was asked for.
+pub fn limits(scene: &Scene, system: &ParticleSystem) -> Limits {
+    let scale = measure::energy_scale(scene, system, None);
+    Limits::new(system.clone(), measure::divergence_limit(scene, scale))
+}
+
+/// What the file says, its energy scale, and each effect in force with its evaluations by hand-written
+/// integrators: so many of all forces, so many of damping alone.
+pub fn scene(
+    scene: &Scene,
+    system: &ParticleSystem,
+    [forces, damping]: [u64; 2],
+    scale: Option<f64>,
+) -> SceneFacts {
+    let start = ParticleSystem::initial_state(scene);
+    let effects = system.effects().iter().map(|(row, effect)| {
+        let damps = effect.kinds().depends_on_velocity();
+        EffectUse {
+            id: row.id.to_owned(),
+            members: effect.members(),
+            evaluations: forces + if damps { damping } else { 0 },
+            wall_ns: Some(wall_ns(effect.as_ref(), &start.x, &start.v)),
+        }
+    });
+    SceneFacts {
+        name: scene.name.clone(),
+        file: scene.file.clone(),
+        particles: scene.particles.len(),
+        springs: scene.springs.len(),
+        effects: effects.collect(),
+        timestep: scene.solver.timestep,
+        duration: scene.duration,
+        energy_scale_j: scale,
+        description: scene.description.clone(),
+        own_integrator: scene.solver.method.clone(),
+    }
+}
+
+/// Nanoseconds of one evaluation: the least of three batches.
+fn wall_ns(effect: &dyn Effect, x: &[f64], v: &[f64]) -> f64 {
+    let mut f = vec![0.0; x.len()];
+    let batch = |f: &mut [f64]| {
+        let start = Instant::now();
+        let mut calls = 0;
+        while start.elapsed() < Duration::from_micros(100) {
+            for _ in 0..16 {
+                std::hint::black_box(effect.add_force(0.0, x, v, std::hint::black_box(f)));
+            }
+            calls += 16;
+        }
+        start.elapsed().as_secs_f64() * 1e9 / f64::from(calls)
+    };
+    (0..3).map(|_| batch(&mut f)).fold(f64::INFINITY, f64::min)
+}
+
+/// A truth as reports state it.
+pub fn truth(truth: &Truth) -> TruthFacts {
+    let there = truth.kind != TruthKind::None;
+    TruthFacts {
+        kind: truth.kind,
+        method: truth.method.clone(),
+        error_bound_m: there.then_some(truth.error_bound),
+        horizon_s: there.then_some(truth.horizon),
+        reason: Some(truth.reason.clone()),
+    }
+}
+
+/// Says why errors have no relative size in a scene without an energy scale.
+pub fn no_scale(scale: Option<f64>) -> Option<Check> {
+    scale.is_none().then(|| Check {
+        id: "energy-scale".to_owned(),
+        subject: "scene".to_owned(),
+        status: CheckStatus::Skip,
+        measured: None,
+        bound: None,
+        derivation: "S = K(0) + U_elastic(0), else the sum of m |g| L".to_owned(),
+        message:
+            "everything starts at rest with its springs unstretched, and weight or size is 0: \
+                  energy errors have no relative size here"
+                .to_owned(),
+    })
+}
