@@ -6,8 +6,8 @@
 //! Φ(u) = ½ (u - b)ᵀ M (u - b) + U(y + γ u) - W(γ u) - ½ γ uᵀ D u, whose gradient is minus the
 //! residual. W is the work of forces without a potential and D(x) the damping, both taken where the search
 //! begins. Without dampers and driven forces Φ is the same in every iteration, so it never rises. With axial
-//! dampers D turns with x and no Φ exists, so a halved residual is accepted as well. (Armijo's rule; where rounding hides the decrease of Φ its slope decides, as in
-//! Hager & Zhang 2005, SIAM J. Optim. 16.)
+//! dampers D turns with x and no Φ exists, so a halved residual is accepted as well. (Armijo's rule; where
+//! rounding hides the decrease of Φ its slope decides, as in Hager & Zhang 2005, SIAM J. Optim. 16.)
 
 use super::{Newton, fit, worst_particle};
 use crate::physics::{Derivative, ForceKinds, Jacobian, Power, System};

@@ -1,4 +1,4 @@
-//! What only shows from inside: descent, the three linear solvers, and the choice between them.
+//! Tests of private parts: descent, the three linear algorithms, and the choice between them.
 
 use super::solver::Algorithm;
 use super::*;
@@ -32,7 +32,7 @@ fn spring(ends: [usize; 2], stiffness: f64, rest_length: f64) -> Spring {
     }
 }
 
-/// A chain of three links of length 1 that want to be `rest`, hung from a fixed end, a little bent.
+/// A chain of three links of length 1 and rest length `rest`, hung from a fixed end, slightly bent.
 fn chain(rest: f64, stiffness: f64) -> Scene {
     let bent = [0.0, 4e-4, -7e-4, 2e-4];
     let particles = (0..4).map(|i| particle([i as f64, bent[i], -0.5 * bent[i]], i == 0, 1.0));
@@ -62,7 +62,7 @@ fn cloth(n: usize, stiffness: f64, mass: f64) -> Scene {
     scene(particles.collect(), springs)
 }
 
-/// An implicit Euler step's equation from the scene's start.
+/// Calls `act` with the equation of an implicit Euler step from the scene's start.
 fn with_stage<T>(scene: &Scene, h: f64, act: impl FnOnce(&StageEquation, &State) -> T) -> T {
     let system = ParticleSystem::new(scene);
     let start = ParticleSystem::initial_state(scene);
@@ -87,13 +87,13 @@ fn incremental_potential(stage: &StageEquation, at: &Trial) -> f64 {
     0.5 * twice + stage.system.potential(stage.t, &at.x)
 }
 
-/// How the iteration may be spoiled.
+/// The rule of the iteration, right or spoiled.
 #[derive(Clone, Copy, PartialEq)]
 enum Rule {
     Ours,
-    /// Every step in full.
+    /// Every step is a full step.
     NoSearch,
-    /// Along Newton's direction even where the matrix is indefinite.
+    /// Newton's direction is taken even where the matrix is indefinite.
     NotRegularised,
 }
 
@@ -149,7 +149,7 @@ fn descent_law(scene: &Scene, h: f64, rule: Rule) -> Result<(), String> {
     let seen = descent(scene, h, rule)?;
     let size = seen.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
     for (at, pair) in seen.windows(2).enumerate() {
-        // What rounding hides of the last, tiny steps: the energies are sums of a dozen numbers.
+        // The energies are sums of a dozen numbers, whose rounding exceeds the change of the last steps.
         if pair[1] - pair[0] > 16.0 * f64::EPSILON * size || pair[1].is_nan() {
             return Err(format!(
                 "rises from {} to {} in step {at}",
@@ -179,8 +179,8 @@ fn the_incremental_potential_never_rises() {
             }
         }
     }
-    // Links compressed to a tenth, h = 1/60: full steps overshoot, and Newton's own direction is not
-    // one of descent.
+    // Links compressed to a tenth, h = 1/60: full steps overshoot, and Newton's own direction does not
+    // descend.
     let named = (10.0, 1e3, 1.0 / 60.0);
     for at in 0..rules.len() {
         assert!(
@@ -190,7 +190,7 @@ fn the_incremental_potential_never_rises() {
     }
 }
 
-/// One solve of the equation with a given linear solver: the velocities, and the iterations.
+/// The velocities and iterations of a solve of the equation with a given linear algorithm.
 fn solved_by(scene: &Scene, h: f64, kind: Option<Algorithm>) -> Result<(Vec<f64>, u64), StepError> {
     with_stage(scene, h, |stage, start| {
         let mut newton = Newton::new(1e-12);
@@ -272,30 +272,32 @@ fn the_solver_follows_size_and_stiffness() {
     assert_eq!(kind(60, 1e8), Algorithm::Sparse);
 }
 
-/// Conjugate gradients keep their promise: |r - A z| <= tolerance |r|.
-fn promise(asked: f64, kept: f64) -> bool {
+/// Whether conjugate gradients that solve to `tolerance` reach `bound`: |r - A z| <= bound |r|.
+fn reaches(tolerance: f64, bound: f64) -> bool {
     let (matrix, inverse_mass) = matrix_of(12, 1e4);
     let right: Vec<f64> = (0..matrix.size()).map(|i| (i as f64).sin()).collect();
     let mut z = right.clone();
     let mut solver = LinearSolver::default();
     solver.forced = Some(Algorithm::Conjugate);
-    solver.solve(&matrix, &inverse_mass, asked, &mut z).unwrap();
+    solver
+        .solve(&matrix, &inverse_mass, tolerance, &mut z)
+        .unwrap();
     let mut left = vec![0.0; z.len()];
     matrix.product(&z, &mut left);
     let squares = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
     for (left, right) in left.iter_mut().zip(&right) {
         *left -= right;
     }
-    squares(&left) <= kept * kept * squares(&right)
+    squares(&left) <= bound * bound * squares(&right)
 }
 
 #[test]
 fn conjugate_gradients_keep_their_tolerance() {
     for tolerance in [1e-3, 1e-6, 1e-10] {
-        // The residual they keep is updated, not computed: equal to a rounding of 1e-14.
-        assert!(promise(tolerance, 1.001 * tolerance));
-        // Ten times looser is not enough.
-        assert!(!promise(10.0 * tolerance, tolerance));
+        // Their residual is updated, not computed, and so has a rounding error of 1e-14.
+        assert!(reaches(tolerance, 1.001 * tolerance));
+        // A tolerance ten times looser is not enough.
+        assert!(!reaches(10.0 * tolerance, tolerance));
     }
 }
 
