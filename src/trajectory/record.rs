@@ -270,12 +270,12 @@ mod tests {
         State::new(rows.x(k).to_vec(), rows.x(k).to_vec())
     }
 
-    fn recalled(rows: &Rows, last: u64) -> Trajectory {
+    fn from_rows(rows: &Rows, last: u64) -> Trajectory {
         Trajectory::of_rows(rows, &vec![Work::default(); rows.len()], last, false)
     }
 
     #[test]
-    fn every_step_given_is_recorded_as_a_running_engine_would_be() {
+    fn every_step_given_is_recorded_as_a_running_solver_would_be() {
         for last in [1, 2, 1998, 1999, 2000, 2001, 3998, 3999, 10_007] {
             let rows = rows(0..=last);
             let mut recorder = Recorder::new(last, 3, 0.5);
@@ -286,18 +286,18 @@ mod tests {
                     due = recorder.next(k as u64 + 1);
                 }
             }
-            assert_eq!(recalled(&rows, last), recorder.finish(), "{last}");
+            assert_eq!(from_rows(&rows, last), recorder.finish(), "{last}");
         }
     }
 
     #[test]
     fn sparse_rows_are_all_kept_until_there_are_too_many() {
         // A run of 10,000 steps has its instants every 6 steps.
-        let tenth = recalled(&rows((0..=10_000).step_by(10)), 10_000);
+        let tenth = from_rows(&rows((0..=10_000).step_by(10)), 10_000);
         assert_eq!(tenth.len(), 1_001);
         assert_eq!(tenth.following(3), None);
         // Every 5th of a million: 200,001 rows, of which few are on the multiples of 501.
-        let many = recalled(&rows((0..=1_000_000).step_by(5)), 1_000_000);
+        let many = from_rows(&rows((0..=1_000_000).step_by(5)), 1_000_000);
         assert!((1_000..=2_000).contains(&many.len()), "{}", many.len());
         assert_eq!(many.step(many.len() - 1), 1_000_000);
         for k in 0..many.len() {

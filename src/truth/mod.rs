@@ -167,10 +167,10 @@ pub fn find(
     match converged::find(scene, system, until, store) {
         Ok(found) => Truth {
             kind: TruthKind::Converged,
-            method: Some(found.known.method),
-            reason: found.known.reason,
-            horizon: found.known.horizon,
-            error_bound: found.known.error_bound,
+            method: Some(found.facts.method),
+            reason: found.facts.reason,
+            horizon: found.facts.horizon,
+            error_bound: found.facts.error_bound,
             motion: Some(Box::new(found.motion)),
         },
         Err(not) => Truth::none(not.to_string()),

@@ -9,7 +9,7 @@ mod run;
 mod tests;
 
 pub use observed::{Observed, Point, RATIOS, Reason, TOLERANCE, Verdict, observed};
-pub use run::Build;
+pub use run::MakeIntegrator;
 
 use crate::integrators::{self, Method, Settings};
 use crate::measure::{Check, CheckStatus};
@@ -17,7 +17,7 @@ use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
 use crate::truth::Motion;
 use rayon::prelude::*;
-use run::{Grid, Problem};
+use run::{Grid, TestProblem};
 
 /// What a study may cost by default, in steps times coordinates: a fraction of a second for explicit
 /// methods.
@@ -47,7 +47,7 @@ const GRIDS: [(u64, u64); 2] = [(64, 511), (1024, 127)];
 /// above order 4. The error of each is the largest distance of any particle from the truth over the
 /// same M instants, the steps of the coarsest level, so that two errors differ by the step alone.
 pub struct Study<'a> {
-    problem: Problem<'a>,
+    problem: TestProblem<'a>,
     /// Steps at the scene's own timestep.
     own: u64,
     budget: u64,
@@ -58,7 +58,7 @@ pub struct Study<'a> {
 
 /// What a study found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+pub struct MeasuredOrder {
     pub observed: Observed,
     /// The levels that gave an error, coarse to fine.
     pub points: Vec<Point>,
@@ -84,7 +84,7 @@ impl<'a> Study<'a> {
         let own = (until / timestep).ceil();
         let own = if own >= 1.0 { own as u64 } else { 0 };
         let run = own.saturating_mul(system.dim() as u64);
-        let problem = Problem {
+        let problem = TestProblem {
             system,
             start,
             motion,
@@ -92,7 +92,7 @@ impl<'a> Study<'a> {
         };
         // Both now, not when first asked for: the truth is computed in parallel, and a thread that waits for
         // it inside its own computation would wait for ever.
-        let grids = GRIDS.map(|(share, most)| Grid::new(&problem, own / share, most));
+        let grids = GRIDS.map(|(part, most)| Grid::new(&problem, own / part, most));
         Self {
             problem,
             own,
@@ -129,7 +129,7 @@ impl<'a> Study<'a> {
     }
 
     /// Measures a method of the registry against its row: `order_damped` where there is damping.
-    pub fn method(&self, method: &Method) -> Measured {
+    pub fn method(&self, method: &Method) -> MeasuredOrder {
         let damped = self.problem.system.kinds().depends_on_velocity();
         let stated = if damped {
             method.order_damped
@@ -154,7 +154,7 @@ impl<'a> Study<'a> {
     ///
     /// A method that does not converge at all and stays farther off than that is thus not told from
     /// steps too coarse.
-    pub fn measure(&self, stated: u32, build: Build) -> Measured {
+    pub fn measure(&self, stated: u32, build: MakeIntegrator) -> MeasuredOrder {
         let grid = self.grid(stated);
         let mut levels = multiples(stated)
             .take_while(|_| grid.instants > 0)
@@ -198,7 +198,7 @@ impl<'a> Study<'a> {
                         },
                         None => seen,
                     };
-                    return Measured {
+                    return MeasuredOrder {
                         observed,
                         points: runs.points,
                         left_out: runs.left_out,
@@ -225,14 +225,14 @@ fn multiples(stated: u32) -> impl Iterator<Item = u64> {
 
 /// The runs of one method.
 struct Runs<'a> {
-    problem: &'a Problem<'a>,
+    problem: &'a TestProblem<'a>,
     grid: &'a Grid,
-    build: Build<'a>,
+    build: MakeIntegrator<'a>,
     /// Of the budget.
     left: u64,
     points: Vec<Point>,
     left_out: Vec<(f64, String)>,
-    /// See [`Problem::amplification`].
+    /// See [`TestProblem::amplification`].
     amplification: Option<f64>,
     /// Levels the control has run, and its errors; None where it gave none.
     controls: Vec<(u64, Option<f64>)>,
@@ -324,7 +324,7 @@ impl Runs<'_> {
 }
 
 /// The check `order` of this method: passes at the stated order minus [`TOLERANCE`] or above.
-pub fn check(subject: &str, measured: &Measured) -> Check {
+pub fn check(subject: &str, measured: &MeasuredOrder) -> Check {
     let seen = &measured.observed;
     let stated = seen.stated;
     let range = match seen.used.as_slice() {

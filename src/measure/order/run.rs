@@ -6,7 +6,7 @@ use crate::solvers::advance;
 use crate::truth::{Motion, States, farthest};
 
 /// Makes a fresh integrator for each run.
-pub type Build<'a> = &'a (dyn Fn() -> Box<dyn Integrator> + Sync);
+pub type MakeIntegrator<'a> = &'a (dyn Fn() -> Box<dyn Integrator> + Sync);
 
 /// An error so many times the way the motion goes: the run has diverged (its energy is beyond 1e12
 /// times the motion's).
@@ -19,7 +19,7 @@ const MEMORY: u64 = 1 << 22;
 const DISTURBANCE: f64 = 1e-7;
 
 /// What is run: a system from a start, whose truth is known up to a time.
-pub(super) struct Problem<'a> {
+pub(super) struct TestProblem<'a> {
     pub system: &'a (dyn System + Sync),
     pub start: State,
     pub motion: &'a dyn Motion,
@@ -42,7 +42,7 @@ pub(super) struct Grid {
 
 impl Grid {
     /// At about `wanted` instants, at most `most`.
-    pub fn new(problem: &Problem, wanted: u64, most: u64) -> Self {
+    pub fn new(problem: &TestProblem, wanted: u64, most: u64) -> Self {
         let dim = problem.system.dim();
         let room = (MEMORY / (dim.max(1) as u64)).min(most).max(FEWEST);
         let instants = (wanted.clamp(FEWEST, room) - 1) | 1;
@@ -78,14 +78,14 @@ impl Grid {
 }
 
 /// What a run left.
-pub(super) struct Run {
+pub(super) struct LevelRun {
     /// Largest distance of any particle from the truth at any instant, m.
     pub error: f64,
     /// Positions at the instants.
     x: Vec<f64>,
 }
 
-impl Problem<'_> {
+impl TestProblem<'_> {
     /// Runs `m` steps from instant to instant, from the start or from one disturbed.
     ///
     /// # Errors
@@ -94,13 +94,13 @@ impl Problem<'_> {
         &self,
         grid: &Grid,
         m: u64,
-        build: Build,
+        build: MakeIntegrator,
         disturbed: Option<State>,
-    ) -> Result<Run, String> {
+    ) -> Result<LevelRun, String> {
         let h = grid.step(m);
         let mut integrator = build();
         let mut state = disturbed.unwrap_or_else(|| self.start.clone());
-        let mut run = Run {
+        let mut run = LevelRun {
             error: 0.0,
             x: Vec::new(),
         };
@@ -124,7 +124,13 @@ impl Problem<'_> {
 
     /// How far apart, m, a relative disturbance of the start as large as 1 would carry this run: what
     /// a rounding, which is a disturbance of eps, grows to. None where it cannot be told.
-    pub fn amplification(&self, grid: &Grid, m: u64, build: Build, run: &Run) -> Option<f64> {
+    pub fn amplification(
+        &self,
+        grid: &Grid,
+        m: u64,
+        build: MakeIntegrator,
+        run: &LevelRun,
+    ) -> Option<f64> {
         let each = self.system.dim().max(1);
         // The largest magnitude each coordinate reaches.
         let [x, v] = [&grid.truth.x, &grid.truth.v].map(|values| {

@@ -4,8 +4,10 @@
 mod measured;
 mod predicted;
 
-pub use measured::{Cell, Make, Measured, classify, measure};
-pub use predicted::{Along, Effort, Linearised, Prediction, TightestLimit, is_linear};
+pub use measured::{Cell, MakeRun, MeasuredLimit, classify, measure};
+pub use predicted::{
+    Effort, Linearised, LinearisedTrajectory, Prediction, TightestLimit, is_linear,
+};
 
 /// The largest step that is stable, with all smaller ones.
 #[derive(Debug, Clone, PartialEq)]

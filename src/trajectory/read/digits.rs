@@ -135,13 +135,13 @@ impl Sample {
             return own;
         }
         let (longest, decimals) = (self.longest(), self.decimals());
-        let share = |same: &dyn Fn(&Shortest) -> bool| {
+        let fraction = |same: &dyn Fn(&Shortest) -> bool| {
             let count = self.shortest.iter().filter(|s| same(s)).count();
             count as f64 / self.shortest.len() as f64
         };
         // A last digit is 0, and not written, one time in ten.
-        let to_decimals = share(&|s| s.decimals() == decimals);
-        let to_digits = share(&|s| s.digits == longest);
+        let to_decimals = fraction(&|s| s.decimals() == decimals);
+        let to_digits = fraction(&|s| s.digits == longest);
         let by_decimals = Precision::Decimals(decimals);
         if longest < full {
             return match to_decimals >= to_digits {

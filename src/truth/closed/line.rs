@@ -17,7 +17,7 @@ pub(super) struct Line {
     /// Motion across the line, common to all particles.
     pub drift: Drift,
     /// What the file's rounding leaves across the line.
-    pub off: Off,
+    pub offset: Offset,
 }
 
 /// A mode without stiffness in every direction, from 0 at this velocity.
@@ -36,13 +36,13 @@ impl Drift {
 
 /// The largest position (m), velocity and acceleration across the line.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Off {
+pub(super) struct Offset {
     pub position: f64,
     pub velocity: f64,
     pub pull: f64,
 }
 
-impl Off {
+impl Offset {
     /// Every particle is on the line to the last bit.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
@@ -80,7 +80,7 @@ impl Line {
                 pull,
                 ..Drift::default()
             },
-            off: Off {
+            offset: Offset {
                 position,
                 velocity: off_velocity,
                 pull: off_pull,
@@ -95,7 +95,7 @@ impl Line {
             }
             line.drift.mode.g = 0.5 * high;
             let gained = norm(pull) * group.until.min(1.0 / high);
-            line.off.pull += (high - low) * (norm(velocity) + gained);
+            line.offset.pull += (high - low) * (norm(velocity) + gained);
         }
         Some(line)
     }
@@ -140,7 +140,7 @@ fn common(
 /// |y'|² + c |y|² grows no faster than at twice max(high - c, c - low) / 2 √c.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sideways {
-    off: Off,
+    offset: Offset,
     /// Largest over smallest mass norm of a unit offset.
     spread: f64,
     /// Bounds on the stiffness across the line over the mass, 1/s².
@@ -151,7 +151,7 @@ pub(super) struct Sideways {
 impl Sideways {
     /// None where a damper without a shortest length makes the stiffness unbounded. `lengths` are of the
     /// springs with a rest length, in order.
-    pub fn new(group: &Group, off: Off, lengths: &[Bounds]) -> Option<Self> {
+    pub fn new(group: &Group, offset: Offset, lengths: &[Bounds]) -> Option<Self> {
         let masses = || group.bodies.iter().map(|b| b.mass);
         // Of each particle, by Gershgorin's rows.
         let (mut low, mut high) = (vec![0.0; masses().len()], vec![0.0; masses().len()]);
@@ -177,7 +177,7 @@ impl Sideways {
         }
         let lightest = masses().fold(f64::INFINITY, f64::min);
         Some(Self {
-            off,
+            offset,
             spread: (masses().sum::<f64>() / lightest).sqrt(),
             low: low.into_iter().fold(0.0, f64::min),
             high: high.into_iter().fold(0.0, f64::max),
@@ -186,13 +186,17 @@ impl Sideways {
 
     /// No particle is farther off the line in [0, t], m.
     pub fn bound(&self, t: f64) -> f64 {
-        let Self { low, high, off, .. } = *self;
+        let Self {
+            low, high, offset, ..
+        } = *self;
         if t == 0.0 {
-            return self.spread * off.position;
+            return self.spread * offset.position;
         }
         let c = (0.5 * (low + high)).max(-low).max(1.0 / (t * t));
         let rate = (high - c).max(c - low) / (2.0 * c.sqrt());
-        let start = off.position.hypot((off.velocity + off.pull * t) / c.sqrt());
+        let start = offset
+            .position
+            .hypot((offset.velocity + offset.pull * t) / c.sqrt());
         // Twice, for terms of second order in the offset.
         2.0 * self.spread * start * (rate * t).exp()
     }

@@ -27,7 +27,7 @@ struct Axis {
 
 /// x(t) = x(0) + axes times modes + drift.
 #[derive(Debug, Clone)]
-pub(super) struct Part {
+pub(super) struct GroupMotion {
     /// Scene ids of the free particles.
     particles: Vec<usize>,
     modes: Modes,
@@ -41,7 +41,7 @@ pub(super) struct Part {
     pub reason: String,
 }
 
-impl Part {
+impl GroupMotion {
     /// The group's motion, if it has a closed form.
     pub fn of(group: &Group) -> Option<Self> {
         if group.is_linear() {
@@ -104,8 +104,8 @@ impl Part {
         let mut part = Self::new(group, modes, vec![along], line.drift, Default::default());
         let closest = (CLOSEST * part.size).max(4.0 * part.error_bar(group.until));
         let lengths = bounds(&both, &lengths, group.until, closest)?;
-        if !line.off.is_none() {
-            let sideways = Sideways::new(group, line.off, &lengths)?;
+        if !line.offset.is_none() {
+            let sideways = Sideways::new(group, line.offset, &lengths)?;
             let stays = sideways.bound(group.until) <= ASIDE * part.size;
             if !stays {
                 return None;

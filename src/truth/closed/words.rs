@@ -17,7 +17,7 @@ pub(super) fn in_space(group: &Group, modes: &[Mode]) -> (String, String) {
         };
         return (method.to_owned(), reason.to_owned());
     }
-    let on_line = modes.len() == 1 && Line::of(group).is_some_and(|l| l.off.is_none());
+    let on_line = modes.len() == 1 && Line::of(group).is_some_and(|l| l.offset.is_none());
     let of = if group.links.len() == 1 {
         "whose rest length is 0"
     } else {

@@ -26,7 +26,7 @@ const SMOOTH: f64 = 4.0;
 
 /// Halvings of single steps may go on this many times without bringing the estimates closer: a
 /// collision has to be resolved first.
-const PATIENCE: u32 = 16;
+const MOST_IDLE: u32 = 16;
 
 /// The level to use, and how well it is known. Lists have an entry for each instant of the level's
 /// mesh and never fall.
@@ -40,12 +40,12 @@ pub(super) struct Halved {
     pub bars: Vec<f64>,
     /// Force evaluations times coordinates that were spent.
     pub spent: u64,
-    pub ended: Ended,
+    pub ended: StopReason,
 }
 
 /// Why no further halving was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Ended {
+pub(super) enum StopReason {
     /// The estimates agree.
     Agreed,
     /// Smaller steps no longer bring them closer.
@@ -94,7 +94,7 @@ pub(super) fn halve(
         let pieces = mesh.pieces() as u64;
         let cost = (per_piece + at_the_end).saturating_mul(pieces);
         if spent.saturating_add(cost) > budget {
-            break Ended::Spent;
+            break StopReason::Spent;
         }
         spent += per_piece * pieces;
         let level = Level::new(system, &start, mesh);
@@ -110,10 +110,10 @@ pub(super) fn halve(
             coarser = best.replace(level);
         }
         if agreed {
-            break Ended::Agreed;
+            break StopReason::Agreed;
         }
         if shrunk.is_some_and(|factor| progress.is_over(factor, all)) {
-            break Ended::Stalled;
+            break StopReason::Stalled;
         }
         all = next_all;
     };
@@ -169,7 +169,7 @@ impl Progress {
             return factor < WORTHWHILE || self.slow == 2;
         }
         self.idle += 1;
-        self.idle == PATIENCE
+        self.idle == MOST_IDLE
     }
 }
 

@@ -19,12 +19,12 @@ pub(super) struct Mesh {
 
 /// A part of an interval, in units of its length: exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Part {
+pub(super) struct MeshStep {
     pub offset: f64,
     pub length: f64,
 }
 
-impl Part {
+impl MeshStep {
     pub fn end(self) -> f64 {
         self.offset + self.length
     }
@@ -93,14 +93,14 @@ impl Mesh {
     }
 
     /// The steps through interval k, `each` equal ones, a power of two, through every piece.
-    pub fn steps(&self, k: usize, each: u32) -> impl Iterator<Item = Part> {
+    pub fn steps(&self, k: usize, each: u32) -> impl Iterator<Item = MeshStep> {
         let pieces = self.depths[self.range(k)].iter();
         let lengths = pieces.flat_map(move |depth| {
             let length = length(*depth) / f64::from(each);
             std::iter::repeat_n(length, each as usize)
         });
         lengths.scan(0.0, |offset, length| {
-            let part = Part {
+            let part = MeshStep {
                 offset: *offset,
                 length,
             };

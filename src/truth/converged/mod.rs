@@ -33,7 +33,7 @@ pub use stepper::{Precise, Stepper};
 use super::Store;
 use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use halving::{Ended, Halved, halve};
+use halving::{Halved, StopReason, halve};
 use reference::Record;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
@@ -50,13 +50,13 @@ pub const HORIZON: f64 = 1e-6;
 
 /// A converged reference and what is known of it.
 pub struct Converged {
-    pub known: Known,
+    pub facts: ReferenceFacts,
     pub motion: Reference,
 }
 
 /// What is known of a converged reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Known {
+pub struct ReferenceFacts {
     /// Both estimates and their steps.
     pub method: String,
     /// How well the estimates agree and what ends the horizon.
@@ -112,7 +112,7 @@ pub fn converge(
             "independent estimates of {} steps differ by more than {limit:.1e} m from the start; {}",
             thousands(level.steps()),
             match halved.ended {
-                Ended::Spent => TOO_MUCH,
+                StopReason::Spent => TOO_MUCH,
                 _ => "smaller steps do not bring them together",
             }
         )));
@@ -126,7 +126,7 @@ pub fn converge(
     if horizon < until {
         let _ = match (growth, halved.ended) {
             (Some(rate), _) => write!(reason, "; neighbours part at {rate:.2} /s"),
-            (None, Ended::Spent) => write!(reason, "; {TOO_MUCH}"),
+            (None, StopReason::Spent) => write!(reason, "; {TOO_MUCH}"),
             (None, _) => write!(
                 reason,
                 "; beyond it smaller steps do not bring them together"
@@ -134,7 +134,7 @@ pub fn converge(
         };
     }
     Ok(Converged {
-        known: Known {
+        facts: ReferenceFacts {
             method: format!(
                 "Dormand-Prince 8 with {} steps, against Gragg extrapolation of order {} with {}",
                 thousands(level.steps()),

@@ -4,7 +4,7 @@
 use super::dormand_prince::DormandPrince;
 use super::mesh::Mesh;
 use super::stepper::{Precise, Stepper};
-use super::{Converged, Known, NotConverged, VERSION};
+use super::{Converged, NotConverged, ReferenceFacts, VERSION};
 use crate::physics::System;
 use crate::truth::{Motion, States};
 use rayon::prelude::*;
@@ -139,14 +139,14 @@ impl Motion for Reference {
 }
 
 /// Version, key, and what was found: in postcard's format, followed by their SHA-256.
-type Kept = (u32, String, Result<(Known, Record), NotConverged>);
+type Kept = (u32, String, Result<(ReferenceFacts, Record), NotConverged>);
 
 /// Length of the checksum.
 const CHECKSUM: usize = 32;
 
 /// What was found under this key, or why nothing was. None if it cannot be written down.
 pub(super) fn encode(found: &Result<Converged, NotConverged>, key: &str) -> Option<Vec<u8>> {
-    let found = found.as_ref().map(|f| (&f.known, &f.motion.record));
+    let found = found.as_ref().map(|f| (&f.facts, &f.motion.record));
     let mut bytes = postcard::to_allocvec(&(VERSION, key, found)).ok()?;
     let checksum = Sha256::digest(&bytes);
     bytes.extend_from_slice(&checksum);
@@ -169,13 +169,13 @@ pub(super) fn decode(
     if version != VERSION || name != key || !rest.is_empty() {
         return None;
     }
-    let (known, record) = match found {
+    let (facts, record) = match found {
         Ok(found) => found,
         Err(not) => return Some(Err(not)),
     };
     record.fits(system.dim(), until).then(|| {
         let system = Arc::clone(system);
         let motion = Reference { system, record };
-        Ok(Converged { known, motion })
+        Ok(Converged { facts, motion })
     })
 }

@@ -1,6 +1,6 @@
 //! A scene and what solves it, ready to be probed: how it is perturbed, what is watched, what is known.
 
-use super::Make;
+use super::MakeRun;
 use super::perturbation::{Perturbation, Quadratic};
 use super::probe::{Budget, Probed, Runs, Watch, probe};
 use super::watched::{DifferenceEnergy, ExcessEnergy};
@@ -12,7 +12,7 @@ use crate::solvers::Unsupported;
 
 /// Times the energy scale at which a run is lost.
 const LOST: f64 = 1e4;
-/// Steps of a full probe, where patience allows.
+/// Steps of a full probe, where budget allows.
 pub(super) const STEPS: u64 = 20_000;
 /// Rise of ln(energy) that is growth: where the map is linear a trend is clean, ...
 const CLEAR_LINEAR: f64 = 1e-2;
@@ -38,7 +38,7 @@ const TRACE: f64 = 1e-6;
 pub(super) struct Experiment<'a> {
     pub scene: &'a Scene,
     pub system: &'a ParticleSystem,
-    make: &'a Make<'a>,
+    make: &'a MakeRun<'a>,
     /// Where differences of runs obey a linear map.
     quadratic: Option<Quadratic>,
     pub perturbation: Perturbation,
@@ -72,14 +72,14 @@ impl From<Unsupported> for Stop {
 }
 
 impl<'a> Experiment<'a> {
-    /// `unit`: the shortest time scale, s. `patience` is in steps of the whole search; `tick` is called with
+    /// `unit`: the shortest time scale, s. `budget` is in steps of the whole search; `tick` is called with
     /// steps taken.
     pub fn new(
         scene: &'a Scene,
         system: &'a ParticleSystem,
-        make: &'a Make<'a>,
+        make: &'a MakeRun<'a>,
         unit: f64,
-        patience: u64,
+        budget: u64,
         tick: &'a (dyn Fn(u64) + Sync),
     ) -> Result<Self, Unsupported> {
         let mut quadratic = Quadratic::new(system);
@@ -99,9 +99,9 @@ impl<'a> Experiment<'a> {
             },
             scale,
             // Two runs a probe where the map is linear.
-            steps: (patience / PROBES / if linear { 2 } else { 1 }).clamp(FEWEST, STEPS),
+            steps: (budget / PROBES / if linear { 2 } else { 1 }).clamp(FEWEST, STEPS),
             unit,
-            budget: Budget::new(patience, tick),
+            budget: Budget::new(budget, tick),
             known: (None, None),
         })
     }
@@ -197,7 +197,7 @@ fn rounding(scene: &Scene) -> f64 {
 
 /// Whether at `h`, a step well inside every limit, twice the perturbation makes twice the difference, to rounding. What the scene is made of
 /// does not tell: some methods are not linear where the forces are.
-fn linear(scene: &Scene, make: &Make, by: &Perturbation, h: f64) -> Result<bool, Unsupported> {
+fn linear(scene: &Scene, make: &MakeRun, by: &Perturbation, h: f64) -> Result<bool, Unsupported> {
     let starts = [scene, &by.apply(scene), &by.scaled(2.0).apply(scene)];
     let mut runs = Runs::new(make, h, &starts)?;
     if (0..LINEAR_STEPS).any(|_| runs.step().is_err()) {

@@ -14,7 +14,7 @@ use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
 use experiment::Experiment;
 use perturbation::Perturbation;
-use probe::{Budget, Fate, Runs, Watch, probe};
+use probe::{Budget, ProbeOutcome, Runs, Watch, probe};
 use serde::{Deserialize, Serialize};
 use watched::ExcessEnergy;
 
@@ -33,13 +33,13 @@ pub enum Cell {
 }
 
 /// Starts a run of a scene at a timestep, s, or says why there can be none.
-pub type Make<'a> = dyn Fn(&Scene, f64) -> Result<Run, Unsupported> + Sync + 'a;
+pub type MakeRun<'a> = dyn Fn(&Scene, f64) -> Result<Run, Unsupported> + Sync + 'a;
 
 /// What running found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+pub struct MeasuredLimit {
     /// The largest step found stable, to 1e-3, below the first that was not; `Between` those found so
-    /// far where patience ended.
+    /// far where budget ended.
     pub limit: Limit,
     /// The engine's own map is linear (twice the perturbation, twice the difference): not every
     /// method's is where every force is.
@@ -57,10 +57,10 @@ pub struct Measured {
 
 /// Searches the limit to 1e-3 of itself. `timestep`, s, is where growth is taken; `near` a guess of
 /// the limit in seconds (a prediction), which only makes the search shorter. `tick` is called with
-/// steps taken; `patience` is in steps of all probes together, a step of more than 20 force passes
+/// steps taken; `budget` is in steps of all probes together, a step of more than 20 force passes
 /// counting as several, after which the answer is `Between` or Unknown.
 ///
-/// A probe is 20,000 steps, fewer where patience is short (`reason` says how many), four or sixteen times
+/// A probe is 20,000 steps, fewer where budget is short (`reason` says how many), four or sixteen times
 /// as many while it is undecided. Where the engine's map is linear (twice the perturbation, twice the
 /// difference) it watches the energy of the difference between two runs, else the energy of one slightly
 /// perturbed run; see docs/stability.md. Steps are probed on a geometric grid, since stability need not be
@@ -69,18 +69,18 @@ pub struct Measured {
 pub fn measure(
     scene: &Scene,
     system: &ParticleSystem,
-    make: &Make,
+    make: &MakeRun,
     timestep: f64,
     near: Option<f64>,
-    patience: u64,
+    budget: u64,
     tick: &(dyn Fn(u64) + Sync),
-) -> Measured {
+) -> MeasuredLimit {
     let start = ParticleSystem::initial_state(scene);
     let unit = predicted::shortest(system, &start).unwrap_or(timestep);
-    let mut experiment = match Experiment::new(scene, system, make, unit, patience, tick) {
+    let mut experiment = match Experiment::new(scene, system, make, unit, budget, tick) {
         Ok(experiment) => experiment,
         Err(Unsupported { reason }) => {
-            return Measured {
+            return MeasuredLimit {
                 limit: Limit::Unknown(reason),
                 linear: false,
                 growth_per_s: None,
@@ -91,14 +91,14 @@ pub fn measure(
         }
     };
     let near = near.filter(|near| *near > 0.0 && near.is_finite());
-    let (limit, reason) = experiment.limit(near, patience);
+    let (limit, reason) = experiment.limit(near, budget);
     let growth = (limit == Limit::Never).then(|| experiment.growth(timestep));
     let upto = match limit {
         Limit::At(h) => Some(h),
         _ => None,
     };
     let linear = experiment.is_linear();
-    Measured {
+    MeasuredLimit {
         growth_per_s: growth.flatten().filter(|growth| growth.is_finite()),
         smooth_below_s: linear
             .then(|| smooth::below(&mut experiment, upto))
@@ -123,7 +123,7 @@ const DISSIPATED: f64 = 0.5;
 /// not seen. `tick` is called with steps taken.
 pub fn classify(
     scene: &Scene,
-    make: &Make,
+    make: &MakeRun,
     h: f64,
     steps: u64,
     tick: &(dyn Fn(u64) + Sync),
@@ -143,10 +143,10 @@ pub fn classify(
     let mut gauge = ExcessEnergy::new(&runs, system, &scene, scale, DIVERGED, late);
     let before = gauge.balance(&runs);
     let mut budget = Budget::new(u64::MAX, tick);
-    let fate = probe(&mut runs, &mut gauge, watch, &mut budget).map(|probed| probed.fate);
-    match fate {
-        Some(Fate::Grows { lost: true, .. }) => Cell::Failed,
-        Some(Fate::Grows { .. }) => Cell::Growing,
+    let outcome = probe(&mut runs, &mut gauge, watch, &mut budget).map(|probed| probed.outcome);
+    match outcome {
+        Some(ProbeOutcome::Grows { lost: true, .. }) => Cell::Failed,
+        Some(ProbeOutcome::Grows { .. }) => Cell::Growing,
         _ if gauge.late_balance() - before < -DISSIPATED * scale => Cell::Dissipating,
         _ => Cell::Stable,
     }

@@ -6,7 +6,7 @@
 //! steps to reach 1e4 only from δ = 1.2 % on at ζ = 0.1. Largest values, not means: near a limit the energy
 //! swings by orders of magnitude, but comes back to the same height.
 
-use super::Make;
+use super::MakeRun;
 use super::perturbation::{Perturbation, scramble};
 use crate::integrators::StepError;
 use crate::physics::State;
@@ -15,7 +15,7 @@ use crate::solvers::{Run, Unsupported};
 
 /// What becomes of runs.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Fate {
+pub(super) enum ProbeOutcome {
     /// Bounded, as far as it was watched.
     Steady,
     /// Rising throughout, too slowly to call it growth.
@@ -31,20 +31,20 @@ pub(super) enum Fate {
 /// A probe's answer.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Probed {
-    pub fate: Fate,
+    pub outcome: ProbeOutcome,
     /// Of ln(energy), per step; None where nothing was left to measure.
     pub rate: Option<f64>,
 }
 
 impl Probed {
     pub fn unstable(&self) -> bool {
-        matches!(self.fate, Fate::Grows { .. })
+        matches!(self.outcome, ProbeOutcome::Grows { .. })
     }
 
     /// To nothing.
     pub fn decays() -> Self {
         Self {
-            fate: Fate::Decays,
+            outcome: ProbeOutcome::Decays,
             rate: None,
         }
     }
@@ -52,7 +52,7 @@ impl Probed {
     fn grows(why: impl Into<String>, lost: bool, rate: Option<f64>) -> Self {
         let why = why.into();
         Self {
-            fate: Fate::Grows { why, lost },
+            outcome: ProbeOutcome::Grows { why, lost },
             rate,
         }
     }
@@ -80,7 +80,7 @@ const SOLVE: u64 = 3;
 
 impl Runs {
     /// One from the start of each scene, at `h` seconds.
-    pub fn new(make: &Make, h: f64, scenes: &[&Scene]) -> Result<Self, Unsupported> {
+    pub fn new(make: &MakeRun, h: f64, scenes: &[&Scene]) -> Result<Self, Unsupported> {
         let runs = scenes.iter().map(|scene| make(scene, h));
         Ok(Self(runs.collect::<Result<_, _>>()?))
     }
@@ -121,7 +121,7 @@ pub(super) trait Gauge {
     ///
     /// # Errors
     /// What became of the runs, where the energy leaves no other answer.
-    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed>;
+    fn level(&mut self, runs: &Runs, step: u64) -> Result<EnergyLevel, Probed>;
 
     /// Whether what is watched is no larger than rounding.
     fn is_rounding(&mut self, _runs: &Runs) -> bool {
@@ -130,7 +130,7 @@ pub(super) trait Gauge {
 }
 
 /// An energy against its start or its scale.
-pub(super) struct Level {
+pub(super) struct EnergyLevel {
     /// Its logarithm.
     pub log: f64,
     /// Too high to stay there.
@@ -247,7 +247,7 @@ pub(super) fn probe(
                 }
             }
             pay(runs, std::mem::take(&mut unpaid))?;
-            if maxima.judge(watch.clear).fate != Fate::Creeps {
+            if maxima.judge(watch.clear).outcome != ProbeOutcome::Creeps {
                 break;
             }
         }
@@ -333,14 +333,14 @@ impl Maxima {
         if rise > clear && rise > SURE * largest_fall(tail) {
             return Probed::grows("its energy keeps growing", false, rate);
         }
-        let fate = if rise < -clear {
-            Fate::Decays
+        let outcome = if rise < -clear {
+            ProbeOutcome::Decays
         } else if rise > FAINT * clear && tail.is_sorted() {
-            Fate::Creeps
+            ProbeOutcome::Creeps
         } else {
-            Fate::Steady
+            ProbeOutcome::Steady
         };
-        Probed { fate, rate }
+        Probed { outcome, rate }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Where to probe next: from a guess to the first step that fails, to 5e-4 of itself.
 
 use super::experiment::{Experiment, Found, STEPS, Stop};
-use super::probe::{Fate, Probed, span};
+use super::probe::{ProbeOutcome, Probed, span};
 use crate::measure::stability::Limit;
 use crate::solvers::Unsupported;
 
@@ -39,8 +39,8 @@ const VISIBLE: f64 = 4.0;
 const SAME_POWER: f64 = 0.4;
 
 impl Experiment<'_> {
-    /// The limit and what there is to say of it. `near` and `patience` as in [`measure`](super::measure).
-    pub fn limit(&mut self, near: Option<f64>, patience: u64) -> (Limit, Option<String>) {
+    /// The limit and what there is to say of it. `near` and `budget` as in [`measure`](super::measure).
+    pub fn limit(&mut self, near: Option<f64>, budget: u64) -> (Limit, Option<String>) {
         let bracket = self.bracket(near);
         match bracket.and_then(|(stable, unstable)| self.within(stable, unstable)) {
             Ok((limit, mut reason)) | Err(Stop::Found((limit, mut reason))) => {
@@ -50,7 +50,7 @@ impl Experiment<'_> {
                 (limit, Some(reason))
             }
             Err(Stop::Unsupported(Unsupported { reason })) => (Limit::Unknown(reason), None),
-            Err(Stop::Spent) => unfinished(self.known, patience),
+            Err(Stop::Spent) => unfinished(self.known, budget),
         }
     }
 
@@ -109,12 +109,12 @@ impl Experiment<'_> {
     /// Whether growth does not end at `tried` but only falls below what can be seen: the energy still
     /// creeps up there and further down, or its rate fell like a power of the step so far.
     fn vanishes(&mut self, tried: &Tried, unstable: &[Tried]) -> Result<bool, Stop> {
-        Ok(match tried.probed.fate {
-            Fate::Creeps => {
+        Ok(match tried.probed.outcome {
+            ProbeOutcome::Creeps => {
                 let further = self.full(tried.h * std::f64::consts::FRAC_1_SQRT_2)?;
-                further.probed.fate == Fate::Creeps || self.power_law(unstable)
+                further.probed.outcome == ProbeOutcome::Creeps || self.power_law(unstable)
             }
-            Fate::Steady => self.power_law(unstable),
+            ProbeOutcome::Steady => self.power_law(unstable),
             _ => false,
         })
     }
@@ -196,8 +196,8 @@ impl Experiment<'_> {
             self.known.0 = Some(h);
             Ok(true)
         })?;
-        let why = match failing.probed.fate {
-            Fate::Grows { why, .. } => why,
+        let why = match failing.probed.outcome {
+            ProbeOutcome::Grows { why, .. } => why,
             _ => String::new(),
         };
         Ok((Limit::At(low), format!("at {:.4e} s {why}", failing.h)))
@@ -226,9 +226,9 @@ pub(super) fn bisect<E>(
     Ok(low)
 }
 
-/// What is known when patience ends: a step found stable, and one found unstable.
-fn unfinished(known: (Option<f64>, Option<f64>), patience: u64) -> (Limit, Option<String>) {
-    let ended = format!("no closer within {patience} steps");
+/// What is known when budget ends: a step found stable, and one found unstable.
+fn unfinished(known: (Option<f64>, Option<f64>), budget: u64) -> (Limit, Option<String>) {
+    let ended = format!("no closer within {budget} steps");
     let why = match known {
         (Some(low), Some(high)) if low < high && high - low <= PROMISED * low => {
             return (Limit::At(low), Some(format!("unstable at {high:.4e} s")));

@@ -10,7 +10,7 @@
 //! motion decays.
 
 use super::perturbation::{Perturbation, Quadratic};
-use super::probe::{Gauge, Level, Probed, Runs};
+use super::probe::{EnergyLevel, Gauge, Probed, Runs};
 use crate::measure::scale::free_fall;
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
@@ -48,7 +48,7 @@ impl DifferenceEnergy {
 }
 
 impl Gauge for DifferenceEnergy {
-    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed> {
+    fn level(&mut self, runs: &Runs, step: u64) -> Result<EnergyLevel, Probed> {
         let energy = self.energy(runs) / self.start;
         if !energy.is_finite() {
             Err(Probed::not_finite(step))
@@ -58,7 +58,7 @@ impl Gauge for DifferenceEnergy {
             Err(Probed::explodes(energy.ln(), step))
         } else {
             let (log, high) = (energy.ln(), false);
-            Ok(Level { log, high })
+            Ok(EnergyLevel { log, high })
         }
     }
 
@@ -132,7 +132,7 @@ fn energy_less_work(system: &ParticleSystem, state: &State) -> f64 {
 }
 
 impl Gauge for ExcessEnergy {
-    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed> {
+    fn level(&mut self, runs: &Runs, step: u64) -> Result<EnergyLevel, Probed> {
         let state = runs.state(0);
         let moving = self.system.kinetic(&state.v) + self.system.elastic(state.t, &state.x);
         let excess = energy_less_work(&self.system, state) - self.start;
@@ -151,7 +151,7 @@ impl Gauge for ExcessEnergy {
         } else {
             excess
         };
-        Ok(Level {
+        Ok(EnergyLevel {
             log: (1.0 + counted / self.scale).max(FLOOR).ln(),
             high: counted > SATURATED * self.scale && counted > 0.1 * moving,
         })

@@ -5,7 +5,7 @@ use super::definite::Definite;
 use super::parts::Part;
 use super::prediction::Prediction;
 use super::regions::stiffest_binds;
-use super::spectrum::{Known, Mode, Spectrum};
+use super::spectrum::{Coverage, Mode, Spectrum};
 use super::{Effort, Limit};
 use crate::integrators::{Amplification, DampingTreatment, Stage, bisect, map};
 use faer::linalg::solvers::Solve;
@@ -22,8 +22,8 @@ pub(super) fn predict(
     match amplification {
         Amplification::Composition(stages, damping) if spectrum.proportional => {
             let found = by_modes(stages, damping, &spectrum.modes, h)?;
-            match spectrum.known {
-                Known::Sampled => stiffest_binds(found, &spectrum.modes),
+            match spectrum.coverage {
+                Coverage::Sampled => stiffest_binds(found, &spectrum.modes),
                 _ => Some(found),
             }
         }

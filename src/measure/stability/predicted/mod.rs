@@ -16,7 +16,7 @@ use crate::scene::{DampingModel, Scene};
 pub(super) use parts::shortest;
 pub use prediction::Prediction;
 use serde::{Deserialize, Serialize};
-use spectrum::{Known, Spectrum};
+use spectrum::{Coverage, Spectrum};
 
 /// Where along the trajectory the predicted limit is smallest.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -98,7 +98,7 @@ impl Linearised {
 
     /// Whether [`Self::omega_max`] is None because nobody knows.
     pub fn is_unsure(&self) -> bool {
-        let unknown = |part: &Spectrum| matches!(part.known, Known::Outermost(_));
+        let unknown = |part: &Spectrum| matches!(part.coverage, Coverage::Outermost(_));
         self.omega_max().is_none() && (self.failed.is_some() || self.parts.iter().any(unknown))
     }
 
@@ -136,10 +136,13 @@ impl Linearised {
     fn undamped(&self) -> (usize, usize) {
         let mut counts = (0, 0);
         for Spectrum {
-            part, modes, known, ..
+            part,
+            modes,
+            coverage,
+            ..
         } in &self.parts
         {
-            if !matches!(known, Known::All) {
+            if !matches!(coverage, Coverage::All) {
                 return (0, 0);
             }
             let undamped = modes.iter().filter(|mode| mode.damping == 0.0).count();
@@ -201,7 +204,7 @@ impl Effort {
 
 /// A trajectory linearised at some of its states; made once for all methods.
 #[derive(Debug, Clone)]
-pub struct Along {
+pub struct LinearisedTrajectory {
     states: Vec<(f64, Linearised)>,
 }
 
@@ -212,7 +215,7 @@ const WORK: usize = 8_000;
 /// States at least.
 const FEWEST: usize = 8;
 
-impl Along {
+impl LinearisedTrajectory {
     /// Of states in order of time, evenly thinned, both ends included, to at most 64.
     pub fn new<'a, S: System + ?Sized>(
         system: &S,

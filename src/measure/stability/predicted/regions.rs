@@ -2,7 +2,7 @@
 
 use super::Limit;
 use super::prediction::Prediction;
-use super::spectrum::{Bound, Known, Mode, Spectrum, shown};
+use super::spectrum::{Bound, Coverage, Mode, Spectrum, shown};
 use crate::integrators::{Rational, Stable};
 use nalgebra::Complex;
 
@@ -10,13 +10,13 @@ use nalgebra::Complex;
 pub(super) fn predict(rational: &Rational, spectrum: &Spectrum, h: f64) -> Option<Prediction> {
     let of = |eigenvalues: &[(Complex<f64>, Mode)]| of_eigenvalues(rational, eigenvalues, h);
     let outermost = &spectrum.eigenvalues;
-    match spectrum.known {
-        Known::All => of(outermost),
-        Known::Sampled => stiffest_binds(of(outermost)?, &spectrum.modes),
-        Known::Outermost(Some(bound)) if outermost.is_empty() => {
+    match spectrum.coverage {
+        Coverage::All => of(outermost),
+        Coverage::Sampled => stiffest_binds(of(outermost)?, &spectrum.modes),
+        Coverage::Outermost(Some(bound)) if outermost.is_empty() => {
             Some(of_bound(rational, bound, of(&bound.stiffest.eigenvalues())))
         }
-        Known::Outermost(_) => Some(of_outermost(rational, outermost, of(outermost))),
+        Coverage::Outermost(_) => Some(of_outermost(rational, outermost, of(outermost))),
     }
 }
 

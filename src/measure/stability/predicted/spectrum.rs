@@ -16,14 +16,14 @@ pub(super) struct Spectrum {
     pub modes: Vec<Mode>,
     /// Eigenvalues with Im >= 0 of (x, v)' = (v, -K x - C v), 1/s, and the mode each belongs to.
     pub eigenvalues: Vec<(Complex<f64>, Mode)>,
-    pub known: Known,
+    pub coverage: Coverage,
     /// None where nobody counted.
     pub left_out: Option<LeftOut>,
 }
 
 /// How much of a spectrum is known.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Known {
+pub(super) enum Coverage {
     All,
     /// A sample of a large part's modes, the last the stiffest.
     Sampled,
@@ -51,13 +51,18 @@ pub(super) struct LeftOut {
 }
 
 impl Spectrum {
-    fn of_modes(part: Part, modes: Vec<Mode>, known: Known, left_out: Option<LeftOut>) -> Self {
+    fn of_modes(
+        part: Part,
+        modes: Vec<Mode>,
+        coverage: Coverage,
+        left_out: Option<LeftOut>,
+    ) -> Self {
         Self {
             part,
             proportional: true,
             eigenvalues: modes.iter().flat_map(|mode| mode.eigenvalues()).collect(),
             modes,
-            known,
+            coverage,
             left_out,
         }
     }
@@ -65,7 +70,7 @@ impl Spectrum {
     fn of_eigenvalues(
         part: Part,
         values: impl Iterator<Item = Complex<f64>>,
-        known: Known,
+        coverage: Coverage,
         left_out: Option<LeftOut>,
     ) -> Self {
         let eigenvalues: Vec<_> = values.map(|value| (value, Mode::of(value))).collect();
@@ -74,7 +79,7 @@ impl Spectrum {
             proportional: false,
             modes: eigenvalues.iter().map(|(_, mode)| *mode).collect(),
             eigenvalues,
-            known,
+            coverage,
             left_out,
         }
     }
@@ -84,9 +89,9 @@ impl Spectrum {
         let oscillating = self.eigenvalues.iter().filter(|(value, _)| value.im > 0.0);
         let fastest = oscillating.map(|(_, mode)| mode.omega());
         let fastest = fastest.max_by(f64::total_cmp);
-        match self.known {
+        match self.coverage {
             // Eigenvalues may be decays only, while others within them oscillate.
-            Known::Outermost(Some(Bound { stiffest, .. })) if stiffest.oscillates() => {
+            Coverage::Outermost(Some(Bound { stiffest, .. })) if stiffest.oscillates() => {
                 fastest.or(Some(stiffest.omega()))
             }
             _ => fastest,
@@ -176,7 +181,12 @@ fn modes(part: Part, damping: (f64, f64)) -> Option<Spectrum> {
             modes.push(mode);
         }
     }
-    Some(Spectrum::of_modes(part, modes, Known::All, Some(left_out)))
+    Some(Spectrum::of_modes(
+        part,
+        modes,
+        Coverage::All,
+        Some(left_out),
+    ))
 }
 
 fn sampled(part: Part, damping: (f64, f64), effort: &Effort) -> Option<Spectrum> {
@@ -184,7 +194,7 @@ fn sampled(part: Part, damping: (f64, f64), effort: &Effort) -> Option<Spectrum>
     let (stiffest, _) = krylov::top(part.n(), &product, effort)?;
     let sample = |i| damped(stiffest.max(0.0) * i as f64 / SAMPLES as f64, damping);
     let modes = (1..=SAMPLES).map(sample).collect();
-    Some(Spectrum::of_modes(part, modes, Known::Sampled, None))
+    Some(Spectrum::of_modes(part, modes, Coverage::Sampled, None))
 }
 
 /// Of (s x, v): s balances the two halves.
@@ -223,7 +233,7 @@ fn eigenvalues(part: Part) -> Option<Spectrum> {
     Some(Spectrum::of_eigenvalues(
         part,
         stable,
-        Known::All,
+        Coverage::All,
         Some(left_out),
     ))
 }
@@ -265,8 +275,8 @@ fn outermost(part: Part, effort: &Effort) -> Spectrum {
     };
     let largest = all.first().map_or(0.0, |root| root.norm());
     let settled = all.into_iter().filter_map(|root| settled(root, largest));
-    let known = Known::Outermost(bound(&part, effort));
-    Spectrum::of_eigenvalues(part, settled.filter(|root| root.re <= 0.0), known, None)
+    let coverage = Coverage::Outermost(bound(&part, effort));
+    Spectrum::of_eigenvalues(part, settled.filter(|root| root.re <= 0.0), coverage, None)
 }
 
 /// Residual at which the stiffest vector will do, relative to the spectrum; the eigenvalue is then good to
