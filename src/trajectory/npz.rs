@@ -19,13 +19,13 @@ pub struct NpzWriter<S: Scratch> {
     particles: usize,
     selection: Selection,
     timestep: f64,
-    /// After the first failure what follows is dropped, and `finish` tells.
+    /// The first failure, which `finish` returns; later rows are dropped.
     written: std::io::Result<()>,
 }
 
 impl<S: Scratch> NpzWriter<S> {
-    /// Every `every`-th of `steps` steps (0 counts as 1) of `particles` particles, and the last.
-    /// The scratch streams are empty.
+    /// Collects every `every`-th of `steps` steps (0 counts as 1) of `particles` particles, and the
+    /// last. The scratch streams are empty.
     pub fn new(scratch: [S; 2], particles: usize, steps: u64, every: u64, timestep: f64) -> Self {
         let [x, v] = scratch.map(BufWriter::new);
         Self {

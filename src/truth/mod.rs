@@ -1,5 +1,5 @@
-//! What really happens in a scene: a closed form where what it contains allows one, otherwise a
-//! reference converged until two independent estimates agree. Both come with an error bar.
+//! The true motion of a scene: a closed form where its contents allow one, otherwise a reference
+//! converged until two independent estimates agree. Both come with an error bar.
 //!
 //! Not to be confused with rapier, which is one more method.
 
@@ -24,11 +24,11 @@ pub trait Motion: Send + Sync {
     /// ascending and lie between 0 and the `until` the motion was found for.
     fn states(&self, times: &[f64]) -> States;
 
-    /// No position in [0, t] is farther from what really happens than this, m.
+    /// Bound on the distance of any position in [0, t] from the true one, m.
     fn error_bar(&self, t: f64) -> f64;
 
-    /// Ascending times in [0, `until`], close enough together to show the motion: where states cost
-    /// least.
+    /// Ascending times in [0, `until`] at which states cost least, close enough together to show
+    /// the motion.
     fn landmarks(&self, until: f64) -> Vec<f64> {
         let part = |k: u32| until * f64::from(k) / f64::from(LANDMARKS);
         (0..=LANDMARKS).map(part).collect()
@@ -40,7 +40,7 @@ const LANDMARKS: u32 = 1_000;
 /// States at given times, all of one length.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct States {
-    /// Coordinates of a state.
+    /// Number of coordinates of a state.
     pub dim: usize,
     /// One state after the other.
     pub x: Vec<f64>,
@@ -48,7 +48,7 @@ pub struct States {
 }
 
 impl States {
-    /// Nothing yet, with room for so many states of `dim` coordinates.
+    /// No states yet, with room for `states` states of `dim` coordinates.
     pub fn with_room(dim: usize, states: usize) -> Self {
         Self {
             dim,
@@ -63,7 +63,7 @@ impl States {
         self.v.extend_from_slice(v);
     }
 
-    /// How many there are.
+    /// Number of states.
     pub fn len(&self) -> usize {
         self.x.len() / self.dim.max(1)
     }
@@ -110,8 +110,9 @@ pub enum Demand {
     None,
 }
 
-/// Keeps what is expensive to compute, by content. It may forget, and it may be shared by programs
-/// that run at once; what it returns is checked before it is used.
+/// Keeps results that are expensive to compute, under a key made of what they depend on. It may
+/// forget, and it may be shared by programs that run at once; what it returns is checked before it
+/// is used.
 pub trait Store: Sync {
     /// What was saved under this key: lower-case hexadecimal digits.
     fn load(&self, key: &str) -> Option<Vec<u8>>;

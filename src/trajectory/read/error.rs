@@ -23,9 +23,9 @@ pub struct ReadError {
 pub enum Place {
     /// The file as a whole.
     File,
-    /// In text. Both count from 1; the column in characters, as editors do, not in fields.
+    /// A place in text. Both count from 1; the column counts characters, as editors do, not fields.
     Text { line: u64, column: u64 },
-    /// In an array, or the array as a whole where the index is empty. Indices count from 0.
+    /// A number in an array, or the whole array where the index is empty. Indices count from 0.
     Array { name: String, index: Vec<usize> },
 }
 
@@ -52,7 +52,7 @@ fn separated(help: &str) -> String {
     }
 }
 
-/// What to do where a file ends too early.
+/// The help for a file that ends too early.
 pub(super) const HALF: &str = "half a file? The program that wrote it may have stopped early";
 
 /// An error that does not know yet where it happened.
@@ -70,7 +70,7 @@ impl Wrong {
         }
     }
 
-    /// The file is named by whoever knows its name.
+    /// The error at this place; the caller adds the file's name.
     pub fn at(self, place: Place) -> ReadError {
         ReadError {
             file: String::new(),
@@ -81,7 +81,7 @@ impl Wrong {
     }
 }
 
-/// What some programs begin UTF-8 with.
+/// The byte order mark some programs begin UTF-8 with.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The text after a byte order mark, if it has one. Offsets below count from there.

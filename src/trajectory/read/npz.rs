@@ -89,7 +89,7 @@ pub(super) fn positions(bytes: &[u8], expected: &Expected) -> Result<Table, Read
 /// One array of a file.
 struct Array {
     name: &'static str,
-    /// Instants first, of which there are some.
+    /// The shape: instants first, at least one.
     sizes: Vec<usize>,
     /// What one instant of positions or velocities gives, in order: all coordinates, those of free
     /// particles, or the one on the free axis.
@@ -105,7 +105,7 @@ impl Array {
     ) -> Result<Self, ReadError> {
         let fail = |wrong: Wrong| wrong.at(of(name));
         let header = Header::read(&mut from).map_err(fail)?;
-        // The shape first: it says how much there is to read.
+        // The shape is read first: it says how much there is to read.
         let coordinates = coordinates(name, &header.shape, expected).map_err(fail)?;
         if header.shape[0] == 0 {
             let wrong = Wrong::new("expected at least one instant, found none", "");
@@ -133,7 +133,7 @@ impl Array {
         })
     }
 
-    /// Whole states, with what is not given as `missing` has it.
+    /// Whole states; what is not given is taken from `missing`.
     fn states(self, missing: &[f64]) -> Numbers {
         let Numbers { values, written } = self.numbers;
         if self.coordinates.len() == missing.len() {
@@ -153,8 +153,8 @@ impl Array {
     }
 }
 
-/// The coordinates an array of this name and shape gives at one instant, if it can be one of this
-/// scene's; none of times.
+/// The coordinates that an array of this name and shape gives at one instant, empty for times. An
+/// array that cannot be of this scene is an error.
 fn coordinates(name: &str, shape: &[usize], expected: &Expected) -> Result<Vec<usize>, Wrong> {
     if name == "t" {
         let help = "t.ravel() makes it so";
@@ -185,7 +185,7 @@ fn coordinates(name: &str, shape: &[usize], expected: &Expected) -> Result<Vec<u
     }
 }
 
-/// What the array probably is, in NumPy's words.
+/// A guess at what the array is, in NumPy's words.
 fn remedy(x: &str, shape: &[usize], n: usize) -> String {
     match *shape {
         [_, k] if k == 3 * n => format!("{x}.reshape(-1, {n}, 3) makes it so"),
@@ -197,7 +197,7 @@ fn remedy(x: &str, shape: &[usize], n: usize) -> String {
     }
 }
 
-/// The array as a whole.
+/// The place of the array as a whole.
 fn of(name: &str) -> Place {
     Place::Array {
         name: name.to_owned(),
@@ -205,7 +205,7 @@ fn of(name: &str) -> Place {
     }
 }
 
-/// Of the number at this place in C order.
+/// The index of the number at this place in C order.
 fn index(mut at: usize, shape: &[usize]) -> Vec<usize> {
     let mut index = vec![0; shape.len()];
     for (i, size) in index.iter_mut().zip(shape).rev() {

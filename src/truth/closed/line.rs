@@ -20,7 +20,7 @@ pub(super) struct Line {
     pub offset: Offset,
 }
 
-/// A mode without stiffness in every direction, from 0 at this velocity.
+/// The same mode without stiffness in every direction, from 0 at this velocity.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Drift {
     pub mode: Mode,
@@ -43,14 +43,15 @@ pub(super) struct Offset {
 }
 
 impl Offset {
-    /// Every particle is on the line to the last bit.
+    /// Whether every particle is on the line to the last bit.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 }
 
 impl Line {
-    /// None if motion leaves the line by more than the rounding of the scene's numbers.
+    /// The line of a group; None if motion leaves it by more than the rounding of the scene's
+    /// numbers.
     pub fn of(group: &Group) -> Option<Self> {
         let velocities: Vec<_> = group.bodies.iter().map(|b| b.velocity).collect();
         let pulls: Vec<_> = group.bodies.iter().map(|b| b.constant).collect();
@@ -110,8 +111,8 @@ fn longest(vectors: &[Vector3<f64>]) -> Option<Vector3<f64>> {
     longest.filter(|&v| v != Vector3::zeros())
 }
 
-/// What these vectors have in common across the line, and how far they are from it at most: nothing
-/// if they lie along it, the first one's part if nothing is anchored and all agree.
+/// The part across the line that these vectors share, and their largest distance from it. The part
+/// is 0 if they lie along the line, and the first one's if nothing is anchored and all agree.
 fn common(
     vectors: &[Vector3<f64>],
     along: Vector3<f64>,
@@ -153,7 +154,7 @@ impl Sideways {
     /// springs with a rest length, in order.
     pub fn new(group: &Group, offset: Offset, lengths: &[Bounds]) -> Option<Self> {
         let masses = || group.bodies.iter().map(|b| b.mass);
-        // Of each particle, by Gershgorin's rows.
+        // Bounds for each particle, by Gershgorin's rows.
         let (mut low, mut high) = (vec![0.0; masses().len()], vec![0.0; masses().len()]);
         let mut lengths = lengths.iter();
         for link in &group.links {
@@ -184,7 +185,7 @@ impl Sideways {
         })
     }
 
-    /// No particle is farther off the line in [0, t], m.
+    /// Bound on the distance of any particle from the line in [0, t], m.
     pub fn bound(&self, t: f64) -> f64 {
         let Self {
             low, high, offset, ..

@@ -65,7 +65,7 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
     })
 }
 
-/// In order of first appearance; after three, `others`.
+/// Each text once, in order of first appearance; `others` stands for those after three.
 fn each_once<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut found: Vec<&str> = Vec::new();
     for text in texts {

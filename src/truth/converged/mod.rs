@@ -39,22 +39,23 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// Changes whenever the same scene would get other bits, or they would be kept otherwise.
+/// Version of the stored form. It changes whenever a scene would get other bits, or they would be
+/// kept otherwise.
 const VERSION: u32 = 3;
 
-/// What [`find`] may spend on a scene, in force evaluations times coordinates.
+/// The budget of [`find`] for a scene, in force evaluations times coordinates.
 pub const BUDGET: u64 = 1 << 30;
 
-/// The horizon ends where the error bar exceeds this share of the size.
+/// The horizon ends where the error bar exceeds this fraction of the size.
 pub const HORIZON: f64 = 1e-6;
 
-/// A converged reference and what is known of it.
+/// A converged reference and the facts about it.
 pub struct Converged {
     pub facts: ReferenceFacts,
     pub motion: Reference,
 }
 
-/// What is known of a converged reference.
+/// The facts about a converged reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceFacts {
     /// Both estimates and their steps.
@@ -72,7 +73,7 @@ pub struct ReferenceFacts {
     pub spent: u64,
 }
 
-/// There is no converged reference, and why.
+/// The reason why there is no converged reference.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 #[error("{reason}")]
 pub struct NotConverged {
@@ -158,12 +159,12 @@ pub fn converge(
     })
 }
 
-/// What more would have been needed.
+/// The reason given where the budget ended the halving.
 const TOO_MUCH: &str = "smaller steps would cost more than allowed";
 
-/// The converged reference of a scene and the system built from it, from the store or anew within
-/// [`BUDGET`]. What was found, and that nothing was found, is saved under the scene's [`key`]; a
-/// stored one gives the same bits.
+/// Finds the converged reference of a scene and the system built from it, in the store or anew
+/// within [`BUDGET`]. Success and failure are both saved under the scene's [`key`]; a stored
+/// reference gives the same bits.
 ///
 /// # Errors
 /// As [`converge`].
