@@ -15,7 +15,7 @@ pub struct ErrorSummary {
     pub rms: f64,
 }
 
-/// What is true at certain steps.
+/// The true states at certain steps.
 #[derive(Debug, Clone, Default)]
 pub struct TrueStates {
     /// Ascending step numbers, one a state.
@@ -23,7 +23,7 @@ pub struct TrueStates {
     pub states: States,
 }
 
-/// Largest distances over the particles, at each instant and over all.
+/// Errors of a run: the largest distances over the particles at each instant, summarised over all.
 #[derive(Debug, Clone)]
 pub struct Errors {
     /// Metres.
@@ -65,7 +65,7 @@ fn summary(distances: &[f64]) -> Option<ErrorSummary> {
     })
 }
 
-/// Largest distance over the particles, metres, over the instants both engines recorded.
+/// Largest distance over the particles, metres, over the instants both solvers recorded.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Deviation {
     #[serde(rename = "final")]
@@ -75,8 +75,8 @@ pub struct Deviation {
     pub first_exceeds_s: Option<f64>,
 }
 
-/// The distance at which `first_exceeds_s` is read, as a share of the scene's size, or of the way
-/// gone where the scene has no size.
+/// The distance at which `first_exceeds_s` is read, as a fraction of the scene's size, or of the
+/// way gone where the scene has no size.
 pub const TOLERANCE: f64 = 0.01;
 
 /// Largest distance over the particles between two runs of the same scene and timestep, over the

@@ -1,4 +1,4 @@
-//! What a trajectory shows, as numbers: pure functions of recorded states.
+//! The numbers a trajectory shows: pure functions of recorded states.
 
 mod check;
 mod energy;

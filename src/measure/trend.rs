@@ -37,7 +37,7 @@ pub struct Trend {
     pub class: EnergyClass,
 }
 
-/// A trend below this share of the fluctuation is none.
+/// A trend below this fraction of the fluctuation is none.
 const NEGLIGIBLE: f64 = 0.1;
 
 /// Fits and classifies b(t): `t` strictly increasing, evenly spaced but for a shorter last gap; `b`

@@ -5,7 +5,7 @@ use super::probe::{ProbeOutcome, Probed, span};
 use crate::measure::stability::Limit;
 use crate::solvers::Unsupported;
 
-/// A step and what became of it.
+/// A step and the answer of its probe.
 #[derive(Clone)]
 struct Tried {
     h: f64,
@@ -14,32 +14,33 @@ struct Tried {
 
 /// Relative width to which a limit is promised.
 const PROMISED: f64 = 1e-3;
-/// The answer's: half of that.
+/// The width the search goes to: half of that.
 const WIDTH: f64 = 5e-4;
 /// Largest step tried, in shortest time scales.
 const FAR: f64 = 1e6;
-/// Smallest.
+/// Smallest step tried, in shortest time scales.
 const SMALL: f64 = 1e-5;
 /// A good guess is seen to be one at this relative distance to either side.
 const BESIDE: f64 = 2e-3;
-/// Brief probes are so many times shorter: what fails far out or in a window fails soon.
+/// Brief probes are this many times shorter: what fails far out or in a window fails soon.
 const BRIEF: u64 = 5;
-/// How larger steps are tried: up to so many times the guess, by this ratio from one to the next, so many
-/// times as short as a full probe. The farther from the guess, the coarser and the briefer.
+/// The zones in which larger steps are tried: up to this many times the guess, by this ratio from one to
+/// the next, in probes this many times shorter than a full one. Farther from the guess, steps are coarser
+/// and probes briefer.
 const ZONES: [(f64, f64, u64); 3] = [
     (4.0, 1.189_207_115_002_721, BRIEF),
     (32.0, 2.0, 2 * BRIEF),
     (f64::INFINITY, 8.0, 4 * BRIEF),
 ];
-/// Factors of √2 below the limit that are looked through for windows.
+/// Factors of √2 below the limit that are searched for windows of instability.
 const BELOW: i32 = 10;
-/// Times a clear rise that cannot be overlooked.
+/// A rise of this many times a clear one cannot be overlooked.
 const VISIBLE: f64 = 4.0;
 /// Growth rates that belong to one power of h have exponents this close.
 const SAME_POWER: f64 = 0.4;
 
 impl Experiment<'_> {
-    /// The limit and what there is to say of it. `near` and `budget` as in [`measure`](super::measure).
+    /// The limit and its reason in words. `near` and `budget` as in [`measure`](super::measure).
     pub fn limit(&mut self, near: Option<f64>, budget: u64) -> (Limit, Option<String>) {
         let bracket = self.bracket(near);
         match bracket.and_then(|(stable, unstable)| self.within(stable, unstable)) {
@@ -148,7 +149,7 @@ impl Experiment<'_> {
             }
             stable = tried;
         }
-        // Briefly they were; once more at length, where nothing was tried at length yet.
+        // All were stable in brief probes; the last is probed in full, since nothing was yet.
         let last = match self.full(stable.h) {
             Err(Stop::Spent) => return Err(unconditional(stable.h, ", looked at briefly")),
             last => last?,
@@ -173,7 +174,8 @@ impl Experiment<'_> {
             if tried.probed.unstable() {
                 let (lower, tried) = match lower {
                     Some(lower) => (lower, tried),
-                    // Unstable from there on: what was found stable is a window itself.
+                    // Every smaller step is unstable so far: the step found stable is in a window
+                    // itself.
                     None => self.down(tried)?,
                 };
                 return self.bisect(lower, tried);
@@ -226,7 +228,7 @@ pub(super) fn bisect<E>(
     Ok(low)
 }
 
-/// What is known when budget ends: a step found stable, and one found unstable.
+/// The answer when the budget ends: a step found stable, and one found unstable.
 fn unfinished(known: (Option<f64>, Option<f64>), budget: u64) -> (Limit, Option<String>) {
     let ended = format!("no closer within {budget} steps");
     let why = match known {

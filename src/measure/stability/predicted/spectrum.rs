@@ -12,12 +12,12 @@ pub(super) struct Spectrum {
     pub part: Part,
     /// Whether damping acts on each mode by itself (C a combination of K and 1).
     pub proportional: bool,
-    /// Where it does the modes, ascending in stiffness; else one for each eigenvalue.
+    /// With proportional damping all modes, ascending in stiffness; else one for each eigenvalue.
     pub modes: Vec<Mode>,
     /// Eigenvalues with Im >= 0 of (x, v)' = (v, -K x - C v), 1/s, and the mode each belongs to.
     pub eigenvalues: Vec<(Complex<f64>, Mode)>,
     pub coverage: Coverage,
-    /// None where nobody counted.
+    /// None where they were not counted.
     pub left_out: Option<LeftOut>,
 }
 
@@ -32,21 +32,21 @@ pub(super) enum Coverage {
     Outermost(Option<Bound>),
 }
 
-/// What is known without any eigenvalue.
+/// Bounds that are known without any eigenvalue.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bound {
     /// The stiffest vector, as a mode.
     pub stiffest: Mode,
-    /// Within it all eigenvalues lie, 1/s.
+    /// Radius within which all eigenvalues lie, 1/s.
     pub radius: f64,
 }
 
 /// Modes that are left out.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LeftOut {
-    /// Without restoring force.
+    /// Number of modes without restoring force.
     pub at_rest: usize,
-    /// Growing in truth.
+    /// Number of modes that grow in truth.
     pub unstable: usize,
 }
 
@@ -104,7 +104,8 @@ impl Spectrum {
 const DOUBLE_ZERO: f64 = 1e-6;
 /// Growth or decay of an unsymmetric matrix's eigenvalue below this part of the largest is rounding.
 const NEUTRAL: f64 = 1e-11;
-/// Real but for rounding: the root of it where two eigenvalues coincide.
+/// An eigenvalue is real if its imaginary part is a smaller part of it than this: where two
+/// eigenvalues coincide, the root of rounding.
 const REAL: f64 = 1e-7;
 /// Modes a large part is sampled at.
 const SAMPLES: usize = 200;
@@ -146,7 +147,7 @@ fn zero(n: usize, norm: f64) -> f64 {
     8.0 * n as f64 * f64::EPSILON * norm
 }
 
-/// Ascending.
+/// Stiffnesses of the modes, 1/s², ascending.
 fn stiffnesses(part: &Part) -> Option<Vec<f64>> {
     if part.n() == 1 {
         return Some(vec![part.stiffness.at(0, 0)]);
@@ -197,7 +198,7 @@ fn sampled(part: Part, damping: (f64, f64), effort: &Effort) -> Option<Spectrum>
     Some(Spectrum::of_modes(part, modes, Coverage::Sampled, None))
 }
 
-/// Of (s x, v): s balances the two halves.
+/// The factor s of (s x, v) that balances the two halves.
 fn balance(part: &Part) -> f64 {
     let (k, c) = (part.stiffness.norm(), part.damping.norm());
     if k > 0.0 { k.sqrt() } else { c }
@@ -238,7 +239,7 @@ fn eigenvalues(part: Part) -> Option<Spectrum> {
     ))
 }
 
-/// An eigenvalue without its rounding; None of the lower one of a pair.
+/// An eigenvalue without its rounding; None for the lower one of a pair.
 fn settled(root: Complex<f64>, largest: f64) -> Option<Complex<f64>> {
     let re = if root.re.abs() <= NEUTRAL * largest {
         0.0
@@ -318,7 +319,7 @@ pub(super) struct Mode {
 }
 
 impl Mode {
-    /// The one an eigenvalue belongs to, or, of a real one, that decays as it does.
+    /// The mode an eigenvalue belongs to; for a real one, the mode that decays as it does.
     pub fn of(root: Complex<f64>) -> Self {
         if root.im == 0.0 {
             Self {
@@ -333,7 +334,7 @@ impl Mode {
         }
     }
 
-    /// Its eigenvalues other than 0 with Im >= 0: two real ones, or one of a pair. Each with the mode.
+    /// Its eigenvalues other than 0 with Im >= 0, two real ones or one of a pair, each with the mode.
     pub fn eigenvalues(self) -> Vec<(Complex<f64>, Self)> {
         let (k, half) = (self.stiffness, 0.5 * self.damping);
         if self.oscillates() {
