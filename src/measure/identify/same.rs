@@ -9,7 +9,7 @@ use crate::trajectory::{Precision, Rows};
 
 /// Steps longer than the data's by this much: schemes that differ at all differ more.
 const LONGER: [f64; 5] = [1.0, 4.0, 16.0, 64.0, 256.0];
-/// Tried from so many states.
+/// Number of states the motions start from.
 const STATES: usize = 4;
 
 /// Compares candidates on motions of their own, from a trajectory's states.
@@ -17,7 +17,7 @@ pub(super) struct Comparison<'a> {
     pub(super) scene: &'a Scene,
     pub(super) system: &'a ParticleSystem,
     pub(super) replay: &'a Replay<'a>,
-    /// Where the motions may go: lower and upper end of each coordinate.
+    /// The region the motions may go to: lower and upper end of each coordinate.
     region: Vec<(f64, f64)>,
     starts: Vec<State>,
 }
