@@ -1,4 +1,4 @@
-//! Which way the energy balance goes: the fitted trend, its interval, and the class read from both.
+//! The trend of the energy balance: the fitted line, its interval, and the class read from both.
 //!
 //! With D the fitted trend times the duration and f half the peak-to-peak of the residual, a series
 //! is bounded when the trend is insignificant at 99.9 % or |D| < 0.1 f, growing or dissipating when

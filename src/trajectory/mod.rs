@@ -1,6 +1,6 @@
 //! The data a run leaves behind: a thinned record in memory, and files of every step.
 //!
-//! An [`Observer`] sees the states of a run as they come; whoever takes the steps hands them over.
+//! An [`Observer`] sees the states of a run as they come, from the code that takes the steps.
 
 mod csv;
 mod npz;

@@ -6,7 +6,7 @@ use npyz::WriterBuilder;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use zip::write::SimpleFileOptions;
 
-/// Where an array waits until its length is known.
+/// A stream that holds an array until its length is known.
 pub trait Scratch: Read + Write + Seek {}
 impl<T: Read + Write + Seek> Scratch for T {}
 
@@ -57,7 +57,7 @@ impl<S: Scratch> NpzWriter<S> {
         };
         let shape = [rows, self.particles as u64, 3];
         let mut archive = zip::ZipWriter::new(out);
-        // No clock in the archive: two runs give the same bytes.
+        // The archive holds no date: two runs give the same bytes.
         let options = SimpleFileOptions::default()
             .compression_method(zip::CompressionMethod::Stored)
             .last_modified_time(zip::DateTime::default())

@@ -1,4 +1,4 @@
-//! A trajectory as rows of data, whoever computed it: what files and other programs give.
+//! A trajectory as rows of data, as files and other programs give it.
 
 /// States a whole number of steps apart, not necessarily always the same number.
 #[derive(Debug, Clone, PartialEq)]

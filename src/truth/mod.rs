@@ -99,7 +99,7 @@ pub(crate) fn farthest(a: &[f64], b: &[f64]) -> f64 {
     largest.sqrt()
 }
 
-/// Which truths are wanted.
+/// The truths that are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Demand {
     /// A closed form if there is one, else a converged reference.
@@ -114,7 +114,7 @@ pub enum Demand {
 /// forget, and it may be shared by programs that run at once; what it returns is checked before it
 /// is used.
 pub trait Store: Sync {
-    /// What was saved under this key: lower-case hexadecimal digits.
+    /// The bytes saved under this key, which is in lower-case hexadecimal digits.
     fn load(&self, key: &str) -> Option<Vec<u8>>;
 
     /// Failing to save is no error: it is computed again next time.

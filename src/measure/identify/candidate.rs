@@ -1,4 +1,5 @@
-//! What a trajectory may follow: a method, whole or in substeps, or one of the common mistakes.
+//! The schemes a trajectory may follow: a method, whole or in substeps, or one of the common
+//! mistakes.
 
 use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError};
 use crate::physics::{ParticleSystem, State, System};
@@ -38,7 +39,7 @@ pub enum Scheme {
 pub type Map = fn(&dyn System, f64, Option<&State>, &mut State) -> Result<(), StepError>;
 
 impl Candidate {
-    /// A registry method in so many substeps.
+    /// A registry method in this many substeps.
     pub fn method(system: &ParticleSystem, method: &'static Method, substeps: u32) -> Self {
         Self {
             id: method.id.to_owned(),

@@ -8,7 +8,7 @@ use super::same::Comparison;
 use super::transition::{Transition, spread};
 use super::{Identity, RunnerUp, Sameness};
 
-/// Those that fit the sample as well as the winner are compared with it over so many transitions,
+/// Those that fit the sample as well as the winner are compared with it over this many transitions,
 /// fewer where they cost more.
 const COMPARED: (usize, usize) = (64, 1024);
 

@@ -57,7 +57,7 @@ pub struct Question<'a> {
     pub hint: Option<(&'static str, u32)>,
 }
 
-/// Which scheme a trajectory follows.
+/// The scheme a trajectory follows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identity {
     /// Id of a method, or of a mistake.

@@ -38,8 +38,8 @@ impl<'a> Comparison<'a> {
                 *high = high.max(*x);
             }
         }
-        // What is linear where the data goes may not be elsewhere, behind an anchor say; but data
-        // that hardly moves must not leave nothing to try.
+        // A force that is linear where the data goes may not be elsewhere, behind an anchor say;
+        // but data that hardly moves must not leave nothing to try.
         for (low, high) in &mut region {
             let margin = 0.5 * (*high - *low) + 0.02 * scene.size();
             *low -= margin;

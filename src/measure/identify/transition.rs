@@ -80,7 +80,7 @@ fn is_finite(rows: &Rows, k: usize) -> bool {
     rows.x(k).iter().chain(v).all(|c| c.is_finite())
 }
 
-/// Stretches of so many rows, one after the other, at most `limit` of them.
+/// Stretches of `apart` rows, one after the other, at most `limit` of them.
 pub(super) fn stretches(rows: &Rows, apart: usize, limit: usize) -> Vec<Transition> {
     let back = if rows.v.is_some() { 0 } else { apart };
     let starts = (back..rows.len()).step_by((apart + back).max(1));

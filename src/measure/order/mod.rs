@@ -91,8 +91,8 @@ impl<'a> Study<'a> {
             motion,
             until,
         };
-        // Both now, not when first asked for: the truth is computed in parallel, and a thread that waits for
-        // it inside its own computation would wait for ever.
+        // Both grids are made now, not on first use: the truth is computed in parallel, and a thread that
+        // waits for it inside its own computation would wait for ever.
         let grids = GRIDS.map(|(part, most)| Grid::new(&problem, own / part, most));
         Self {
             problem,

@@ -18,7 +18,7 @@ pub struct ReadError {
     pub help: String,
 }
 
-/// Where in a file something is wrong.
+/// The place in a file where something is wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
     /// The file as a whole.

@@ -30,7 +30,7 @@ impl FreeAxis {
 }
 
 impl Expected {
-    /// `timestep` in seconds: the scene's own, or another that was asked for.
+    /// `timestep` in seconds: the scene's own, or another one given.
     pub fn new(scene: &Scene, timestep: f64) -> Self {
         Self {
             timestep,

@@ -27,7 +27,7 @@ impl Start {
     }
 }
 
-/// What a mode does from rest, at one time.
+/// The responses of a mode at rest, at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Response {
     /// Position after a unit of velocity at t = 0, s.

@@ -1,4 +1,4 @@
-//! Which change explains a fault.
+//! The change that explains a fault.
 
 use super::super::candidate::Candidate;
 use super::super::replay::FIT;

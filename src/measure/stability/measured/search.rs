@@ -1,4 +1,4 @@
-//! Where to probe next: from a guess to the first step that fails, to 5e-4 of itself.
+//! The choice of the next probe: from a guess to the first step that fails, to 5e-4 of itself.
 
 use super::experiment::{Experiment, Found, STEPS, Stop};
 use super::probe::{ProbeOutcome, Probed, span};

@@ -71,7 +71,7 @@ fn sign_kept(experiment: &Experiment, h: f64) -> Option<bool> {
     for _ in 0..ROUNDS {
         let differences = differences(experiment, &shape, h)?;
         let Some(Differences { rows, rounding }) = differences else {
-            // Not finite: nothing decays.
+            // A run that is not finite does not decay.
             return Some(false);
         };
         let [first, second, third] = &rows;

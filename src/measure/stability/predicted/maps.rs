@@ -195,7 +195,7 @@ struct StepMap {
 /// A modulus beyond 1 by more than this is growth. The eigenvalues of an unsymmetric matrix carry some
 /// rounding, and where the limit is, they grow linearly in h at least.
 const GROWING: f64 = 1e-10;
-/// What is at rest has the eigenvalue 1 twice: about the root of rounding away from it.
+/// A mode at rest has the eigenvalue 1 twice, so rounding moves it by about its root.
 const AT_REST: f64 = 1e-5;
 /// The scan's steps, in parts of h.
 const CELL: f64 = 0.02;

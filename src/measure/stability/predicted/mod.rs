@@ -18,7 +18,7 @@ pub use prediction::Prediction;
 use serde::{Deserialize, Serialize};
 use spectrum::{Coverage, Spectrum};
 
-/// Where along the trajectory the predicted limit is smallest.
+/// The point of the trajectory where the predicted limit is smallest.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TightestLimit {
     pub limit_s: f64,
