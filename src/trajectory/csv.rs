@@ -14,8 +14,7 @@ pub struct CsvWriter<W: Write> {
 }
 
 impl<W: Write> CsvWriter<W> {
-    /// Writes every `every`-th of `steps` steps (0 counts as 1), and the last. `out` should be
-    /// buffered.
+    /// Writes every `every`-th of `steps` steps (0 counts as 1), and the last. `out` should be buffered.
     pub fn new(mut out: W, steps: u64, every: u64, timestep: f64) -> Self {
         Self {
             written: writeln!(out, "t,id,x,y,z,vx,vy,vz"),

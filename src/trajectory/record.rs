@@ -7,9 +7,10 @@ use crate::physics::{State, Work};
 
 /// A record has at most this many instants, both ends included.
 const INSTANTS: u64 = 2_000;
-/// It takes at most about this much memory, in bytes: large scenes are recorded at fewer instants.
+/// A record takes at most about this much memory, in bytes: large scenes are recorded at fewer
+/// instants.
 const BUDGET: u64 = 10 << 20;
-/// It never has fewer instants than this.
+/// A record never has fewer instants than this.
 const FEWEST: u64 = 50;
 
 /// States at evenly spaced steps, the instants, and beside each the next step's state, so that a thinned

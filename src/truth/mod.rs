@@ -110,9 +110,8 @@ pub enum Demand {
     None,
 }
 
-/// Keeps results that are expensive to compute, under a key made of what they depend on. It may
-/// forget, and it may be shared by programs that run at once; what it returns is checked before it
-/// is used.
+/// Keeps results that are expensive to compute, under a key made of what they depend on. It may forget, and
+/// it may be shared by programs that run at once; what it returns is checked before it is used.
 pub trait Store: Sync {
     /// The bytes saved under this key, which is in lower-case hexadecimal digits.
     fn load(&self, key: &str) -> Option<Vec<u8>>;

@@ -1,5 +1,4 @@
-//! The schemes a trajectory may follow: a method, whole or in substeps, or one of the common
-//! mistakes.
+//! The schemes a trajectory may follow: a method, whole or in substeps, or one of the common mistakes.
 
 use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError};
 use crate::physics::{ParticleSystem, State, System};
@@ -144,8 +143,7 @@ impl Candidate {
         }
     }
 
-    /// Its name in the reports' `equivalent`: the id, and after a slash the substeps if there are
-    /// several.
+    /// Its name in the reports' `equivalent`: the id, and after a slash the substeps if there are several.
     pub fn label(&self) -> String {
         label(&self.id, self.substeps)
     }

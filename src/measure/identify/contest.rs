@@ -8,8 +8,7 @@ use rayon::prelude::*;
 
 /// A candidate this many times worse than the best drops out.
 const OUT: f64 = 1e3;
-/// A defect of this many last digits is no fault of the data: it is rounding, magnified by a stiff
-/// scene.
+/// A defect of this many last digits is no fault of the data: it is rounding, magnified by a stiff scene.
 const SOUND: f64 = 100.0 * FIT;
 /// Number of candidates that stay although they fit nowhere yet.
 const RUNNERS_UP: usize = 3;
@@ -129,9 +128,8 @@ pub(super) struct Race {
     pub(super) sample: Vec<Transition>,
 }
 
-/// The least distance of each candidate over the probes. Some probes may be faults, and a
-/// trajectory may follow another scheme early on. `brief` ends with the first probe that some
-/// candidate nearly follows.
+/// The least distance of each candidate over the probes. Some probes may be faults, and a trajectory may
+/// follow another scheme early on. `brief` ends with the first probe that some candidate nearly follows.
 fn nearest(
     replay: &Replay,
     candidates: &[Candidate],

@@ -3,9 +3,8 @@
 use super::contest::Entry;
 use super::replay::{BEYOND, Defect};
 
-/// This many transitions that one candidate meets to the last bit and another does not tell them
-/// apart, even where both fit: each time the other's rounding gives these bits with a chance of at
-/// most a half.
+/// This many transitions that one candidate meets to the last bit and another does not tell them apart,
+/// even where both fit: each time the other's rounding gives these bits with a chance of at most a half.
 const BITS: usize = 8;
 /// The fraction of transitions whose defects show how large a candidate's are.
 const TYPICAL: f64 = 0.9;

@@ -45,8 +45,7 @@ pub struct Fault {
     pub t_s: f64,
     /// The particle that is off farthest.
     pub particle: usize,
-    /// The quantity that `expected` and `found` give of it, x, y, z, at the end of the step or of
-    /// the span.
+    /// The quantity that `expected` and `found` give of it, x, y, z, at the end of the step or of the span.
     pub quantity: Quantity,
     /// The value by the scheme, from the row before.
     pub expected: [f64; 3],

@@ -19,13 +19,11 @@ use crate::truth::Motion;
 use rayon::prelude::*;
 use run::{Grid, TestProblem};
 
-/// The default budget of a study, in steps times coordinates: a fraction of a second for explicit
-/// methods.
+/// The default budget of a study, in steps times coordinates: a fraction of a second for explicit methods.
 pub const BUDGET: u64 = 4_000_000;
 /// The budget allows for at least this many runs at the scene's own step, however long.
 const RUNS: u64 = 4;
-/// A run follows the motion, roughly, if its error is below this fraction of the way the motion
-/// goes.
+/// A run follows the motion, roughly, if its error is below this fraction of the way the motion goes.
 const FOLLOWS: f64 = 0.1;
 /// A method farther off may have lost the motion: one that damps an oscillation away errs by its
 /// amplitude, at least half the way it goes. As A (1 - exp(-y)) with y as h^p, which such an error is,
@@ -37,8 +35,9 @@ const RESOLVED: f64 = 0.01;
 /// which may be in an error, that tenth changes a slope by at most ln 1.1 / ln 1.3 = 0.36.
 const CONTROL: (&str, f64) = ("rk4", 3.5);
 
-/// The coarsest level has one step for this many of the scene's own, and at most this many, up to
-/// order 4 and above. High orders reach the floor at steps that look coarse, so they start coarser.
+/// The scene's own steps to one of the coarsest level, and the most steps of that level: up to
+/// order 4, and above it. High orders reach the floor at steps that look coarse, so they start
+/// coarser.
 const GRIDS: [(u64, u64); 2] = [(64, 511), (1024, 127)];
 
 /// A convergence study on one motion: the refinement levels to measure orders with. Any number of methods

@@ -1,5 +1,4 @@
-//! Groups of particles that move independently of all others: each has a closed form of its own, or
-//! none.
+//! Groups of particles that move independently of all others: each has a closed form of its own, or none.
 
 use crate::physics::State;
 use crate::scene::{DampingModel, Scene, Spring};

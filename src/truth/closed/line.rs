@@ -50,8 +50,7 @@ impl Offset {
 }
 
 impl Line {
-    /// The line of a group; None if motion leaves it by more than the rounding of the scene's
-    /// numbers.
+    /// The line of a group; None if motion leaves it by more than the rounding of the scene's numbers.
     pub fn of(group: &Group) -> Option<Self> {
         let velocities: Vec<_> = group.bodies.iter().map(|b| b.velocity).collect();
         let pulls: Vec<_> = group.bodies.iter().map(|b| b.constant).collect();

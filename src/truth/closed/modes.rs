@@ -140,8 +140,7 @@ impl Modes {
         (0..self.modes.len()).map(stretch).collect()
     }
 
-    /// The acceleration of each mode under these forces on the particles, N; or its velocity, from
-    /// momenta.
+    /// The acceleration of each mode under these forces on the particles, N; or its velocity, from momenta.
     pub fn of_forces(&self, forces: &[f64]) -> Vec<f64> {
         let dot = |j: usize| self.shape(j).iter().zip(forces).map(|(s, f)| s * f).sum();
         (0..self.modes.len()).map(dot).collect()

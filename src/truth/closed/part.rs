@@ -254,8 +254,7 @@ impl Axis {
         for link in &group.links {
             let force = tension(link);
             for (pull, stretch) in pulls.iter_mut().zip(modes.stretches(link)) {
-                // Both ends are taken at once: on a mode that hardly stretches the spring they
-                // cancel here.
+                // Both ends are taken at once: on a mode that hardly stretches the spring they cancel here.
                 *pull -= force * stretch;
             }
         }

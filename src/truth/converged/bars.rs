@@ -62,8 +62,7 @@ impl Level {
         farther.map(|distance| distance / MAGNIFIED).collect()
     }
 
-    /// The error bar at each instant, m. `rounding` is how far rounding may have led the motion
-    /// astray, m.
+    /// The error bar at each instant, m. `rounding` is how far rounding may have led the motion astray, m.
     pub fn bars(&self, rounding: &[f64]) -> Vec<f64> {
         let instants = 0..=self.mesh.intervals();
         let magnitudes = running_largest(instants.map(|k| largest(self.first.x(k))));

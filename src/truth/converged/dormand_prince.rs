@@ -32,8 +32,7 @@ impl Default for DormandPrince {
 }
 
 impl DormandPrince {
-    /// A stepper with another explicit tableau, at least consistent. Its error estimates mean
-    /// nothing.
+    /// A stepper with another explicit tableau, at least consistent. Its error estimates mean nothing.
     pub fn with(tableau: &Tableau) -> Self {
         let stages = tableau.b.len();
         let mut end = weights(tableau, tableau.b);
@@ -48,9 +47,8 @@ impl DormandPrince {
         }
     }
 
-    /// An estimate of the error of the step of `h` seconds just taken, largest over the coordinates:
-    /// in position, m, and in velocity, m/s. It is of the order of the method's own error, and
-    /// larger.
+    /// An estimate of the error of the step of `h` seconds just taken, largest over the coordinates: in
+    /// position, m, and in velocity, m/s. It is of the order of the method's own error, and larger.
     pub(super) fn local_error(&self, h: f64) -> [f64; 2] {
         let [of_5, of_3] = [&self.errors[0], &self.errors[1]].map(|rows| self.largest_sums(rows));
         [h * h * mixed(of_5[0], of_3[0]), h * mixed(of_5[1], of_3[1])]

@@ -17,12 +17,10 @@ const FIRST_STEP: f64 = 1.0;
 /// No fewer pieces than this at first: a scene without forces still has its bar.
 const FEWEST: u64 = 16;
 
-/// Halving ends when halving all steps shrinks the gaps by less than this: what is left is
-/// rounding.
+/// Halving ends when halving all steps shrinks the gaps by less than this: what is left is rounding.
 const WORTHWHILE: f64 = 1.4;
 
-/// It also ends when they shrink by less than this twice in a row: what is left is of order 2 or
-/// less.
+/// It also ends when they shrink by less than this twice in a row: what is left is of order 2 or less.
 const SMOOTH: f64 = 4.0;
 
 /// Halvings of single steps may go on this many times without bringing the estimates closer: a
@@ -122,8 +120,7 @@ pub(super) fn halve(
         return Err(not_finite());
     };
     let size = level.size_or(size);
-    // Larger steps show the effect of rounding as well, unless they are too large to follow the
-    // motion.
+    // Larger steps show the effect of rounding as well, unless they are too large to follow the motion.
     let with = coarser.filter(|coarser| coarser.gap() < LOST * size);
     let with = with.as_ref().unwrap_or(&level);
     let (gaps, (amplification, rounding)) = rayon::join(

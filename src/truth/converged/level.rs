@@ -93,8 +93,7 @@ impl Level {
         integrate(method, system, start, &self.mesh, each, |_, _, _| {})
     }
 
-    /// Spreads values that hold up to each instant of a coarser level over the instants of this
-    /// one.
+    /// Spreads values that hold up to each instant of a coarser level over the instants of this one.
     pub fn spread(&self, coarse: &[f64]) -> Vec<f64> {
         let instants = self.mesh.intervals();
         let ratio = (instants / (coarse.len() - 1).max(1)).max(1);

@@ -48,8 +48,7 @@ impl Mesh {
         }
     }
 
-    /// Whether it covers this time and its pieces fill each interval exactly: a mesh from a store
-    /// may not.
+    /// Whether it covers this time and its pieces fill each interval exactly: a mesh from a store may not.
     pub fn fills(&self, until: f64) -> bool {
         let mut start = 0;
         let filled = |&end: &usize| {

@@ -138,8 +138,7 @@ impl Motion for Reference {
     }
 }
 
-/// The stored form: version, key, and what was found, in postcard's format. Their SHA-256 follows
-/// it.
+/// The stored form: version, key, and what was found, in postcard's format. Their SHA-256 follows it.
 type Kept = (u32, String, Result<(ReferenceFacts, Record), NotConverged>);
 
 /// Length of the checksum.

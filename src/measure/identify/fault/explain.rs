@@ -126,8 +126,7 @@ impl Spot<'_> {
         Some(fitting.swap_remove(at))
     }
 
-    /// Tries a guess; None where rounding does not explain what is left, or the guess explains
-    /// little.
+    /// Tries a guess; None where rounding does not explain what is left, or the guess explains little.
     fn tried<'g>(&self, guess: &'g Guess) -> Option<Tried<'g>> {
         let own = |leg: &Candidate, candidate: &Candidate, steps: u64| {
             self.distance(self.arrive(leg, candidate, steps).as_ref())

@@ -36,8 +36,7 @@ impl Perturbation {
     }
 
     /// The perturbation of other scenes: a kick of a hundredth of `scale`, J, shared by every free
-    /// coordinate, so that motions across springs, which the scene's symmetry may hide, are there to
-    /// grow.
+    /// coordinate, so that motions across springs, which the scene's symmetry may hide, are there to grow.
     pub fn slight(system: &ParticleSystem, scale: f64) -> Self {
         Self {
             x: vec![0.0; system.dim()],

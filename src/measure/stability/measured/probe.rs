@@ -223,8 +223,7 @@ pub(super) fn probe(
                     break 'watched Some(Probed::grows(why, true, None));
                 }
                 step += 1;
-                // The runs are looked at at the end of every window too: what grows is largest
-                // there.
+                // The runs are looked at at the end of every window too: what grows is largest there.
                 if step >= look || step >= rest {
                     look = step + stride(step);
                     match gauge.level(runs, step) {

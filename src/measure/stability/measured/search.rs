@@ -174,8 +174,7 @@ impl Experiment<'_> {
             if tried.probed.unstable() {
                 let (lower, tried) = match lower {
                     Some(lower) => (lower, tried),
-                    // Every smaller step is unstable so far: the step found stable is in a window
-                    // itself.
+                    // Every smaller step is unstable so far: the step found stable is in a window itself.
                     None => self.down(tried)?,
                 };
                 return self.bisect(lower, tried);

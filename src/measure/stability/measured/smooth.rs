@@ -16,8 +16,7 @@ const ROUNDS: usize = 6;
 const ROUNDINGS: f64 = 16.0;
 /// How far above rounding a difference is believed.
 const MARGIN: f64 = 1e3;
-/// Squared sine from which differences are not parallel, and the rounding that it leaves in
-/// factors.
+/// Squared sine from which differences are not parallel, and the rounding that it leaves in factors.
 const APART: f64 = 1e-8;
 const NOISE: f64 = 1e-6;
 /// Coordinates beyond which the true motion's spectrum is not looked at.

@@ -68,8 +68,7 @@ fn by_modes(
     each.reduce(Prediction::and)
 }
 
-/// Length of a scan's cells, in units of 1 over the mode's rate; beyond 1, relative to how far it
-/// has come.
+/// Length of a scan's cells, in units of 1 over the mode's rate; beyond 1, relative to how far it has come.
 const FINE: f64 = 0.01;
 /// Nothing of what a method promises begins below; far above, limits are those of drag's flow.
 const NEAR: f64 = 0.02;
@@ -109,8 +108,7 @@ impl Pair {
         let (trace, determinant) = match damping {
             _ if mode.stiffness != 0.0 => (a + d, a * d - b * c),
             DampingTreatment::Explicit => (d, 0.0),
-            // Flows of damping alone merge into one: their product overflows where kicks go
-            // backward.
+            // Flows of damping alone merge into one: their product overflows where kicks go backward.
             DampingTreatment::ExactFlow => ((-h * mode.damping).exp(), 0.0),
         };
         Self {

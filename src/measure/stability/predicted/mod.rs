@@ -39,8 +39,7 @@ pub struct Linearised {
 impl Linearised {
     /// Linearises about the state of all particles, fixed ones included (3n coordinates).
     ///
-    /// This is not cheap: full effort computes the whole spectrum of up to 600 coordinates that
-    /// couple.
+    /// This is not cheap: full effort computes the whole spectrum of up to 600 coordinates that couple.
     pub fn new<S: System + ?Sized>(system: &S, state: &State, effort: Effort) -> Self {
         let mut linearised = Self {
             parts: Vec::new(),
@@ -155,8 +154,7 @@ impl Linearised {
     }
 }
 
-/// Sizes, in coordinates that couple, up to which each method is used, and how far Krylov spaces
-/// go.
+/// Sizes, in coordinates that couple, up to which each method is used, and how far Krylov spaces go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
     /// All modes of a symmetric stiffness, damped by themselves.
@@ -219,8 +217,7 @@ const WORK: usize = 8_000;
 const FEWEST: usize = 8;
 
 impl LinearisedTrajectory {
-    /// Linearises at these states, in order of time, evenly thinned to at most 64 with both ends
-    /// included.
+    /// Linearises at these states, in order of time, evenly thinned to at most 64 with both ends included.
     pub fn new<'a, S: System + ?Sized>(
         system: &S,
         states: impl IntoIterator<Item = &'a State>,

@@ -7,9 +7,8 @@ use super::spectrum::Mode;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
     pub limit: Limit,
-    /// ln(spectral radius) / h of the amplitude at the given timestep, 1/s; at most 0 where it is
-    /// stable, 0 where all motion is free. None where it would take the full spectrum of too many
-    /// coordinates.
+    /// ln(spectral radius) / h of the amplitude at the given timestep, 1/s; at most 0 where it is stable, 0
+    /// where all motion is free. None where it would take the full spectrum of too many coordinates.
     pub growth_per_s: Option<f64>,
     /// Where nothing oscillates (drag alone, overdamped modes): the largest step, s, up to which every
     /// mode decays without changing sign from step to step; None where something oscillates in truth,
