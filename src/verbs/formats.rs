@@ -2,7 +2,7 @@
 
 use super::{Body, Report, cost, run, stability};
 use crate::report::json::{self, Tool};
-use crate::report::svg::Chart;
+use crate::report::svg::{Chart, Figure};
 use crate::report::{View, terminal};
 
 /// One way to write reports down.
@@ -49,10 +49,6 @@ fn joined(reports: &[Report], render: fn(&Report) -> String) -> String {
     texts.join("\n")
 }
 
-/// A picture: its file; what it shows, for those who do not see it; and what there is to draw, None where
-/// the report does not have what it takes.
-pub type Figure = (&'static str, &'static str, fn(&Report) -> Option<Chart>);
-
 impl Report {
     /// What its files are called, without the dot and what follows: verbs do not write over each
     /// other's.
@@ -85,12 +81,12 @@ impl Report {
 
     /// The figures it has data for, in the order they are shown.
     fn charts(&self) -> impl Iterator<Item = (&'static str, &'static str, Chart)> {
-        let figures: &[Figure] = match &self.body {
+        let figures: &[Figure<Report>] = match &self.body {
             Body::Run { .. } | Body::Compare { .. } => run::FIGURES,
             Body::Stability { .. } => stability::FIGURES,
             Body::Cost { .. } => cost::FIGURES,
         };
-        let chart = |(file, about, chart): &Figure| Some((*file, *about, chart(self)?));
+        let chart = |(file, about, chart): &Figure<Report>| Some((*file, *about, chart(self)?));
         figures.iter().filter_map(chart)
     }
 

@@ -54,3 +54,7 @@ pub fn shortened(text: &str, characters: usize) -> String {
     let head: String = text.chars().take(characters - 1).collect();
     head + "…"
 }
+
+/// A picture: its file; what it shows, for those who do not see it; and what there is to draw, None where
+/// the report does not have what it takes.
+pub type Figure<R> = (&'static str, &'static str, fn(&R) -> Option<Chart>);

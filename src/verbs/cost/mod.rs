@@ -6,6 +6,7 @@
 
 mod answer;
 mod args;
+mod diagram;
 mod figures;
 mod panels;
 pub mod rank;

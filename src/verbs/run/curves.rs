@@ -1,7 +1,7 @@
 //! The curves behind the plots.
 
-use super::execute::Record;
 use super::plan::Plan;
+use super::record::Record;
 use super::truths::Truths;
 use crate::measure::{EnergySeries, TrueStates};
 use crate::scene::Scene;

@@ -2,43 +2,13 @@
 
 use super::plan::{Case, Plan};
 use super::program;
-use crate::solvers::{Counts, Ended, Limits, Status};
-use crate::trajectory::{Recorder, SaveError, Trajectory, Unwatched};
-use crate::verbs::clock::{WallTime, spread};
+use super::record::Record;
+use crate::solvers::{Ended, Limits, Status};
+use crate::trajectory::{Recorder, SaveError, Unwatched};
+use crate::verbs::clock::spread;
 use crate::verbs::session::{Label, Session};
 use rayon::prelude::*;
 use std::time::Instant;
-
-/// What one case left: raw, before anything is measured.
-pub struct Record {
-    pub status: Status,
-    /// Why it did not run to its end.
-    pub reason: Option<String>,
-    /// Steps taken.
-    pub steps: u64,
-    /// None where nothing is known of it but the reason.
-    pub trajectory: Option<Trajectory>,
-    pub counts: Counts,
-    /// None of a file, and where nothing ran.
-    pub wall: Option<WallTime>,
-    /// What else is to be said of it.
-    pub remarks: Vec<String>,
-}
-
-impl Record {
-    /// Of a case that did not run.
-    pub fn none(status: Status, reason: String) -> Self {
-        Self {
-            status,
-            reason: Some(reason),
-            steps: 0,
-            trajectory: None,
-            counts: Counts::default(),
-            wall: None,
-            remarks: Vec::new(),
-        }
-    }
-}
 
 /// All engines in parallel and, beside them, the programs one after the other: they may print and
 /// use as many threads as they like.

@@ -2,6 +2,7 @@
 //! particles. One panel a timestep, so that lines of one colour never mix.
 
 use crate::measure::EnergyClass;
+use crate::report::svg::Figure;
 use crate::report::svg::palette::{self, look};
 use crate::report::svg::{
     Axis, Chart, FAINT, HUGE, INK, Key, Line, Look, Mark, Panel, Scale, Shape, Stroke, Symbol,
@@ -10,7 +11,6 @@ use crate::report::svg::{
 use crate::report::{svg, words};
 use crate::solvers::{Kind, Status};
 use crate::verbs::Report;
-use crate::verbs::formats::Figure;
 use crate::verbs::run::text::{engine, several_timesteps};
 use crate::verbs::run::{Curves, Outcome, TruthCurves};
 use std::collections::BTreeSet;
@@ -306,7 +306,7 @@ fn layer(report: &Report, outcome: &Outcome) -> u8 {
 }
 
 /// The figures of `run` and `compare`.
-pub const FIGURES: &[Figure] = &[
+pub const FIGURES: &[Figure<Report>] = &[
     ("plot.svg", "the curve the scene asks for", plot),
     ("energy.svg", "energy balance over time", energy),
     ("trajectories.svg", "trajectories", trajectories),

@@ -14,6 +14,7 @@ pub mod identity;
 mod outcomes;
 mod plan;
 mod program;
+mod record;
 mod remarks;
 mod result;
 mod text;

@@ -1,7 +1,7 @@
 //! From what a case left to its outcome.
 
-use super::execute::Record;
 use super::plan::Plan;
+use super::record::Record;
 use super::truths::Truths;
 use super::{identity, remarks};
 use crate::measure::{self, Deviation, EnergySeries, TOLERANCE};

@@ -1,7 +1,7 @@
 //! Runs other people's programs and makes of their rows what measures read.
 
-use super::execute::Record;
 use super::plan::{Case, Plan};
+use super::record::Record;
 use crate::physics::{ParticleSystem, Power, State, System};
 use crate::solvers::external::{Program, Recording, Task};
 use crate::solvers::{Counts, Limits, Status};

@@ -1,7 +1,7 @@
 //! The truth at the instants the runs recorded.
 
-use super::execute::Record;
 use super::plan::Plan;
+use super::record::Record;
 use crate::measure::{self, Errors, TrueStates};
 use crate::trajectory::Trajectory;
 use crate::truth::Truth;

@@ -2,12 +2,12 @@
 //! enlarge the force of a stiff spring.
 
 use crate::measure::stability::Cell;
+use crate::report::svg::Figure;
 use crate::report::svg::{
     Axis, Chart, Key, Look, Mark, Panel, Stroke, cells, heading, palette, panel_title, shortened,
 };
 use crate::report::words;
 use crate::verbs::Report;
-use crate::verbs::formats::Figure;
 use crate::verbs::stability::{MapPanel, StabilityMap};
 
 /// The places where the spring is as long as it wants to be.
@@ -140,7 +140,7 @@ const CELLS: [(Cell, &str, &str); 4] = [
 ];
 
 /// The figures of `stability`.
-pub const FIGURES: &[Figure] = &[
+pub const FIGURES: &[Figure<Report>] = &[
     (
         "stability_map.svg",
         "what becomes of a run at each timestep, engine by engine",

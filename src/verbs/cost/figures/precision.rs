@@ -1,7 +1,6 @@
 //! Work-precision diagrams: error over cost, both axes logarithmic, one line an engine with a point a
 //! setting.
 
-use super::Diagram;
 use crate::report::svg::palette::{COLOURS, SHAPES, look};
 use crate::report::svg::{
     self, Axis, Chart, FAINT, Key, Look, Mark, Panel, Shape, Stroke, Symbol, WHITE, engine,
@@ -9,6 +8,7 @@ use crate::report::svg::{
 };
 use crate::solvers::{Kind, Status};
 use crate::verbs::Report;
+use crate::verbs::cost::diagram::Diagram;
 use crate::verbs::cost::text::{is_timed, metres};
 use crate::verbs::cost::{Cost, CostCurve, CostPoint};
 

@@ -5,7 +5,7 @@ use crate::report::svg::{Axis, Scale, range};
 use crate::report::terminal::{Tone, WIDTH, clip, mark, wrap};
 use crate::report::words;
 use crate::verbs::Report;
-use crate::verbs::cost::figures::Diagram;
+use crate::verbs::cost::diagram::Diagram;
 use crate::verbs::cost::{Cost, CostCurve};
 
 /// Characters of the field.

@@ -48,17 +48,16 @@ fn map(report: &Report, stability: &Stability) -> Vec<String> {
         return Vec::new();
     };
     let own = |panel: &&MapPanel| report.header.is_own(&panel.engine);
-    let panel = map.engines.iter().find(own).or(map.engines.first());
-    let mut lines = vec![String::new()];
     let fits = map.values.len() <= COLUMNS && map.timesteps_s.len() <= LINES;
-    let (Some(panel), true) = (panel, fits) else {
-        lines.extend(wrap(&format!("map      {heading}"), WIDTH, "         "));
-        return lines;
+    let panel = map.engines.iter().find(own).or(map.engines.first());
+    let panel = panel.filter(|_| fits);
+    let title = match panel.map(|panel| words::one_line(&panel.engine)) {
+        Some(name) => format!("map      {name}, {heading}; the report has every engine's"),
+        None => format!("map      {heading}"),
     };
-    let name = words::one_line(&panel.engine);
-    let title = format!("map      {name}, {heading}; the report has every engine's");
+    let mut lines = vec![String::new()];
     lines.extend(wrap(&title, WIDTH, "         "));
-    lines.extend(drawn(map, panel));
+    lines.extend(panel.into_iter().flat_map(|panel| drawn(map, panel)));
     lines
 }
 
