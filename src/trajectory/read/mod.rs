@@ -29,7 +29,7 @@ mod expected;
 mod npz;
 mod times;
 
-pub use error::{Place, ReadError};
+pub use error::{ErrorPlace, ReadError};
 pub use expected::{Expected, FreeAxis, free_axis};
 
 use super::{Precision, Rows};
@@ -134,7 +134,7 @@ fn rows(bytes: &[u8], layout: Layout, expected: &Expected) -> Result<Rows, ReadE
     if bytes.len() > limits::FILE_BYTES {
         let cap = limits::FILE_BYTES >> 30;
         let help = "keep fewer instants";
-        return Err(Wrong::new(format!("expected at most {cap} GiB"), help).at(Place::File));
+        return Err(Wrong::new(format!("expected at most {cap} GiB"), help).at(ErrorPlace::File));
     }
     let table = match layout {
         Layout::Csv => csv::read(bytes, expected)?,

@@ -1,7 +1,7 @@
 //! Trajectories as NumPy arrays: `t`, `x` and `v` in an archive, or the positions alone.
 
 use super::array::{Header, tuple};
-use super::error::{HALF, Place, ReadError, Wrong};
+use super::error::{ErrorPlace, HALF, ReadError, Wrong};
 use super::expected::Expected;
 use super::times::Times;
 use super::{Numbers, Precision, Table};
@@ -15,7 +15,7 @@ const EXAMPLE: &str = "np.savez('mine.npz', t=t, x=x, v=v) writes what is read h
 
 /// Reads an archive as `np.savez` and `np.savez_compressed` write it.
 pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError> {
-    let whole = |wrong: Wrong| wrong.at(Place::File);
+    let whole = |wrong: Wrong| wrong.at(ErrorPlace::File);
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| {
         whole(if bytes.starts_with(b"PK") {
             Wrong::new(format!("the archive cannot be read: {error}"), HALF)
@@ -113,7 +113,7 @@ impl Array {
         }
         let values = header.numbers(&mut from).map_err(fail)?;
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            let place = Place::Array {
+            let place = ErrorPlace::Array {
                 name: name.to_owned(),
                 index: index(at, &header.shape),
             };
@@ -198,8 +198,8 @@ fn remedy(x: &str, shape: &[usize], n: usize) -> String {
 }
 
 /// The place of the array as a whole.
-fn of(name: &str) -> Place {
-    Place::Array {
+fn of(name: &str) -> ErrorPlace {
+    ErrorPlace::Array {
         name: name.to_owned(),
         index: Vec::new(),
     }

@@ -3,7 +3,7 @@
 use super::super::Precision;
 use super::Numbers;
 use super::digits::{FULL, Sample};
-use super::error::{Place, ReadError, Wrong, of_field};
+use super::error::{ErrorPlace, ReadError, Wrong, of_field};
 use crate::scene::limits::STEPS;
 
 /// The times of all instants, s.
@@ -162,13 +162,13 @@ impl Times {
         Wrong::new(message, help)
     }
 
-    fn place(&self, k: usize, bytes: &[u8]) -> Place {
+    fn place(&self, k: usize, bytes: &[u8]) -> ErrorPlace {
         match &self.fields {
             Some((starts, field)) => {
                 let start = starts.get(k).copied().unwrap_or_default();
                 of_field(bytes, start, *field)
             }
-            None => Place::Array {
+            None => ErrorPlace::Array {
                 name: "t".to_owned(),
                 index: vec![k],
             },

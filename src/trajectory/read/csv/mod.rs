@@ -6,7 +6,7 @@ use super::digits::Form;
 use super::error::{HALF, ReadError, Wrong, of_end, of_field, without_mark};
 use super::expected::Expected;
 use super::times::{self, Times};
-use super::{Numbers, Place, Table, limits};
+use super::{ErrorPlace, Numbers, Table, limits};
 use crate::scene::words::shorten;
 use ::csv::{ByteRecord, ReaderBuilder};
 use header::Columns;
@@ -16,7 +16,7 @@ use header::Columns;
 pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError> {
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         let wrong = Wrong::new("this text is UTF-16", "save it as UTF-8");
-        return Err(wrong.at(Place::Text { line: 1, column: 1 }));
+        return Err(wrong.at(ErrorPlace::Text { line: 1, column: 1 }));
     }
     let text = without_mark(bytes);
     let mut reader = ReaderBuilder::new()
