@@ -264,7 +264,7 @@ impl Default for Settings {
     }
 }
 
-/// Every method, in the order reports list them: those of [fixed](fixed) steps, then [`pairs`].
+/// Every method, in the order reports list them: those of [`fixed`] steps, then [`pairs`].
 pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
     let rows = [
         runge_kutta::EXPLICIT_EULER,

@@ -78,7 +78,7 @@ pub enum ReadError {
 }
 
 /// What [`render`] wrote. Of reports with series, those are [`Beside::Missing`](crate::verbs::Beside):
-/// [`series::unpack`](super::series::unpack) brings both together.
+/// [`series::unpack`](crate::verbs::series::unpack) brings both together.
 ///
 /// # Errors
 /// [`ReadError`], whatever the text.

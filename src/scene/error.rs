@@ -95,7 +95,7 @@ pub struct SceneError {
     /// From 1, in characters.
     pub column: Option<u32>,
     /// What is wrong with which key, without the place; no key for the file as a whole.
-    pub refusal: Refusal,
+    pub refusal: Box<Refusal>,
     excerpt: Option<Box<Excerpt>>,
 }
 
@@ -114,7 +114,7 @@ impl SceneError {
             file: file.to_owned(),
             line: None,
             column: None,
-            refusal: Refusal::new(message, ""),
+            refusal: Box::new(Refusal::new(message, "")),
             excerpt: None,
         }
     }
@@ -138,7 +138,7 @@ impl SceneError {
             file: file.to_owned(),
             line: u32::try_from(breaks + 1).ok(),
             column: u32::try_from(column + 1).ok(),
-            refusal: fault.refusal,
+            refusal: Box::new(fault.refusal),
             excerpt: Some(Box::new(excerpt(&text[start..offset], &text[offset..end]))),
         }
     }
@@ -147,7 +147,7 @@ impl SceneError {
     pub fn render(&self, renderer: &Renderer) -> String {
         let Refusal {
             key, message, help, ..
-        } = &self.refusal;
+        } = &*self.refusal;
         let mut headline = self.file.clone();
         for number in [self.line, self.column].into_iter().flatten() {
             headline += &format!(":{number}");

@@ -15,6 +15,7 @@ Options: `--only TEXT` takes only the scenes whose path holds it; `--jobs N` (de
 """
 
 import argparse
+import gzip
 import json
 import os
 import re
@@ -155,6 +156,9 @@ def compare(before, after):
             continue
         if file.suffix == ".npz":
             found = [] if file.read_bytes() == other.read_bytes() else ["other bytes"]
+        elif file.suffix == ".series":
+            one, two = (json.loads(gzip.decompress(p.read_bytes()))["series"] for p in (file, other))
+            found = list(differs("", one, two))
         elif file.suffix == ".json" or file.read_bytes()[:1] in (b"{", b"["):
             try:
                 one, two = reports(file.read_text()), reports(other.read_text())

@@ -265,11 +265,15 @@ impl Matrix {
                 for axis in 0..3 {
                     if pattern.pinned[3 * row + axis] {
                         clear_row(&mut lower[at], axis);
-                        upper.get_mut(at).map(|upper| clear_column(upper, axis));
+                        if let Some(upper) = upper.get_mut(at) {
+                            clear_column(upper, axis);
+                        }
                     }
                     if pattern.pinned[3 * column + axis] {
                         clear_column(&mut lower[at], axis);
-                        upper.get_mut(at).map(|upper| clear_row(upper, axis));
+                        if let Some(upper) = upper.get_mut(at) {
+                            clear_row(upper, axis);
+                        }
                     }
                 }
             }

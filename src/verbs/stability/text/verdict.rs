@@ -15,7 +15,8 @@ pub fn clauses(report: &Report, stability: &Stability) -> Vec<Clause> {
     let beyond = |row: &StabilityRow| {
         row.holds(h) == Some(false) && row.limit().is_some_and(|limit| limit > 0.0)
     };
-    let groups: [(&str, &dyn Fn(&StabilityRow) -> bool); 4] = [
+    type Belongs<'a> = &'a dyn Fn(&StabilityRow) -> bool;
+    let groups: [(&str, Belongs); 4] = [
         ("beyond their limit", &beyond),
         ("never stable", &|row| row.limit() == Some(0.0)),
         ("always stable", &|row| row.limit() == Some(f64::INFINITY)),
