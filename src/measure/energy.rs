@@ -19,14 +19,14 @@ pub struct Energy {
     pub drift_per_s: Option<f64>,
     /// 99.9 % interval of the trend, autocorrelation accounted for.
     pub drift_per_s_ci: Option<[f64; 2]>,
-    /// Half the peak-to-peak of what the trend leaves, in units of S.
+    /// Half the peak-to-peak of the residual about the trend, in units of S.
     pub fluctuation: Option<f64>,
     pub class: Option<EnergyClass>,
     /// Kinetic energy at the end.
     pub kinetic_final_j: Option<f64>,
     /// Potential energy at the end, by the id of the effect that holds it.
     pub potential_final_j: BTreeMap<String, f64>,
-    /// Taken out and put in by effects over the run; 0 where the scene has neither.
+    /// Energy that effects took out and put in over the run; 0 where the scene has neither.
     pub dissipated_j: Option<f64>,
     pub injected_j: Option<f64>,
 }
@@ -44,7 +44,7 @@ impl Energy {
 pub struct EnergySeries {
     /// Seconds.
     pub t: Vec<f64>,
-    /// Which instant of the trajectory each sample is.
+    /// The instant of the trajectory that each sample is from.
     pub instants: Vec<usize>,
     /// B = E + dissipated - injected; constant in the truth.
     pub balance: Vec<f64>,
@@ -56,8 +56,9 @@ pub struct EnergySeries {
 }
 
 impl EnergySeries {
-    /// None when nothing was recorded or no velocities are known: what differences of positions make
-    /// of a kinetic energy is no fault of the run. Instants whose energy is not finite are left out.
+    /// The energies of a run. None when nothing was recorded or no velocities are known: a kinetic
+    /// energy from differences of positions has errors that are no fault of the run. Instants whose
+    /// energy is not finite are left out.
     pub fn new(system: &ParticleSystem, run: &Trajectory) -> Option<Self> {
         if !run.has_velocities() {
             return None;

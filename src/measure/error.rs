@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Largest distance of a particle from where it truly is (m) or from its true velocity (m/s), over
 /// the recorded instants up to the truth's horizon.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Spread {
+pub struct ErrorSummary {
     /// At the last of these instants.
     #[serde(rename = "final")]
     pub last: f64,
@@ -15,28 +15,28 @@ pub struct Spread {
     pub rms: f64,
 }
 
-/// What is true at certain steps.
+/// The true states at certain steps.
 #[derive(Debug, Clone, Default)]
-pub struct Known {
+pub struct TrueStates {
     /// Ascending step numbers, one a state.
     pub steps: Vec<u64>,
     pub states: States,
 }
 
-/// Largest distances over the particles, at each instant and over all.
+/// Errors of a run: the largest distances over the particles at each instant, summarised over all.
 #[derive(Debug, Clone)]
 pub struct Errors {
     /// Metres.
-    pub position: Spread,
+    pub position: ErrorSummary,
     /// Metres a second; None where velocities are not known.
-    pub velocity: Option<Spread>,
+    pub velocity: Option<ErrorSummary>,
 }
 
 /// Distances of a run from the truth over the instants it shares with what is known; the start,
 /// which is the scene's and no run's, counts only in the mean.
 ///
 /// None when it shares no later instant, or is too far away for a number.
-pub fn errors(run: &Trajectory, known: &Known) -> Option<Errors> {
+pub fn errors(run: &Trajectory, known: &TrueStates) -> Option<Errors> {
     let shared = (0..run.len()).filter_map(|k| {
         let at = known.steps.binary_search(&run.step(k)).ok()?;
         Some((k, at))
@@ -48,24 +48,24 @@ pub fn errors(run: &Trajectory, known: &Known) -> Option<Errors> {
     let position = distances(&|k, at| farthest(run.x(k), known.states.x(at)));
     let velocity = distances(&|k, at| farthest(run.v(k), known.states.v(at)));
     Some(Errors {
-        position: spread(&position)?,
-        velocity: spread(&velocity).filter(|_| run.has_velocities()),
+        position: summary(&position)?,
+        velocity: summary(&velocity).filter(|_| run.has_velocities()),
     })
 }
 
-fn spread(distances: &[f64]) -> Option<Spread> {
+fn summary(distances: &[f64]) -> Option<ErrorSummary> {
     let squares: f64 = distances.iter().map(|d| d * d).sum();
     let rms = (squares / distances.len() as f64).sqrt();
     let max = distances.iter().copied().fold(0.0, f64::max);
     let known = distances.len() > 1 && max.is_finite() && rms.is_finite();
-    known.then(|| Spread {
+    known.then(|| ErrorSummary {
         last: distances[distances.len() - 1],
         max,
         rms,
     })
 }
 
-/// Largest distance over the particles, metres, over the instants both engines recorded.
+/// Largest distance over the particles, metres, over the instants both solvers recorded.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Deviation {
     #[serde(rename = "final")]
@@ -75,8 +75,8 @@ pub struct Deviation {
     pub first_exceeds_s: Option<f64>,
 }
 
-/// The distance at which `first_exceeds_s` is read, as a share of the scene's size, or of the way
-/// gone where the scene has no size.
+/// The distance at which `first_exceeds_s` is read, as a fraction of the scene's size, or of the
+/// way gone where the scene has no size.
 pub const TOLERANCE: f64 = 0.01;
 
 /// Largest distance over the particles between two runs of the same scene and timestep, over the

@@ -1,4 +1,4 @@
-//! What a trajectory shows, as numbers: pure functions of recorded states.
+//! The numbers a trajectory shows: pure functions of recorded states.
 
 mod check;
 mod energy;
@@ -13,7 +13,7 @@ pub mod twin;
 
 pub use check::{Check, CheckStatus};
 pub use energy::{Energy, EnergySeries, judge};
-pub use error::{Deviation, Errors, Known, Spread, TOLERANCE, deviation, errors, reach};
+pub use error::{Deviation, ErrorSummary, Errors, TOLERANCE, TrueStates, deviation, errors, reach};
 pub(crate) use momentum::totals;
 pub use momentum::{Momentum, momentum};
 pub use scale::{divergence_limit, energy_scale};

@@ -20,7 +20,7 @@ pub fn energy_scale(scene: &Scene, system: &ParticleSystem, peak: Option<f64>) -
         .map(|p| p.mass * scene.solver.gravity.abs())
         .sum();
     let rest = weight * scene.size();
-    // So does a truth that stands still.
+    // A truth that stands still leaves only rounding, too.
     let peak = peak.filter(|peak| *peak > f64::EPSILON * rest && peak.is_finite());
     let moving = own.unwrap_or(0.0).max(peak.unwrap_or(0.0));
     let scale = if moving > 0.0 { moving } else { rest };
@@ -36,7 +36,7 @@ pub fn divergence_limit(scene: &Scene, scale: Option<f64>) -> Option<f64> {
     (limit > 0.0 && limit.is_finite()).then_some(limit)
 }
 
-/// What gravity and wind give the free particles in a fall of t seconds, over t², J/s².
+/// The energy gravity and wind give the free particles in a fall of t seconds, over t², J/s².
 pub(super) fn free_fall(scene: &Scene) -> f64 {
     let wind = scene.wind.as_ref().map_or(0.0, |wind| wind.strength.abs());
     let free = scene.particles.iter().filter(|p| !p.fixed);

@@ -1,4 +1,4 @@
-//! Which way the energy balance goes: the fitted trend, its interval, and the class read from both.
+//! The trend of the energy balance: the fitted line, its interval, and the class read from both.
 //!
 //! With D the fitted trend times the duration and f half the peak-to-peak of the residual, a series
 //! is bounded when the trend is insignificant at 99.9 % or |D| < 0.1 f, growing or dissipating when
@@ -37,7 +37,7 @@ pub struct Trend {
     pub class: EnergyClass,
 }
 
-/// A trend below this share of the fluctuation is none.
+/// A trend below this fraction of the fluctuation is none.
 const NEGLIGIBLE: f64 = 0.1;
 
 /// Fits and classifies b(t): `t` strictly increasing, evenly spaced but for a shorter last gap; `b`

@@ -19,9 +19,9 @@ use start::{condition, disturbed, set_in_motion};
 const FORCE_STEPS: u32 = 16;
 /// World steps of the proofs of rapier's own joints and gravity, each of several substeps.
 const JOINT_STEPS: u32 = 4;
-/// More sweeps than this are not spent on a proof.
+/// Most sweeps of a proof.
 const MAX_SWEEPS: u32 = 1024;
-/// Nor more visits to a joint than this in one try: about two seconds.
+/// Most visits to joints in one try: about two seconds.
 const MAX_ROWS: u64 = 20_000_000;
 /// A proof that could not tell a relative error of this size is none.
 const BLUNT: f64 = 1e-6;
@@ -29,11 +29,11 @@ const BLUNT: f64 = 1e-6;
 /// All proofs a scene calls for, at a timestep in seconds: `twin-forces`, `twin-joints` and, without
 /// springs, `twin-fall`.
 ///
-/// What is `measured` is the largest distance over the steps taken: of positions in units of the largest
+/// `measured` is the largest distance over the steps taken: of positions in units of the largest
 /// coordinate, of velocities in units of the largest speed, whichever is larger. The `bound` is what
 /// rounding can explain, in the same units; 0 means bit for bit. A proof that fails says that the two sides
-/// do not compute the same scene: nothing compared with this engine means anything. It is inconclusive
-/// where neither is shown, and skipped where the engine does not take the scene.
+/// do not compute the same scene: nothing compared with rapier means anything. It is inconclusive where
+/// neither is shown, and skipped where rapier does not take the scene.
 ///
 /// The scene is started with small pseudo-random velocities added, the same in every run: many
 /// scenes begin at rest with no spring stretched, where a few steps would exercise only gravity.
@@ -67,7 +67,7 @@ pub fn prove_pair(ours: &Scene, theirs: &Scene, timestep: f64) -> Vec<Check> {
     proofs
 }
 
-/// What a proof sets out to show.
+/// The claim that a proof is to show.
 struct Claim {
     id: &'static str,
     subject: &'static str,
@@ -162,7 +162,7 @@ struct Pair {
 }
 
 impl Pair {
-    /// rapier's side, so many world steps of it.
+    /// rapier's path over `steps` world steps.
     fn theirs(&self, solver: Option<Solver>, steps: u32) -> Result<Path, Unsupported> {
         let solver = solver.ok_or_else(|| Unsupported {
             reason: "there is no such engine".to_owned(),
@@ -170,7 +170,7 @@ impl Pair {
         Path::of(&solver, &self.theirs, self.timestep, 1, steps)
     }
 
-    /// Takes what rapier does not support for a proof to be skipped.
+    /// Proves a claim; a proof that rapier does not support is skipped.
     fn prove(&self, claim: Claim, by: fn(&Self, &Claim) -> Result<Check, Unsupported>) -> Check {
         by(self, &claim).unwrap_or_else(|Unsupported { reason }| {
             claim.check(CheckStatus::Skip, None, 0.0, String::new(), reason)
@@ -228,7 +228,7 @@ impl Pair {
         Ok(claim.judge(&path, &theirs, bound, derivation))
     }
 
-    /// Our path at dt / n, what rounding can move it, and why.
+    /// Our path at dt / n, the distance that rounding can move it, and the derivation of that.
     ///
     /// The amplification is measured, not estimated: the same path is taken again from starts one
     /// unit in the last place of the largest coordinate away, and ends `grown` away. Every

@@ -9,12 +9,12 @@ pub struct CsvWriter<W: Write> {
     out: W,
     selection: Selection,
     timestep: f64,
-    /// After the first failure what follows is dropped, and `finish` tells.
+    /// The first failure, which `finish` returns; later rows are dropped.
     written: io::Result<()>,
 }
 
 impl<W: Write> CsvWriter<W> {
-    /// Every `every`-th of `steps` steps (0 counts as 1), and the last. `out` is buffered.
+    /// Writes every `every`-th of `steps` steps (0 counts as 1), and the last. `out` should be buffered.
     pub fn new(mut out: W, steps: u64, every: u64, timestep: f64) -> Self {
         Self {
             written: writeln!(out, "t,id,x,y,z,vx,vy,vz"),

@@ -1,6 +1,6 @@
-//! What a run leaves behind: a thinned record in memory, and files of every step.
+//! The data a run leaves behind: a thinned record in memory, and files of every step.
 //!
-//! An [`Observer`] sees the states of a run as they come; whoever takes the steps hands them over.
+//! An [`Observer`] sees the states of a run as they come, from the code that takes the steps.
 
 mod csv;
 mod npz;
@@ -10,7 +10,7 @@ mod rows;
 
 pub use csv::CsvWriter;
 pub use npz::{NpzWriter, Scratch};
-pub use read::{Expected, FreeAxis, Layout, Place, ReadError, free_axis, limits, read};
+pub use read::{ErrorPlace, Expected, FreeAxis, Layout, ReadError, free_axis, limits, read};
 pub use record::{Recorder, Trajectory, stride};
 pub use rows::{Precision, Rows};
 
@@ -21,15 +21,15 @@ pub trait Observer {
     /// The first step number, at or after `from`, at which it wants the state; None for no more.
     fn next(&self, from: u64) -> Option<u64>;
 
-    /// The state at step `step` (0 is the start), called at the steps asked for, in order.
+    /// Takes the state at step `step` (0 is the start); called in order at the steps `next` gave.
     fn observe(&mut self, step: u64, state: &State);
 
-    /// The state a run diverged in, if it is still finite: the last one of this run.
+    /// Takes the state a run diverged in, if it is finite: the last one of this run.
     fn observe_diverged(&mut self, step: u64, state: &State) {
         self.observe(step, state);
     }
 
-    /// The last state of a run whose number of steps was not known, unless it was observed.
+    /// Takes the last state of a run whose number of steps was not known, unless it was observed.
     fn observe_end(&mut self, _step: u64, _state: &State) {}
 }
 

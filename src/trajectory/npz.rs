@@ -6,7 +6,7 @@ use npyz::WriterBuilder;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use zip::write::SimpleFileOptions;
 
-/// Where an array waits until its length is known.
+/// A stream that holds an array until its length is known.
 pub trait Scratch: Read + Write + Seek {}
 impl<T: Read + Write + Seek> Scratch for T {}
 
@@ -19,13 +19,13 @@ pub struct NpzWriter<S: Scratch> {
     particles: usize,
     selection: Selection,
     timestep: f64,
-    /// After the first failure what follows is dropped, and `finish` tells.
+    /// The first failure, which `finish` returns; later rows are dropped.
     written: std::io::Result<()>,
 }
 
 impl<S: Scratch> NpzWriter<S> {
-    /// Every `every`-th of `steps` steps (0 counts as 1) of `particles` particles, and the last.
-    /// The scratch streams are empty.
+    /// Collects every `every`-th of `steps` steps (0 counts as 1) of `particles` particles, and the
+    /// last. The scratch streams are empty.
     pub fn new(scratch: [S; 2], particles: usize, steps: u64, every: u64, timestep: f64) -> Self {
         let [x, v] = scratch.map(BufWriter::new);
         Self {
@@ -57,7 +57,7 @@ impl<S: Scratch> NpzWriter<S> {
         };
         let shape = [rows, self.particles as u64, 3];
         let mut archive = zip::ZipWriter::new(out);
-        // No clock in the archive: two runs give the same bytes.
+        // The archive holds no date: two runs give the same bytes.
         let options = SimpleFileOptions::default()
             .compression_method(zip::CompressionMethod::Stored)
             .last_modified_time(zip::DateTime::default())

@@ -5,11 +5,12 @@
 use super::{Observer, Precision, Rows};
 use crate::physics::{State, Work};
 
-/// At most this many instants, both ends included.
+/// A record has at most this many instants, both ends included.
 const INSTANTS: u64 = 2_000;
-/// And at most about this much memory, bytes: large scenes are recorded at fewer instants.
+/// A record takes at most about this much memory, in bytes: large scenes are recorded at fewer
+/// instants.
 const BUDGET: u64 = 10 << 20;
-/// But never fewer instants than this.
+/// A record never has fewer instants than this.
 const FEWEST: u64 = 50;
 
 /// States at evenly spaced steps, the instants, and beside each the next step's state, so that a thinned
@@ -18,9 +19,9 @@ const FEWEST: u64 = 50;
 pub struct Trajectory {
     /// Instants and the states one step after them, in order.
     rows: Rows,
-    /// Which row each instant is.
+    /// The row of each instant.
     instants: Vec<usize>,
-    /// Of each instant.
+    /// Work done up to each instant.
     work: Vec<Work>,
 }
 
@@ -78,7 +79,7 @@ impl Trajectory {
         self.rows.v(self.instants[k]).unwrap_or(&[])
     }
 
-    /// Whether velocities are known. Where another program gave positions only they are not.
+    /// Whether velocities are known; they are not where another program gave positions only.
     pub fn has_velocities(&self) -> bool {
         self.rows.v.is_some()
     }
@@ -95,15 +96,15 @@ impl Trajectory {
         known.then(|| (self.rows.x(next), self.rows.v(next).unwrap_or(&[])))
     }
 
-    /// From the rows of a run that was to take `last` steps, and the work done up to each of them that
-    /// counts. Their velocities count as known if they have any. The first row and the last are
-    /// instants, and so is where the run `diverged`: the last that counts.
+    /// A record of the rows of a run that was to take `last` steps; `work` is the work done up to each
+    /// row that counts. Velocities are known if the rows have any. The first row and the last are
+    /// instants, and so is the last row that counts where the run `diverged`.
     pub fn of_rows(rows: &Rows, work: &[Work], last: u64, diverged: bool) -> Self {
         let particles = rows.dim / 3;
         let (stride, most) = (stride(last, particles), most_instants(particles) as usize);
         let shared = |step: u64| step.is_multiple_of(stride);
         let many = rows.steps.iter().filter(|step| shared(**step)).count();
-        // Rows that leave out too many steps have too few at the instants of every other run.
+        // Rows that leave out too many steps have too few at the instants all other runs use.
         let pitch = (many < most / 2).then(|| (rows.len() - 1).div_ceil(most - 1));
         let is_instant = |k: usize| {
             let by_thinning = pitch.map_or(shared(rows.steps[k]), |pitch| k.is_multiple_of(pitch));
@@ -130,7 +131,7 @@ impl Trajectory {
         trajectory
     }
 
-    /// One more row, after all others; an instant if the work done up to it is given.
+    /// Adds a row after all others; it is an instant if the work done up to it is given.
     fn push(&mut self, step: u64, x: &[f64], v: &[f64], work: Option<Work>) {
         if let Some(work) = work {
             self.instants.push(self.rows.len());
@@ -153,7 +154,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// For `steps` steps of a system of `dim` coordinates.
+    /// A recorder for `steps` steps of a system of `dim` coordinates.
     pub fn new(steps: u64, dim: usize, timestep: f64) -> Self {
         let stride = stride(steps, dim / 3);
         let instants = (steps / stride + 2) as usize;
@@ -270,12 +271,12 @@ mod tests {
         State::new(rows.x(k).to_vec(), rows.x(k).to_vec())
     }
 
-    fn recalled(rows: &Rows, last: u64) -> Trajectory {
+    fn from_rows(rows: &Rows, last: u64) -> Trajectory {
         Trajectory::of_rows(rows, &vec![Work::default(); rows.len()], last, false)
     }
 
     #[test]
-    fn every_step_given_is_recorded_as_a_running_engine_would_be() {
+    fn every_step_given_is_recorded_as_a_running_solver_would_be() {
         for last in [1, 2, 1998, 1999, 2000, 2001, 3998, 3999, 10_007] {
             let rows = rows(0..=last);
             let mut recorder = Recorder::new(last, 3, 0.5);
@@ -286,18 +287,18 @@ mod tests {
                     due = recorder.next(k as u64 + 1);
                 }
             }
-            assert_eq!(recalled(&rows, last), recorder.finish(), "{last}");
+            assert_eq!(from_rows(&rows, last), recorder.finish(), "{last}");
         }
     }
 
     #[test]
     fn sparse_rows_are_all_kept_until_there_are_too_many() {
         // A run of 10,000 steps has its instants every 6 steps.
-        let tenth = recalled(&rows((0..=10_000).step_by(10)), 10_000);
+        let tenth = from_rows(&rows((0..=10_000).step_by(10)), 10_000);
         assert_eq!(tenth.len(), 1_001);
         assert_eq!(tenth.following(3), None);
         // Every 5th of a million: 200,001 rows, of which few are on the multiples of 501.
-        let many = recalled(&rows((0..=1_000_000).step_by(5)), 1_000_000);
+        let many = from_rows(&rows((0..=1_000_000).step_by(5)), 1_000_000);
         assert!((1_000..=2_000).contains(&many.len()), "{}", many.len());
         assert_eq!(many.step(many.len() - 1), 1_000_000);
         for k in 0..many.len() {

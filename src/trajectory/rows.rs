@@ -1,9 +1,9 @@
-//! A trajectory as rows of data, whoever computed it: what files and other programs give.
+//! A trajectory as rows of data, as files and other programs give it.
 
 /// States a whole number of steps apart, not necessarily always the same number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
-    /// Seconds a step.
+    /// Length of a step, s.
     pub timestep: f64,
     /// Coordinates of a state, 3 a particle.
     pub dim: usize,
@@ -15,7 +15,8 @@ pub struct Rows {
     pub v: Option<Vec<f64>>,
     /// How exactly the positions were written down.
     pub precision: Precision,
-    /// And the velocities, which are often rounded otherwise; as the positions where there are none.
+    /// How exactly the velocities were written down, often otherwise; as the positions where there
+    /// are none.
     pub precision_v: Precision,
 }
 
@@ -24,9 +25,9 @@ pub struct Rows {
 pub enum Precision {
     Double,
     Single,
-    /// So many digits after the decimal point.
+    /// Rounded to this many digits after the decimal point.
     Decimals(u32),
-    /// So many significant digits.
+    /// Rounded to this many significant digits.
     Digits(u32),
 }
 

@@ -1,5 +1,5 @@
-//! What really happens in a scene: a closed form where what it contains allows one, otherwise a
-//! reference converged until two independent estimates agree. Both come with an error bar.
+//! The true motion of a scene: a closed form where its contents allow one, otherwise a reference
+//! converged until two independent estimates agree. Both come with an error bar.
 //!
 //! Not to be confused with rapier, which is one more method.
 
@@ -24,11 +24,11 @@ pub trait Motion: Send + Sync {
     /// ascending and lie between 0 and the `until` the motion was found for.
     fn states(&self, times: &[f64]) -> States;
 
-    /// No position in [0, t] is farther from what really happens than this, m.
+    /// Bound on the distance of any position in [0, t] from the true one, m.
     fn error_bar(&self, t: f64) -> f64;
 
-    /// Ascending times in [0, `until`], close enough together to show the motion: where states cost
-    /// least.
+    /// Ascending times in [0, `until`] at which states cost least, close enough together to show
+    /// the motion.
     fn landmarks(&self, until: f64) -> Vec<f64> {
         let part = |k: u32| until * f64::from(k) / f64::from(LANDMARKS);
         (0..=LANDMARKS).map(part).collect()
@@ -40,7 +40,7 @@ const LANDMARKS: u32 = 1_000;
 /// States at given times, all of one length.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct States {
-    /// Coordinates of a state.
+    /// Number of coordinates of a state.
     pub dim: usize,
     /// One state after the other.
     pub x: Vec<f64>,
@@ -48,7 +48,7 @@ pub struct States {
 }
 
 impl States {
-    /// Nothing yet, with room for so many states of `dim` coordinates.
+    /// No states yet, with room for `states` states of `dim` coordinates.
     pub fn with_room(dim: usize, states: usize) -> Self {
         Self {
             dim,
@@ -63,7 +63,7 @@ impl States {
         self.v.extend_from_slice(v);
     }
 
-    /// How many there are.
+    /// Number of states.
     pub fn len(&self) -> usize {
         self.x.len() / self.dim.max(1)
     }
@@ -99,7 +99,7 @@ pub(crate) fn farthest(a: &[f64], b: &[f64]) -> f64 {
     largest.sqrt()
 }
 
-/// Which truths are wanted.
+/// The truths that are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Demand {
     /// A closed form if there is one, else a converged reference.
@@ -110,10 +110,10 @@ pub enum Demand {
     None,
 }
 
-/// Keeps what is expensive to compute, by content. It may forget, and it may be shared by programs
-/// that run at once; what it returns is checked before it is used.
+/// Keeps results that are expensive to compute, under a key made of what they depend on. It may forget, and
+/// it may be shared by programs that run at once; what it returns is checked before it is used.
 pub trait Store: Sync {
-    /// What was saved under this key: lower-case hexadecimal digits.
+    /// The bytes saved under this key, which is in lower-case hexadecimal digits.
     fn load(&self, key: &str) -> Option<Vec<u8>>;
 
     /// Failing to save is no error: it is computed again next time.
@@ -167,10 +167,10 @@ pub fn find(
     match converged::find(scene, system, until, store) {
         Ok(found) => Truth {
             kind: TruthKind::Converged,
-            method: Some(found.known.method),
-            reason: found.known.reason,
-            horizon: found.known.horizon,
-            error_bound: found.known.error_bound,
+            method: Some(found.facts.method),
+            reason: found.facts.reason,
+            horizon: found.facts.horizon,
+            error_bound: found.facts.error_bound,
             motion: Some(Box::new(found.motion)),
         },
         Err(not) => Truth::none(not.to_string()),

@@ -7,7 +7,7 @@ use crate::testkit::scenes::shipped;
 use crate::testkit::{built, method, own};
 use springcheck::integrators::{DampingTreatment, Integrator, Splitting, Stage, StepError, fixed};
 use springcheck::measure::CheckStatus;
-use springcheck::measure::order::{Measured, RATIOS, Reason, Study, Verdict, check, observed};
+use springcheck::measure::order::{MeasuredOrder, RATIOS, Reason, Study, Verdict, check, observed};
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::Scene;
 use springcheck::truth::Motion;
@@ -39,7 +39,7 @@ fn every_method_is_of_its_order_on_designated_scenes() {
             let description = scene.description.as_deref().unwrap_or_default();
             assert!(description.starts_with("Designated for measuring orders"));
             for row in fixed().iter() {
-                let Measured { observed, .. } = study.method(row);
+                let MeasuredOrder { observed, .. } = study.method(row);
                 assert_eq!(
                     observed.verdict,
                     Verdict::Meets,
@@ -260,7 +260,7 @@ fn steps_too_coarse_are_no_miss() {
     let (system, _) = built(&scene);
     let truth = released(&scene);
     let study = Study::of_scene(&scene, &system, &truth, scene.duration).budget(200_000);
-    let Measured {
+    let MeasuredOrder {
         observed: seen,
         points,
         ..

@@ -1,4 +1,4 @@
-//! What a trajectory may follow: a method, whole or in substeps, or one of the common mistakes.
+//! The schemes a trajectory may follow: a method, whole or in substeps, or one of the common mistakes.
 
 use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError};
 use crate::physics::{ParticleSystem, State, System};
@@ -38,7 +38,7 @@ pub enum Scheme {
 pub type Map = fn(&dyn System, f64, Option<&State>, &mut State) -> Result<(), StepError>;
 
 impl Candidate {
-    /// A registry method in so many substeps.
+    /// A registry method in this many substeps.
     pub fn method(system: &ParticleSystem, method: &'static Method, substeps: u32) -> Self {
         Self {
             id: method.id.to_owned(),
@@ -108,7 +108,7 @@ impl Candidate {
         Self { remembers, ..self }
     }
 
-    /// Roundings of positions or velocities that one of its whole steps makes, about.
+    /// About how many roundings of positions or velocities one of its whole steps makes.
     pub fn roundings(&self) -> u32 {
         let stages = match self.scheme {
             // Force, matrix, factors and their solve; iterations before the last are corrected.
@@ -118,7 +118,7 @@ impl Candidate {
                 PerStep::Exactly(n) => 2 * n.max(1),
                 PerStep::PerIteration { plus } => 2 * (1 + plus),
             },
-            // As many as RK4's: more than any of the mistakes has.
+            // Taken as many as RK4's: more than any of the mistakes has.
             Scheme::Map(_) => 8,
         };
         stages.saturating_mul(self.substeps.max(1))
@@ -143,13 +143,12 @@ impl Candidate {
         }
     }
 
-    /// As `equivalent` in reports lists it: the id, and after a slash the substeps if there are
-    /// several.
+    /// Its name in the reports' `equivalent`: the id, and after a slash the substeps if there are several.
     pub fn label(&self) -> String {
         label(&self.id, self.substeps)
     }
 
-    /// Something that takes its steps. Each thread has its own.
+    /// A replayer that takes its steps. Each thread has its own.
     pub fn replayer(&self, settings: &Settings) -> Replayer<'_> {
         Replayer {
             candidate: self,
@@ -176,7 +175,7 @@ pub struct Replayer<'a> {
 }
 
 impl<'a> Replayer<'a> {
-    /// Whose steps it takes.
+    /// The candidate whose steps it takes.
     pub fn candidate(&self) -> &'a Candidate {
         self.candidate
     }
@@ -205,7 +204,7 @@ impl<'a> Replayer<'a> {
         }
         for at in step..step + span {
             for part in 0..n {
-                // As engines count time: n h, not a running sum.
+                // As solvers count time: n h, not a running sum.
                 state.t = (at * u64::from(n) + u64::from(part)) as f64 * part_of_h;
                 match (&mut self.integrator, self.candidate.scheme) {
                     (Some(integrator), _) => {

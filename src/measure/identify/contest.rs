@@ -1,4 +1,4 @@
-//! The race: few transitions for everybody, all for those that may still win.
+//! The race: few transitions for all candidates, all transitions for those that may still win.
 
 use super::candidate::Candidate;
 use super::replay::{Defect, FIT, Replay};
@@ -6,17 +6,17 @@ use super::sweep;
 use super::transition::{Transition, spread};
 use rayon::prelude::*;
 
-/// Out is who is so many times worse than the best.
+/// A candidate this many times worse than the best drops out.
 const OUT: f64 = 1e3;
-/// So many last digits off is no fault of the data: rounding, times what a stiff scene makes of it.
+/// A defect of this many last digits is no fault of the data: it is rounding, magnified by a stiff scene.
 const SOUND: f64 = 100.0 * FIT;
-/// Of those that fit nowhere yet, so many stay.
+/// Number of candidates that stay although they fit nowhere yet.
 const RUNNERS_UP: usize = 3;
-/// The first round goes over so many transitions.
+/// Transitions of the first round.
 const FIRST: usize = 4;
-/// The second over as many as this buys, in [`Replay::effort`]: well below a second.
+/// The budget of the second round, in [`Replay::effort`]: well below a second.
 pub(super) const BUDGET: u64 = 5_000_000;
-/// But no fewer.
+/// Fewest transitions of the second round.
 const FEWEST: usize = 8;
 
 /// A candidate and its defects at the transitions of a sample.
@@ -31,13 +31,13 @@ impl Entry {
         self.defects.iter().filter(|d| d.fits()).count()
     }
 
-    /// The defect that a share `kept` of the transitions does not exceed.
+    /// The defect that a fraction `kept` of the transitions does not exceed.
     pub(super) fn quantile(&self, kept: f64) -> f64 {
         quantile(&self.defects, kept)
     }
 }
 
-/// The value that a share `kept` of these does not exceed; infinite of nothing.
+/// The value that a fraction `kept` of these does not exceed; infinite where there are none.
 pub(super) fn quantile(defects: &[Defect], kept: f64) -> f64 {
     let mut units: Vec<f64> = defects.iter().map(|d| d.units).collect();
     units.sort_by(f64::total_cmp);
@@ -48,17 +48,18 @@ pub(super) fn quantile(defects: &[Defect], kept: f64) -> f64 {
         .unwrap_or(f64::INFINITY)
 }
 
-/// What a look at one transition may cost, in [`Replay::effort`]: some seconds at most.
+/// The budget of a look at one transition, in [`Replay::effort`]: some seconds at most.
 const LOOK: u64 = 100_000_000;
-/// Where only some transitions are asked for, an answer is wanted soon: a fraction of a second.
+/// The budget where only some transitions are to be used and an answer is wanted soon: a fraction
+/// of a second.
 const GLANCE: u64 = 2_000_000;
 
 /// Newton iterations of a step, about, where an answer is wanted soon: four where the motion is calm, a
 /// dozen on stiff cloth.
 const ITERATIONS: u64 = 8;
 
-/// Those that there is time for: in a large scene, or where rows lie far apart in it, only those of
-/// few substeps, and the one that is expected.
+/// The candidates that there is time for: in a large scene, or where rows lie far apart in it, only
+/// those of few substeps, and the one that is expected.
 pub(super) fn affordable(
     replay: &Replay,
     candidates: Vec<Candidate>,
@@ -84,7 +85,7 @@ pub(super) fn affordable(
     candidates.into_iter().filter(wanted).collect()
 }
 
-/// Who is still of interest after a look at the probes and a few more transitions, with the defects
+/// The candidates still of interest after the probes and a few more transitions, with their defects
 /// at all of the sample.
 pub(super) fn race(
     replay: &Replay,
@@ -120,15 +121,15 @@ pub(super) fn race(
     Race { entries, sample }
 }
 
-/// What a race leaves: who may have won, with the defects at a sample of the transitions.
+/// The result of a race: the candidates that may have won, with their defects at a sample of the
+/// transitions.
 pub(super) struct Race {
     pub(super) entries: Vec<Entry>,
     pub(super) sample: Vec<Transition>,
 }
 
-/// The least distance of each candidate over the probes: some may be faults, and what a trajectory
-/// follows early need not be what it follows. `brief` ends with the first that somebody about
-/// follows.
+/// The least distance of each candidate over the probes. Some probes may be faults, and a trajectory may
+/// follow another scheme early on. `brief` ends with the first probe that some candidate nearly follows.
 fn nearest(
     replay: &Replay,
     candidates: &[Candidate],
@@ -149,7 +150,7 @@ fn nearest(
         if best <= SOUND {
             break;
         }
-        // A fault makes all alike; who is far behind here need not be tried again.
+        // A fault makes all candidates alike; one that is far behind here need not be tried again.
         open.retain(|&i| distances[i] <= OUT * best);
     }
     near
@@ -172,7 +173,7 @@ fn defects(replay: &Replay, candidate: &Candidate, at: &[Transition]) -> Vec<Def
 /// scratch memory pays.
 const CHUNK: usize = 64;
 
-/// The same over many transitions, in parallel.
+/// The defects over many transitions, in parallel.
 pub(super) fn defects_of_all(
     replay: &Replay,
     candidate: &Candidate,
@@ -183,7 +184,7 @@ pub(super) fn defects_of_all(
         .collect()
 }
 
-/// Those that fit about as often as the best, and the nearest of the rest.
+/// The candidates that fit about as often as the best, and the nearest of the rest.
 fn survivors(entries: Vec<Entry>) -> Vec<Entry> {
     let most = entries.iter().map(Entry::fits).max().unwrap_or(0);
     let fits = |entry: &Entry| most > 0 && entry.fits() + 1 >= most.max(2);

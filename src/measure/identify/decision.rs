@@ -8,11 +8,11 @@ use super::same::Comparison;
 use super::transition::{Transition, spread};
 use super::{Identity, RunnerUp, Sameness};
 
-/// Those that fit the sample as well as the winner are compared with it over so many transitions,
+/// Those that fit the sample as well as the winner are compared with it over this many transitions,
 /// fewer where they cost more.
 const COMPARED: (usize, usize) = (64, 1024);
 
-/// All that is weighed.
+/// Everything that an identity is decided from.
 pub(super) struct Decision<'a> {
     pub(super) replay: &'a Replay<'a>,
     pub(super) comparison: &'a Comparison<'a>,
@@ -22,10 +22,10 @@ pub(super) struct Decision<'a> {
     pub(super) hint: Option<usize>,
 }
 
-/// One that cannot be told from the winner.
+/// A candidate that cannot be told from the winner.
 struct Equal {
     entry: usize,
-    /// Mathematically, where the trajectory goes.
+    /// Whether it is the same map where the trajectory goes.
     same: bool,
 }
 
@@ -34,7 +34,8 @@ impl Decision<'_> {
         let mut winner = ranking.winner;
         let mut defects = self.over_all(winner);
         let mut equals = self.equals(ranking, &defects);
-        // The name that is expected, if it is as good; and no mistake that makes no difference here.
+        // The expected name is preferred if it is as good; so is a method to a mistake that makes no
+        // difference here.
         let right = |i: usize| self.candidate(i).mistake.is_none();
         let better = |equal: &&mut Equal| {
             Some(equal.entry) == self.hint || (!right(winner) && equal.same && right(equal.entry))
@@ -51,7 +52,7 @@ impl Decision<'_> {
         let share = share.max(0.5);
         let own = &self.entries[winner];
         let runner_up = self.runner_up(winner, &equals, share).map(|(i, defect)| {
-            // Where it showed, if that was not in single transitions.
+            // The defect where it was told apart, if that was not in single transitions.
             (i, ranking.told(i).flatten().unwrap_or(defect))
         });
         let equivalent = self.labels(winner, &equals);
@@ -99,7 +100,7 @@ impl Decision<'_> {
         defects_of_all(self.replay, &entry.candidate, self.all)
     }
 
-    /// Those of the sample's equals that are the winner's equals throughout.
+    /// The sample's equals that are the winner's equals throughout.
     fn equals(&self, ranking: &Ranking, defects: &[Defect]) -> Vec<Equal> {
         let winner = self.candidate(ranking.winner);
         let mut equals: Vec<Equal> = Vec::new();
@@ -140,7 +141,7 @@ impl Decision<'_> {
         untold(&winner, &other)
     }
 
-    /// Each once, in order.
+    /// The labels, each once, in order.
     fn labels(&self, winner: usize, equals: &[Equal]) -> Vec<String> {
         let own = self.candidate(winner);
         let same = equals.iter().filter(|equal| equal.same);
@@ -162,7 +163,7 @@ impl Decision<'_> {
         entries.iter().map(|&i| self.candidate(i).label()).collect()
     }
 
-    /// The nearest by the sample of those that are no equals.
+    /// The nearest candidate by the sample that is not an equal.
     fn runner_up(&self, winner: usize, equals: &[Equal], share: f64) -> Option<(usize, f64)> {
         let names = |i: usize| {
             let own = i == winner || equals.iter().any(|equal| equal.entry == i);

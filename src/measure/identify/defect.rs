@@ -7,14 +7,14 @@
 /// result: one standard deviation or more, where the sum of many uniform roundings stays below 3 and
 /// that of a few in the worst case below 4. The rest is for programs that compute the same otherwise.
 pub const FIT: f64 = 8.0;
-/// Above this, another scheme: between the two, nothing is told.
+/// Above this, a transition follows another scheme. Between the two nothing can be told.
 pub const BEYOND: f64 = 2.0 * FIT;
 
 /// A defect so small needs no finer unit.
 pub(super) const CLEAR: f64 = 0.5 * FIT;
-/// Nor one so large: more directions never raise a unit by as much.
+/// Nor does one so large: more directions never raise a unit by as much.
 pub(super) const HOPELESS: f64 = 64.0 * FIT;
-/// Directions in which inputs are moved by their rounding, at most.
+/// Most directions in which inputs are moved by their rounding.
 pub(super) const NUDGES: u64 = 8;
 
 /// How far a replay ends from the data.
@@ -23,7 +23,7 @@ pub struct Defect {
     /// Largest over the coordinates of |predicted - recorded|, in units of what rounding explains;
     /// infinite where the candidate cannot take the steps.
     pub units: f64,
-    /// Every coordinate to the last bit.
+    /// Whether every coordinate is equal to the last bit.
     pub exact: bool,
     /// The same difference relative to what the transition moves.
     pub relative: f64,

@@ -29,7 +29,7 @@ const CHUNK: usize = 64;
 /// equal roundings cancel in half of the directions; in a file of a million transitions they must
 /// not in all.
 const NUDGES: u64 = 32;
-/// So far off, no direction makes a difference.
+/// Beyond this defect no direction makes a difference.
 const CLEARLY: f64 = 64.0 * BEYOND;
 
 /// The first transition that does not follow the identity; for a mistake, the method it was meant
@@ -44,13 +44,13 @@ pub fn first_fault(question: &Question, identity: &Identity) -> Option<Fault> {
     first_departure(question, all.iter().find(|c| named(c))?)
 }
 
-/// Whether the replay that found the identity has seen that every row follows it already.
+/// Whether the replay that found the identity has already seen every row follow it.
 fn followed_everywhere(rows: &Rows, identity: &Identity) -> bool {
     let all = identity.transitions + 1 == rows.len();
     all && identity.followed == identity.transitions && identity.mistake.is_none()
 }
 
-/// The same for a candidate of the caller's choice.
+/// The first transition that does not follow a candidate of the caller's choice.
 pub fn first_departure(question: &Question, candidate: &Candidate) -> Option<Fault> {
     let Question {
         scene,
@@ -76,7 +76,7 @@ pub fn first_departure(question: &Question, candidate: &Candidate) -> Option<Fau
     })
 }
 
-/// Between neighbouring rows, wherever a replay can start.
+/// The transitions between neighbouring rows, wherever a replay can start.
 fn transitions(rows: &Rows) -> Vec<Transition> {
     let finite: Vec<bool> = (0..rows.len()).map(|k| is_finite(rows, k)).collect();
     let all = (0..rows.len().saturating_sub(1)).map(|from| Transition {
@@ -93,7 +93,7 @@ fn is_finite(rows: &Rows, k: usize) -> bool {
     rows.x(k).iter().chain(v).all(|c| c.is_finite())
 }
 
-/// The places of those that do not follow the candidate, in order.
+/// The indices of the transitions that do not follow the candidate, in order.
 fn departures(replay: &Replay, followed: &Candidate, transitions: &[Transition]) -> Vec<usize> {
     let places: Vec<usize> = (0..transitions.len()).collect();
     let chunks = places.par_chunks(CHUNK).flat_map_iter(|chunk| {
@@ -113,7 +113,7 @@ fn departs(replay: &Replay, replayer: &mut Replayer, transition: &Transition) ->
     if units <= BEYOND {
         return false;
     }
-    // Infinite also where the data leaves no room at all.
+    // The defect is also infinite where the data leaves no room at all.
     let Ok(predicted) = replay.predict(replayer, transition) else {
         return false;
     };

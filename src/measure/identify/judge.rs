@@ -1,18 +1,17 @@
-//! Who wins a race, who cannot be told from the winner, and who comes next.
+//! The ranking of a race: the winner, the candidates that cannot be told from it, and the next.
 
 use super::contest::Entry;
 use super::replay::{BEYOND, Defect};
 
-/// So many transitions that one candidate meets to the last bit and another does not tell them
-/// apart, even where both fit: that rounding of the other happened to give these bits has a chance
-/// of at most a half each time.
+/// This many transitions that one candidate meets to the last bit and another does not tell them apart,
+/// even where both fit: each time the other's rounding gives these bits with a chance of at most a half.
 const BITS: usize = 8;
-/// Nine transitions of ten show how large a candidate's defects are.
+/// The fraction of transitions whose defects show how large a candidate's are.
 const TYPICAL: f64 = 0.9;
-/// Alike where nothing fits: within this factor.
+/// Where nothing fits, candidates within this factor are alike.
 const ALIKE: f64 = 2.0;
 
-/// The candidates by their places in the race.
+/// The ranking, with candidates as their indices in the race.
 pub(super) struct Ranking {
     /// The nearest; of several that are equally near, the preferred.
     pub(super) winner: usize,
@@ -42,7 +41,7 @@ impl Ranking {
 }
 
 /// Ranks by the defects over the sample; `hint` is preferred among equals, then the order of the
-/// entries. None of nobody. `bits`: whether the data holds whole states to the last bit.
+/// entries. None without entries. `bits`: whether the data holds whole states to the last bit.
 pub(super) fn rank(entries: &[Entry], hint: Option<usize>, bits: bool) -> Option<Ranking> {
     let transitions = entries.first()?.defects.len();
     // Where all fit, nothing is told.
@@ -65,7 +64,8 @@ fn among_fitting(
     bits: bool,
     leads: impl Fn(&Entry) -> bool,
 ) -> Ranking {
-    // Nine in ten: a scheme written the same way, whatever happened in between. Fewer are chance.
+    // Nine exact ones in ten mean a scheme written the same way, whatever happened in between.
+    // Fewer are chance.
     let exact = |i: usize| {
         let defects = &entries[i].defects;
         let fits = defects.iter().filter(|d| d.fits()).count();
@@ -113,7 +113,7 @@ fn among_fitting(
     }
 }
 
-/// Whether the other is nowhere clearly off where the winner fits.
+/// Whether the other candidate is nowhere clearly off where the winner fits.
 pub(super) fn untold(winner: &[Defect], other: &[Defect]) -> bool {
     let mut pairs = winner.iter().zip(other);
     pairs.all(|(own, other)| !own.fits() || other.units <= BEYOND)
@@ -126,7 +126,7 @@ fn by_median(entries: &[Entry], hint: Option<usize>) -> Ranking {
         let medians = &medians;
         (0..medians.len()).filter(move |&i| medians[i] <= factor * best)
     };
-    // Rounding alone parts those that are the same.
+    // Candidates that are the same differ by rounding alone.
     let first = near(1.0 + 1e-3).next().unwrap_or(0);
     let winner = hint
         .filter(|&hint| near(ALIKE).any(|i| i == hint))
@@ -139,7 +139,7 @@ fn by_median(entries: &[Entry], hint: Option<usize>) -> Ranking {
     }
 }
 
-/// Where nothing fits, the winner has to be so many times better than everybody else.
+/// Where nothing fits, the winner has to be this many times better than all others.
 pub(super) const LEAD: f64 = 1e3;
-/// And its defect so small a part of what the steps move.
+/// Its defect has to be this small a part of what the steps move.
 pub(super) const SMALL: f64 = 1e-3;

@@ -16,11 +16,11 @@ use crate::integrators::{self, Method};
 use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
 
-/// One way to get it wrong.
+/// A common mistake.
 pub struct Mistake {
     /// As reports name it, alone or as `id(method)`.
     pub id: &'static str,
-    /// What is wrong and what to change, for who wrote it.
+    /// What is wrong and what to change, for the program's author.
     pub says: &'static str,
     pub wrong: Wrong,
 }
@@ -32,9 +32,9 @@ pub enum Wrong {
         /// Registry id of the method it was meant to be.
         meant: &'static str,
         map: Map,
-        /// It uses the state one step before.
+        /// Whether it uses the state one step before.
         remembers: bool,
-        /// Without damping it is the method it was meant to be.
+        /// Whether without damping it is the method it was meant to be.
         only_damped: bool,
     },
     /// The forces or masses, in any method. None where the scene gives it nothing to get wrong.

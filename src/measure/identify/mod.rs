@@ -42,22 +42,22 @@ const MOST_SUBSTEPS: u32 = 16;
 /// Half of the transitions a race goes over; all count for those that may have won.
 const HALF_SAMPLE: usize = 32;
 
-/// What is to be identified.
+/// The question: which scheme these rows follow.
 pub struct Question<'a> {
     pub scene: &'a Scene,
     /// Built from `scene`.
     pub system: &'a ParticleSystem,
     pub rows: &'a Rows,
-    /// Of implicit methods.
+    /// Settings of implicit methods.
     pub settings: Settings,
-    /// At most so many transitions, spread evenly; None: all. With a limit, large scenes are tried in
+    /// Most transitions to use, spread evenly; None for all. With a limit, large scenes are tried in
     /// fewer substeps, too.
     pub transitions: Option<usize>,
     /// What the trajectory is said to be, method and substeps: its name among equals.
     pub hint: Option<(&'static str, u32)>,
 }
 
-/// Which scheme a trajectory follows.
+/// The scheme a trajectory follows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identity {
     /// Id of a method, or of a mistake.
@@ -67,14 +67,14 @@ pub struct Identity {
     /// Largest distance of a replayed row from the recorded one, in units of what rounding explains,
     /// over the transitions that follow it; where nothing fits, the median over all.
     pub defect: f64,
-    /// The nearest of those that can be told from it.
+    /// The nearest candidate that can be told from it.
     pub runner_up: Option<RunnerUp>,
-    /// No other candidate explains the data, and either this one does to rounding, or it is a
-    /// thousand times nearer than all others and off by less than a thousandth of what the steps
+    /// Whether no other candidate explains the data, and either this one does to rounding, or it is
+    /// a thousand times nearer than all others and off by less than a thousandth of what the steps
     /// move (as a solver is that stops early).
     pub decisive: bool,
-    /// What cannot be told from it here, each method once with the fewest substeps: `heun`,
-    /// `implicit_euler/4`.
+    /// The candidates that cannot be told from it here, each method once with the fewest substeps:
+    /// `heun`, `implicit_euler/4`.
     pub equivalent: Vec<String>,
     pub same: Sameness,
     /// What is wrong with the scheme, if it is a known mistake.
@@ -171,7 +171,7 @@ fn candidates(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
 }
 
 impl Identity {
-    /// As reports write it; None with a defect that is no number.
+    /// The identity as reports write it; None if its defect is no number.
     pub fn report(&self) -> Option<Identified> {
         self.defect.is_finite().then(|| {
             let runner_up = self.runner_up.as_ref();

@@ -1,5 +1,5 @@
-//! One replay: what a candidate makes of a row, and how far that is from the next row in units of
-//! rounding.
+//! One replay: the row a candidate makes from a row, and how far that is from the next row in units
+//! of rounding.
 
 use super::candidate::{Candidate, Replayer};
 use super::defect::{CLEAR, HOPELESS, NUDGES, largest_ratio};
@@ -13,27 +13,27 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 pub use super::defect::{BEYOND, Defect, FIT};
 
-/// A velocity is found from positions in about so many tries.
+/// A velocity is found from positions in about this many tries.
 const FIND: u64 = 8;
-/// A step that solves costs as much as so many that do not: 20 to 100, on a chain of 20.
+/// A step that solves costs as much as this many that do not: 20 to 100, on a chain of 20.
 const SOLVE: u64 = 100;
 
 /// Replays the rows of a trajectory.
 pub struct Replay<'a> {
     pub(super) rows: &'a Rows,
     pub(super) settings: Settings,
-    /// Where the fixed coordinates stand; None for the free.
+    /// Positions of the fixed coordinates, m; None for the free.
     fixed: Vec<Option<f64>>,
     /// The longest rest length, m: forces are rounded by as much even where positions are small.
     pub(super) length: f64,
-    /// The rows themselves are known no better than an iterative solve's tolerance.
+    /// Whether the rows themselves are known no better than an iterative solve's tolerance.
     pub(super) iterated: bool,
     steps: AtomicU64,
 }
 
 impl<'a> Replay<'a> {
-    /// None if the rows are not of this scene: another number of coordinates, or columns of
-    /// different lengths.
+    /// A replay of these rows; None if they are not of this scene: another number of coordinates,
+    /// or columns of different lengths.
     pub fn new(
         scene: &Scene,
         system: &ParticleSystem,
@@ -184,7 +184,7 @@ impl<'a> Replay<'a> {
         ratios.fold(0.0, f64::max)
     }
 
-    /// Raises `grown` to what inputs moved in this direction end away.
+    /// Raises `grown` to how far away inputs moved in this direction end.
     fn grow(
         &self,
         replayer: &mut Replayer,
@@ -197,7 +197,7 @@ impl<'a> Replay<'a> {
         let here = predicted.x.iter().chain(&predicted.v);
         let there = nudged.x.iter().chain(&nudged.v);
         let apart: Vec<f64> = here.zip(there).map(|(a, b)| (a - b).abs()).collect();
-        // By particle: of three axes one is not moved by chance.
+        // By particle, since chance may leave one of its axes where it was.
         for (grown, apart) in grown.chunks_mut(3).zip(apart.chunks(3)) {
             let most = apart.iter().fold(0.0, |most: f64, d| most.max(*d));
             for grown in grown {
@@ -232,7 +232,7 @@ impl<'a> Replay<'a> {
         let own = self.recorded(transition).zip(from).enumerate();
         let own = own.map(|(i, (value, from))| {
             let solve = if i < dim { seconds * solve } else { solve };
-            // What ends near 0 was larger in between.
+            // A number that ends near 0 was larger in between.
             let bit = f64::EPSILON * from.abs();
             self.rows.half_unit(i, value) + bit + solve
         });
@@ -293,7 +293,7 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// What replaying it costs, in steps of one particle under explicit forces, about.
+    /// About what replaying it costs, in steps of one particle under explicit forces.
     pub(super) fn effort(&self, candidate: &Candidate, transition: &Transition) -> u64 {
         let each = if candidate.solves() { SOLVE } else { 1 };
         let each = each * if self.rows.v.is_some() { 1 } else { FIND };

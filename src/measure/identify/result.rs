@@ -1,4 +1,4 @@
-//! What identification found, as data.
+//! The result of an identification, as data.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,15 +15,15 @@ pub struct Identified {
     /// The nearest scheme that is not equivalent, as `method` or `method/substeps`.
     pub runner_up: Option<String>,
     pub runner_up_defect: Option<f64>,
-    /// One scheme and no other explains the data.
+    /// Whether one scheme and no other explains the data.
     pub decisive: bool,
-    /// Others that explain it as well.
+    /// Other schemes that explain the data as well.
     pub equivalent: Vec<String>,
     /// Why it is not decisive; null where it is.
     pub undecided: Option<Undecided>,
 }
 
-/// Why a trajectory has not one scheme.
+/// The reason why a trajectory's scheme is not decided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Undecided {
@@ -31,7 +31,7 @@ pub enum Undecided {
     SameMap,
     /// They differ by less than the data is rounded.
     DataTooCoarse,
-    /// Rounding explains none.
+    /// Rounding explains none of them.
     NothingFits,
 }
 
@@ -45,17 +45,17 @@ pub struct Fault {
     pub t_s: f64,
     /// The particle that is off farthest.
     pub particle: usize,
-    /// What `expected` and `found` are of it, at the end of the step or of the span: x, y, z.
+    /// The quantity that `expected` and `found` give of it, x, y, z, at the end of the step or of the span.
     pub quantity: Quantity,
-    /// By the scheme, from the row before.
+    /// The value by the scheme, from the row before.
     pub expected: [f64; 3],
-    /// As recorded; null where that is not a finite number.
+    /// The value recorded; null where it is not a finite number.
     pub found: [Option<f64>; 3],
     /// The change that explains it, when it acts, and how many particles are off.
     pub explanation: String,
 }
 
-/// What a fault shows in.
+/// The quantity that a fault shows in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
     #[serde(rename = "position_m")]

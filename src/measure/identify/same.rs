@@ -9,7 +9,7 @@ use crate::trajectory::{Precision, Rows};
 
 /// Steps longer than the data's by this much: schemes that differ at all differ more.
 const LONGER: [f64; 5] = [1.0, 4.0, 16.0, 64.0, 256.0];
-/// Tried from so many states.
+/// Number of states the motions start from.
 const STATES: usize = 4;
 
 /// Compares candidates on motions of their own, from a trajectory's states.
@@ -17,7 +17,7 @@ pub(super) struct Comparison<'a> {
     pub(super) scene: &'a Scene,
     pub(super) system: &'a ParticleSystem,
     pub(super) replay: &'a Replay<'a>,
-    /// Where the motions may go: lower and upper end of each coordinate.
+    /// The region the motions may go to: lower and upper end of each coordinate.
     region: Vec<(f64, f64)>,
     starts: Vec<State>,
 }
@@ -38,8 +38,8 @@ impl<'a> Comparison<'a> {
                 *high = high.max(*x);
             }
         }
-        // What is linear where the data goes may not be elsewhere, behind an anchor say; but data
-        // that hardly moves must not leave nothing to try.
+        // A force that is linear where the data goes may not be elsewhere, behind an anchor say;
+        // but data that hardly moves must not leave nothing to try.
         for (low, high) in &mut region {
             let margin = 0.5 * (*high - *low) + 0.02 * scene.size();
             *low -= margin;

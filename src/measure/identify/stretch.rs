@@ -1,7 +1,7 @@
 //! Telling schemes apart over longer stretches, where single transitions are too coarse.
 //!
-//! What schemes differ by adds up from step to step; the rounding of the data enters once, however
-//! long the stretch, and what the motion makes of it is part of the unit.
+//! Differences between schemes add up from step to step. The rounding of the data enters once,
+//! however long the stretch, and its growth along the motion is part of the unit.
 
 use super::contest::{Entry, enter};
 use super::judge::{self, Ranking, Told};
@@ -12,9 +12,9 @@ use super::transition::{Transition, spread, stretches};
 const APART: [usize; 5] = [4, 16, 64, 256, 1024];
 /// Stretches of each length, while that is affordable: a fault lies in one of them.
 const STRETCHES: usize = 6;
-/// And no fewer.
+/// Fewest stretches of each length.
 const FEWEST: usize = 2;
-/// What those of one length may cost, in [`Replay::effort`]: a second or so. It has to buy
+/// The budget of the stretches of one length, in [`Replay::effort`]: a second or so. It has to buy
 /// five stretches of 16 rows, four particles, all methods and all substeps.
 const BUDGET: u64 = 30_000_000;
 

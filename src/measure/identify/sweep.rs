@@ -8,11 +8,11 @@ use std::collections::BTreeMap;
 
 /// Substeps that are always taken; those between are cheap, or found by interpolation.
 const NODES: [u32; 5] = [1, 2, 4, 8, 16];
-/// Of those between, so many that look nearest are taken.
+/// Of the substeps between the nodes, this many that look nearest are taken.
 const NEAREST: usize = 2;
 
 /// Distances of the candidates `open` at a transition, in units of the data's last digits alone;
-/// infinite for what cannot take it, or is not near enough to be worth its solves.
+/// infinite for a candidate that cannot take it, or is not near enough to be worth its solves.
 pub(super) fn distances(
     replay: &Replay,
     candidates: &[Candidate],
@@ -54,7 +54,7 @@ pub(super) fn distances(
     distances
 }
 
-/// Predicted minus recorded of each, in last digits.
+/// Predicted minus recorded for each number, in last digits.
 fn take(
     replay: &Replay,
     candidates: &[Candidate],

@@ -1,4 +1,4 @@
-//! Which pairs of rows are replayed.
+//! The pairs of rows that are replayed.
 
 use crate::physics::{ParticleSystem, System};
 use crate::trajectory::Rows;
@@ -31,7 +31,7 @@ impl Transition {
 
 /// Longer replays take too long, for several hundred candidates.
 const LONGEST: u64 = 20_000;
-/// Data moves less than this many of its roundings: nothing can be told there.
+/// Where data moves less than this many of its roundings, nothing can be told.
 const STILL: f64 = 16.0;
 
 /// A transition and how far it moves, in roundings of the data.
@@ -80,7 +80,7 @@ fn is_finite(rows: &Rows, k: usize) -> bool {
     rows.x(k).iter().chain(v).all(|c| c.is_finite())
 }
 
-/// Stretches of so many rows, one after the other, at most `limit` of them.
+/// Stretches of `apart` rows, one after the other, at most `limit` of them.
 pub(super) fn stretches(rows: &Rows, apart: usize, limit: usize) -> Vec<Transition> {
     let back = if rows.v.is_some() { 0 } else { apart };
     let starts = (back..rows.len()).step_by((apart + back).max(1));
@@ -133,8 +133,8 @@ pub(super) fn spread<T: Copy>(all: &[T], limit: usize) -> Vec<T> {
     }
 }
 
-/// Of these, in order, `half` evenly spread and as many of the livelier ones: where much moves,
-/// schemes differ most.
+/// A sample of these, in order: `half` evenly spread, and as many of the livelier ones, since
+/// schemes differ most where much moves.
 pub(super) fn sample(all: &[Weighed], half: usize) -> Vec<Weighed> {
     if all.len() <= 2 * half {
         return all.to_vec();

@@ -1,4 +1,4 @@
-//! The velocity that positions imply: with which a scheme leads from one row to the next.
+//! The velocity that positions imply: the one with which a scheme leads from one row to the next.
 
 use super::candidate::Replayer;
 use crate::integrators::StepError;
@@ -12,14 +12,14 @@ pub(super) struct Leg {
     pub(super) span: u64,
     /// Seconds a step.
     pub(super) timestep: f64,
-    /// What forces are known to no better than, as a length, m.
+    /// The rounding of what forces are computed from, as a length, m.
     pub(super) roundings: f64,
 }
 
-/// Steps of the iteration. It converges at once where a scheme drifts with a velocity that positions
-/// fix, and else as fast as (w h)² is small; beyond w h = 1 Broyden's updates do the work.
+/// Most steps of the iteration. It converges at once where a scheme drifts with a velocity that
+/// positions fix, and else as fast as (w h)² is small; beyond w h = 1 Broyden's updates do the work.
 const MOST: usize = 60;
-/// Without progress for so long, what is left is rounding.
+/// After this many steps without progress, what is left is rounding.
 const PATIENCE: usize = 4;
 
 impl Leg {

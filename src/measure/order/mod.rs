@@ -9,7 +9,7 @@ mod run;
 mod tests;
 
 pub use observed::{Observed, Point, RATIOS, Reason, TOLERANCE, Verdict, observed};
-pub use run::Build;
+pub use run::MakeIntegrator;
 
 use crate::integrators::{self, Method, Settings};
 use crate::measure::{Check, CheckStatus};
@@ -17,14 +17,13 @@ use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
 use crate::truth::Motion;
 use rayon::prelude::*;
-use run::{Grid, Problem};
+use run::{Grid, TestProblem};
 
-/// What a study may cost by default, in steps times coordinates: a fraction of a second for explicit
-/// methods.
+/// The default budget of a study, in steps times coordinates: a fraction of a second for explicit methods.
 pub const BUDGET: u64 = 4_000_000;
-/// Where a run at the scene's own step is long: so many of them at least.
+/// The budget allows for at least this many runs at the scene's own step, however long.
 const RUNS: u64 = 4;
-/// A run closer to the truth than this share of the way the motion goes follows it, roughly.
+/// A run follows the motion, roughly, if its error is below this fraction of the way the motion goes.
 const FOLLOWS: f64 = 0.1;
 /// A method farther off may have lost the motion: one that damps an oscillation away errs by its
 /// amplitude, at least half the way it goes. As A (1 - exp(-y)) with y as h^p, which such an error is,
@@ -36,8 +35,9 @@ const RESOLVED: f64 = 0.01;
 /// which may be in an error, that tenth changes a slope by at most ln 1.1 / ln 1.3 = 0.36.
 const CONTROL: (&str, f64) = ("rk4", 3.5);
 
-/// What part of the scene's own steps the coarsest level has, and at most how many, up to order 4 and
-/// above: high orders reach the floor at steps that look coarse, so they start coarser.
+/// The scene's own steps to one of the coarsest level, and the most steps of that level: up to
+/// order 4, and above it. High orders reach the floor at steps that look coarse, so they start
+/// coarser.
 const GRIDS: [(u64, u64); 2] = [(64, 511), (1024, 127)];
 
 /// A convergence study on one motion: the refinement levels to measure orders with. Any number of methods
@@ -47,30 +47,30 @@ const GRIDS: [(u64, u64); 2] = [(64, 511), (1024, 127)];
 /// above order 4. The error of each is the largest distance of any particle from the truth over the
 /// same M instants, the steps of the coarsest level, so that two errors differ by the step alone.
 pub struct Study<'a> {
-    problem: Problem<'a>,
+    problem: TestProblem<'a>,
     /// Steps at the scene's own timestep.
     own: u64,
     budget: u64,
     settings: Settings,
-    /// For factors of 2, and of 1.3.
+    /// The grids for levels a factor 2 and a factor 1.3 apart.
     grids: [Grid; 2],
 }
 
-/// What a study found.
+/// The result of a study.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+pub struct MeasuredOrder {
     pub observed: Observed,
     /// The levels that gave an error, coarse to fine.
     pub points: Vec<Point>,
     /// The levels that gave none: their step, s, and why.
     pub left_out: Vec<(f64, String)>,
-    /// Time errors were taken over, s.
+    /// End of the time errors were taken over, s.
     pub until: f64,
 }
 
 impl<'a> Study<'a> {
-    /// For any system and the motion that is its truth from `start` up to `until` seconds (not beyond
-    /// the truth's horizon). Steps are chosen around `timestep`, s.
+    /// A study of any system and the motion that is its truth from `start` up to `until` seconds (not
+    /// beyond the truth's horizon). Steps are chosen around `timestep`, s.
     ///
     /// Coordinates are taken in threes as particles; for a system without particles that is another
     /// norm of the same error, and the order is the same.
@@ -84,15 +84,15 @@ impl<'a> Study<'a> {
         let own = (until / timestep).ceil();
         let own = if own >= 1.0 { own as u64 } else { 0 };
         let run = own.saturating_mul(system.dim() as u64);
-        let problem = Problem {
+        let problem = TestProblem {
             system,
             start,
             motion,
             until,
         };
-        // Both now, not when first asked for: the truth is computed in parallel, and a thread that waits for
-        // it inside its own computation would wait for ever.
-        let grids = GRIDS.map(|(share, most)| Grid::new(&problem, own / share, most));
+        // Both grids are made now, not on first use: the truth is computed in parallel, and a thread that
+        // waits for it inside its own computation would wait for ever.
+        let grids = GRIDS.map(|(part, most)| Grid::new(&problem, own / part, most));
         Self {
             problem,
             own,
@@ -102,7 +102,7 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// For a scene and its truth, up to `until` or the scene's duration, whichever is less.
+    /// A study of a scene and its truth, up to `until` or the scene's duration, whichever is less.
     pub fn of_scene(
         scene: &Scene,
         system: &'a ParticleSystem,
@@ -121,15 +121,15 @@ impl<'a> Study<'a> {
         study
     }
 
-    /// With another bound on its cost, in steps times coordinates over all levels and the control. One
-    /// coarse level is run twice, to see how much rounding grows; that comes on top.
+    /// Sets another budget, in steps times coordinates over all levels and the control. One coarse
+    /// level is run twice, to see how much rounding grows; that comes on top.
     pub fn budget(mut self, budget: u64) -> Self {
         self.budget = budget;
         self
     }
 
     /// Measures a method of the registry against its row: `order_damped` where there is damping.
-    pub fn method(&self, method: &Method) -> Measured {
+    pub fn method(&self, method: &Method) -> MeasuredOrder {
         let damped = self.problem.system.kinds().depends_on_velocity();
         let stated = if damped {
             method.order_damped
@@ -154,7 +154,7 @@ impl<'a> Study<'a> {
     ///
     /// A method that does not converge at all and stays farther off than that is thus not told from
     /// steps too coarse.
-    pub fn measure(&self, stated: u32, build: Build) -> Measured {
+    pub fn measure(&self, stated: u32, build: MakeIntegrator) -> MeasuredOrder {
         let grid = self.grid(stated);
         let mut levels = multiples(stated)
             .take_while(|_| grid.instants > 0)
@@ -198,7 +198,7 @@ impl<'a> Study<'a> {
                         },
                         None => seen,
                     };
-                    return Measured {
+                    return MeasuredOrder {
                         observed,
                         points: runs.points,
                         left_out: runs.left_out,
@@ -225,21 +225,21 @@ fn multiples(stated: u32) -> impl Iterator<Item = u64> {
 
 /// The runs of one method.
 struct Runs<'a> {
-    problem: &'a Problem<'a>,
+    problem: &'a TestProblem<'a>,
     grid: &'a Grid,
-    build: Build<'a>,
-    /// Of the budget.
+    build: MakeIntegrator<'a>,
+    /// What is left of the budget.
     left: u64,
     points: Vec<Point>,
     left_out: Vec<(f64, String)>,
-    /// See [`Problem::amplification`].
+    /// See [`TestProblem::amplification`].
     amplification: Option<f64>,
     /// Levels the control has run, and its errors; None where it gave none.
     controls: Vec<(u64, Option<f64>)>,
 }
 
 impl Runs<'_> {
-    /// Whether the budget allows for this level; takes it.
+    /// Takes the cost of this level from the budget; false if the budget does not allow for it.
     fn spend(&mut self, m: u64) -> bool {
         let dim = self.problem.system.dim() as u64;
         let cost = self.grid.steps(m).saturating_mul(dim);
@@ -250,8 +250,8 @@ impl Runs<'_> {
         affordable
     }
 
-    /// Why an order that misses need not be the method's fault, if so; see [`Study::measure`]. As far
-    /// as the budget allows to see.
+    /// The reason why an order that misses need not be the method's fault, if the budget allows to
+    /// find one; see [`Study::measure`].
     fn doubt(&mut self, seen: &Observed, settings: &Settings) -> Option<Reason> {
         let reach = self.grid.reach;
         let mut upward = self.points.clone().into_iter().rev();
@@ -262,7 +262,7 @@ impl Runs<'_> {
         let Some((mut fine, mut error)) = control else {
             return Some(Reason::NotAsymptotic);
         };
-        // From where it leaves the floor.
+        // The slope is taken where the control leaves the floor.
         for coarse in upward {
             let Some(before) = self.control(coarse.h, settings) else {
                 break;
@@ -324,7 +324,7 @@ impl Runs<'_> {
 }
 
 /// The check `order` of this method: passes at the stated order minus [`TOLERANCE`] or above.
-pub fn check(subject: &str, measured: &Measured) -> Check {
+pub fn check(subject: &str, measured: &MeasuredOrder) -> Check {
     let seen = &measured.observed;
     let stated = seen.stated;
     let range = match seen.used.as_slice() {

@@ -14,7 +14,7 @@ pub struct Point {
     pub floor: f64,
 }
 
-/// Steps an order is read from: five points, four ratios.
+/// Ratios of steps an order is read from: four, of five points.
 pub const RATIOS: usize = 4;
 
 /// An order may be off by this much, and estimates may differ by this much among themselves.
@@ -23,7 +23,7 @@ pub const TOLERANCE: f64 = 0.05;
 /// From the coarsest of five steps to the finest, each half the one before.
 const SPAN: f64 = 16.0;
 
-/// What a list of errors says of the order.
+/// The order that a list of errors shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observed {
     /// The order the method claims.
@@ -33,7 +33,7 @@ pub struct Observed {
     /// How far its estimates from neighbouring steps differ; at most [`TOLERANCE`] where there is an
     /// order. None where there are too few points to estimate anything from.
     pub spread: Option<f64>,
-    /// Which points the estimates come from, coarse to fine. Empty where there were too few.
+    /// The points the estimates come from, coarse to fine. Empty where there were too few.
     pub used: Vec<Point>,
     pub verdict: Verdict,
 }
@@ -50,7 +50,7 @@ pub enum Verdict {
     Inconclusive(Reason),
 }
 
-/// Why errors show no order.
+/// The reason why errors show no order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reason {
     /// No error at any step is above the floor.
@@ -101,8 +101,8 @@ impl fmt::Display for Reason {
 /// and left out otherwise; one farther above never is, so that a low-order term that shows at fine
 /// steps only is not overlooked. Points that are not finite are left out.
 ///
-/// What the errors cannot show: steps so coarse that the method no longer follows the motion at all
-/// can give settled slopes of any value.
+/// The errors cannot show everything: steps so coarse that the method no longer follows the motion
+/// at all can give settled slopes of any value.
 pub fn observed(points: &[Point], stated: u32) -> Observed {
     let given = usable(points);
     let above = given.iter().copied().filter(|p| p.error > p.floor);
@@ -181,14 +181,14 @@ struct Estimate {
 }
 
 impl Estimate {
-    /// From points coarse to fine, with positive errors.
+    /// The estimate from points coarse to fine, with positive errors.
     fn of(points: &[Point]) -> Self {
         // The slope between two steps, and where it belongs: their logarithmic mean.
         let slopes: Vec<(f64, f64)> = points
             .windows(2)
             .map(|w| {
                 let ratio = (w[0].h / w[1].h).ln();
-                // Apart, since a quotient may overflow.
+                // The logarithms are taken apart, since a quotient may overflow.
                 let slope = (w[0].error.ln() - w[1].error.ln()) / ratio;
                 (slope, (w[0].h - w[1].h) / ratio)
             })

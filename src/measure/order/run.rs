@@ -6,32 +6,33 @@ use crate::solvers::advance;
 use crate::truth::{Motion, States, farthest};
 
 /// Makes a fresh integrator for each run.
-pub type Build<'a> = &'a (dyn Fn() -> Box<dyn Integrator> + Sync);
+pub type MakeIntegrator<'a> = &'a (dyn Fn() -> Box<dyn Integrator> + Sync);
 
-/// An error so many times the way the motion goes: the run has diverged (its energy is beyond 1e12
-/// times the motion's).
+/// A run has diverged once its error is this many times the way the motion goes: its energy is then
+/// beyond 1e12 times the motion's.
 const DIVERGED: f64 = 1e6;
-/// Instants at least; odd, so that no power of two of them falls on whole or half periods.
+/// Fewest instants; odd, so that no power of two of them falls on whole or half periods.
 const FEWEST: u64 = 31;
-/// Numbers of the truth kept at most.
+/// Most numbers of the truth that are kept.
 const MEMORY: u64 = 1 << 22;
 /// Relative size of the disturbance whose response tells how much rounding grows.
 const DISTURBANCE: f64 = 1e-7;
 
-/// What is run: a system from a start, whose truth is known up to a time.
-pub(super) struct Problem<'a> {
+/// A test problem: a system and a start, and the truth from there up to a time.
+pub(super) struct TestProblem<'a> {
     pub system: &'a (dyn System + Sync),
     pub start: State,
     pub motion: &'a dyn Motion,
-    /// Seconds.
+    /// The last time, s.
     pub until: f64,
 }
 
 /// The instants errors are taken at, and the truth there.
 pub(super) struct Grid {
-    /// Evenly spaced, the start not counted, the end included. 0 where there is no time to measure in.
+    /// Number of instants, evenly spaced, the start not counted, the end included. 0 where there is no
+    /// time to measure in.
     pub instants: u64,
-    /// Seconds.
+    /// The last time, s.
     pub until: f64,
     truth: States,
     /// Largest way any particle gets from its start, m.
@@ -41,8 +42,8 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// At about `wanted` instants, at most `most`.
-    pub fn new(problem: &Problem, wanted: u64, most: u64) -> Self {
+    /// A grid of about `wanted` instants, at most `most`.
+    pub fn new(problem: &TestProblem, wanted: u64, most: u64) -> Self {
         let dim = problem.system.dim();
         let room = (MEMORY / (dim.max(1) as u64)).min(most).max(FEWEST);
         let instants = (wanted.clamp(FEWEST, room) - 1) | 1;
@@ -71,21 +72,21 @@ impl Grid {
         self.instants.saturating_mul(m)
     }
 
-    /// Their size, s.
+    /// The size of these steps, s.
     pub fn step(&self, m: u64) -> f64 {
         self.until / self.steps(m) as f64
     }
 }
 
-/// What a run left.
-pub(super) struct Run {
+/// The result of a run.
+pub(super) struct LevelRun {
     /// Largest distance of any particle from the truth at any instant, m.
     pub error: f64,
     /// Positions at the instants.
     x: Vec<f64>,
 }
 
-impl Problem<'_> {
+impl TestProblem<'_> {
     /// Runs `m` steps from instant to instant, from the start or from one disturbed.
     ///
     /// # Errors
@@ -94,13 +95,13 @@ impl Problem<'_> {
         &self,
         grid: &Grid,
         m: u64,
-        build: Build,
+        build: MakeIntegrator,
         disturbed: Option<State>,
-    ) -> Result<Run, String> {
+    ) -> Result<LevelRun, String> {
         let h = grid.step(m);
         let mut integrator = build();
         let mut state = disturbed.unwrap_or_else(|| self.start.clone());
-        let mut run = Run {
+        let mut run = LevelRun {
             error: 0.0,
             x: Vec::new(),
         };
@@ -124,7 +125,13 @@ impl Problem<'_> {
 
     /// How far apart, m, a relative disturbance of the start as large as 1 would carry this run: what
     /// a rounding, which is a disturbance of eps, grows to. None where it cannot be told.
-    pub fn amplification(&self, grid: &Grid, m: u64, build: Build, run: &Run) -> Option<f64> {
+    pub fn amplification(
+        &self,
+        grid: &Grid,
+        m: u64,
+        build: MakeIntegrator,
+        run: &LevelRun,
+    ) -> Option<f64> {
         let each = self.system.dim().max(1);
         // The largest magnitude each coordinate reaches.
         let [x, v] = [&grid.truth.x, &grid.truth.v].map(|values| {

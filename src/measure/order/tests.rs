@@ -62,7 +62,7 @@ fn the_floor_is_left_out() {
     let seen = observed(&points, 4);
     assert_eq!(seen.verdict, Verdict::Meets, "{seen:?}");
     assert!(seen.used.iter().all(|p| p.h > points[7].h));
-    // Had nobody said where the floor is, the method would be blamed, or nothing be seen.
+    // Without a stated floor, the method would be blamed, or nothing be seen.
     assert_ne!(
         observed(&levels(12, 2.0, 0.0, error), 4).verdict,
         Verdict::Meets

@@ -4,21 +4,24 @@
 mod measured;
 mod predicted;
 
-pub use measured::{Cell, Make, Measured, classify, measure};
-pub use predicted::{Along, Effort, Linearised, Prediction, TightestLimit, is_linear};
+pub use measured::{Cell, MakeRun, MeasuredLimit, classify, measure};
+pub use predicted::{
+    Effort, Linearised, LinearisedTrajectory, Prediction, TightestLimit, is_linear,
+};
 
 /// The largest step that is stable, with all smaller ones.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Limit {
-    /// No step is: the energy of some mode grows at every step size.
+    /// No step is stable: the energy of some mode grows at every step size.
     Never,
-    /// Seconds.
+    /// The largest stable step, s.
     At(f64),
-    /// Between the largest step found stable and the smallest found unstable, s: work ended first.
+    /// It lies between the largest step found stable and the smallest found unstable, s: the budget
+    /// ended first.
     Between(f64, f64),
-    /// Every step is.
+    /// Every step is stable.
     Unconditional,
-    /// Not found, and why.
+    /// It was not found, and why.
     Unknown(String),
 }
 

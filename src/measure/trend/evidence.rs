@@ -9,11 +9,11 @@
 
 use std::f64::consts::{LN_2, TAU};
 
-/// What a test finds.
+/// The finding of a test.
 pub struct Evidence {
     /// Along the trend, in units of y.
     pub change: f64,
-    /// How much of the change noise explains: a share of it from [`one_way`], in units of y from
+    /// The part of the change that noise explains: a fraction from [`one_way`], in units of y from
     /// [`slow`].
     pub doubt: f64,
 }

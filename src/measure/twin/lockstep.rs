@@ -1,4 +1,4 @@
-//! Two engines over the same few instants.
+//! Two solvers over the same few instants.
 
 use crate::integrators::{self, StepError};
 use crate::physics::{ParticleSystem, State};
@@ -48,7 +48,7 @@ impl Path {
         Self::of(&Solver::method(method), scene, h, substeps, steps).unwrap_or(none)
     }
 
-    /// Why the path is not a whole one.
+    /// The reason why the path is not a whole one, if so.
     pub(super) fn ended(&self) -> Option<String> {
         if let Some(error) = &self.failed {
             return Some(error.to_string());

@@ -90,7 +90,7 @@ fn shortest(scene: &Scene) -> f64 {
 struct Random(u64);
 
 impl Random {
-    /// In [-1, 1).
+    /// The next number, in [-1, 1).
     fn symmetric(&mut self) -> f64 {
         self.0 = self
             .0

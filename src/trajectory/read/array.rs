@@ -5,7 +5,7 @@ use super::limits;
 use crate::scene::words::shorten;
 use std::io::{ErrorKind, Read};
 
-/// What an array's header says.
+/// The contents of an array's header.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Header {
     number: Number,
@@ -55,12 +55,12 @@ impl Header {
         })
     }
 
-    /// Whether numbers are singles.
+    /// Whether the numbers are in single precision.
     pub fn is_single(&self) -> bool {
         self.number.kind == b'f' && self.number.bytes == 4
     }
 
-    /// The numbers in C order, and nothing after them.
+    /// Reads the numbers in C order; anything after them is an error.
     pub fn numbers(&self, from: &mut dyn Read) -> Result<Vec<f64>, Wrong> {
         let product = |sizes: &[usize]| {
             let mut sizes = sizes.iter();
@@ -77,7 +77,7 @@ impl Header {
         };
         let wanted = count * self.number.bytes;
         // One more byte than wanted tells whether something follows. The header's claim alone
-        // reserves a megabyte.
+        // reserves at most a megabyte.
         let mut bytes = Vec::with_capacity(wanted.min(1 << 20));
         let read = from.take(wanted as u64 + 1).read_to_end(&mut bytes);
         if let Err(error) = read {
@@ -102,10 +102,10 @@ impl Header {
         })
     }
 
-    /// From the first index fastest to the last index fastest.
+    /// Reorders numbers whose first index varies fastest so that the last index does.
     fn to_c_order(&self, numbers: &[f64]) -> Vec<f64> {
         let stored = |mut at: usize| {
-            // Neighbours along an axis lie the product of all sizes before it apart.
+            // Neighbours along an axis lie as far apart as the product of all sizes before it.
             let (mut apart, mut stored) = (numbers.len(), 0);
             for size in self.shape.iter().rev() {
                 apart /= size;
@@ -136,13 +136,13 @@ fn exactly(from: &mut dyn Read, buffer: &mut [u8]) -> Result<(), Wrong> {
     })
 }
 
-/// What comes out of an archive is not what was put in.
+/// The error of an archive whose contents are not what was put in.
 fn damaged(error: &std::io::Error) -> Wrong {
     Wrong::new(format!("cannot be unpacked: {error}"), HALF)
 }
 
 impl Number {
-    /// From NumPy's type string: `<f8`, `>f4`, `|i1`.
+    /// Reads NumPy's type string: `<f8`, `>f4`, `|i1`.
     fn new(described: &str) -> Result<Self, Wrong> {
         let refuse = |help: &str| {
             let message = format!("expected real numbers, found type '{}'", shorten(described));
@@ -187,7 +187,7 @@ impl Number {
     }
 }
 
-/// Reads the header's Python dictionary. What NumPy never writes is None.
+/// Reads the header's Python dictionary. It gives None for what NumPy never writes.
 struct Parser<'a> {
     rest: &'a [u8],
 }

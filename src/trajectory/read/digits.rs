@@ -1,4 +1,4 @@
-//! How many digits numbers are given to, told from the numbers themselves and how they are written.
+//! The number of digits data is given to, told from the numbers and the way they are written.
 
 use super::super::Precision;
 use std::fmt::{LowerExp, Write};
@@ -27,7 +27,7 @@ impl Form {
         self.mixed = *self.first.get_or_insert(own) != own;
     }
 
-    /// Digits where each number has as many, zeros included; doubles where that tells nothing.
+    /// The digits, where each number has as many, zeros included; doubles where that tells nothing.
     pub fn written(self) -> Precision {
         match self.first.filter(|_| !self.mixed) {
             Some((decimals, false)) if decimals >= FEWEST => Precision::Decimals(decimals),
@@ -37,12 +37,12 @@ impl Form {
     }
 }
 
-/// How exactly these numbers are given: states of `width` numbers, one after the other, written so
-/// exactly as far as that alone tells.
+/// The precision of states of `width` numbers, one after the other. `written` is the precision that
+/// their form alone tells.
 ///
-/// Only numbers that differ from the same one in the state before count: starts and fixed particles
-/// are often exact. From what is left, floats in full need 17 digits (singles 9); rounding shows in
-/// that no number needs more than so many decimals, or so many digits, and most need just these.
+/// Only numbers that differ from the same one in the state before count, since starts and fixed
+/// particles are often exact. Floats in full need 17 digits (singles 9). Rounded numbers have a
+/// largest number of decimals, or digits, and most of them need just that many.
 pub(super) fn detect(values: &[f64], width: usize, written: Precision) -> Precision {
     match written {
         Precision::Decimals(_) => written,
@@ -80,16 +80,16 @@ impl Shortest {
     }
 }
 
-/// Numbers that say something about rounding.
+/// The numbers that show how data is rounded.
 pub(super) struct Sample {
     values: Vec<f64>,
     /// None where nothing is rounded: all numbers are short binary fractions, or nothing ever changes.
     pub shortest: Vec<Shortest>,
-    /// Whether they are singles.
+    /// Whether they are in single precision.
     pub single: bool,
 }
 
-/// So many numbers are enough.
+/// A sample of this many numbers is enough.
 const ENOUGH: usize = 8192;
 
 impl Sample {
@@ -135,13 +135,13 @@ impl Sample {
             return own;
         }
         let (longest, decimals) = (self.longest(), self.decimals());
-        let share = |same: &dyn Fn(&Shortest) -> bool| {
+        let fraction = |same: &dyn Fn(&Shortest) -> bool| {
             let count = self.shortest.iter().filter(|s| same(s)).count();
             count as f64 / self.shortest.len() as f64
         };
         // A last digit is 0, and not written, one time in ten.
-        let to_decimals = share(&|s| s.decimals() == decimals);
-        let to_digits = share(&|s| s.digits == longest);
+        let to_decimals = fraction(&|s| s.decimals() == decimals);
+        let to_digits = fraction(&|s| s.digits == longest);
         let by_decimals = Precision::Decimals(decimals);
         if longest < full {
             return match to_decimals >= to_digits {
@@ -154,8 +154,8 @@ impl Sample {
         if to_decimals >= MOST && by_decimals.half_unit(median) >= 4.0 * own.half_unit(median) {
             return by_decimals;
         }
-        // Of doubles that begin with 1, 2 or 3, at most 44 % get by with 16 digits: their spacing of
-        // 2^-51 or less against a unit of 1e-15. Of twenty none then all do.
+        // At most 44 % of the doubles that begin with 1, 2 or 3 get by with 16 digits, since their
+        // spacing is 2^-51 or less against a unit of 1e-15. Twenty of them never all do.
         let open = |v: &&f64| {
             let magnitude = v.abs();
             magnitude / 10f64.powf(magnitude.log10().floor()) < 4.0
@@ -170,7 +170,7 @@ impl Sample {
         own
     }
 
-    /// Of the magnitudes.
+    /// The median of the magnitudes.
     fn median(&self) -> f64 {
         let mut magnitudes: Vec<f64> = self.values.iter().map(|v| v.abs()).collect();
         magnitudes.sort_unstable_by(f64::total_cmp);
@@ -178,11 +178,11 @@ impl Sample {
     }
 }
 
-/// Where no number needs so many digits they were rounded: doubles, and singles.
+/// Numbers that all need fewer digits than this were rounded: doubles, and singles.
 const DOUBLE: u32 = 16;
 const SINGLE: u32 = 7;
 
-/// Where at least this share of the numbers has all its decimals, or digits, they were rounded to them.
+/// Numbers were rounded to a number of decimals, or digits, if at least this fraction needs them all.
 const MOST: f64 = 0.7;
 
 /// Numbers other than 0 that changed since the state before, evenly spread in a fixed irregular

@@ -11,25 +11,25 @@ use std::fmt;
 pub struct ReadError {
     /// The file as it was named.
     pub file: String,
-    pub place: Place,
+    pub place: ErrorPlace,
     /// What was expected and what was found.
     pub message: String,
     /// What to do; empty where the message says it all.
     pub help: String,
 }
 
-/// Where in a file something is wrong.
+/// The place in a file where something is wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Place {
+pub enum ErrorPlace {
     /// The file as a whole.
     File,
-    /// In text. Both count from 1; the column in characters, as editors do, not in fields.
+    /// A place in text. Both count from 1; the column counts characters, as editors do, not fields.
     Text { line: u64, column: u64 },
-    /// In an array, or the array as a whole where the index is empty. Indices count from 0.
+    /// A number in an array, or the whole array where the index is empty. Indices count from 0.
     Array { name: String, index: Vec<usize> },
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for ErrorPlace {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::File => Ok(()),
@@ -52,7 +52,7 @@ fn separated(help: &str) -> String {
     }
 }
 
-/// What to do where a file ends too early.
+/// The help for a file that ends too early.
 pub(super) const HALF: &str = "half a file? The program that wrote it may have stopped early";
 
 /// An error that does not know yet where it happened.
@@ -70,8 +70,8 @@ impl Wrong {
         }
     }
 
-    /// The file is named by whoever knows its name.
-    pub fn at(self, place: Place) -> ReadError {
+    /// The error at this place; the caller adds the file's name.
+    pub fn at(self, place: ErrorPlace) -> ReadError {
         ReadError {
             file: String::new(),
             place,
@@ -81,7 +81,7 @@ impl Wrong {
     }
 }
 
-/// What some programs begin UTF-8 with.
+/// The byte order mark some programs begin UTF-8 with.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The text after a byte order mark, if it has one. Offsets below count from there.
@@ -91,7 +91,7 @@ pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
 
 /// The place of the first character of a field, in the record that begins at this offset or after the
 /// blank lines there.
-pub(super) fn of_field(bytes: &[u8], start: u64, field: usize) -> Place {
+pub(super) fn of_field(bytes: &[u8], start: u64, field: usize) -> ErrorPlace {
     let text = without_mark(bytes);
     let mut at = usize::try_from(start).unwrap_or(usize::MAX).min(text.len());
     let skip = |at: usize, skipped: fn(&u8) -> bool| {
@@ -108,12 +108,12 @@ pub(super) fn of_field(bytes: &[u8], start: u64, field: usize) -> Place {
 }
 
 /// The place of the last character.
-pub(super) fn of_end(bytes: &[u8]) -> Place {
+pub(super) fn of_end(bytes: &[u8]) -> ErrorPlace {
     let text = without_mark(bytes).trim_ascii_end();
     place(text, text.len().saturating_sub(1))
 }
 
-fn place(text: &[u8], at: usize) -> Place {
+fn place(text: &[u8], at: usize) -> ErrorPlace {
     let before = &text[..at.min(text.len())];
     // "\r\n" ends one line, a lone "\r" ends one too.
     let ends = |i: usize| match before[i] {
@@ -127,7 +127,7 @@ fn place(text: &[u8], at: usize) -> Place {
         .rposition(|b| matches!(b, b'\n' | b'\r'))
         .map_or(0, |i| i + 1);
     let column = String::from_utf8_lossy(&before[start..]).chars().count();
-    Place::Text {
+    ErrorPlace::Text {
         line: breaks as u64 + 1,
         column: column as u64 + 1,
     }

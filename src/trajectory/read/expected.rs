@@ -1,15 +1,15 @@
-//! What a file must fit: the scene's particles and the step its times are counted in.
+//! The facts a file must fit: the scene's particles and the step its times are counted in.
 
 use crate::scene::Scene;
 
 /// The scene as a trajectory file sees it. What a file may leave out is filled in from here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
-    /// Seconds a step.
+    /// Length of a step, s.
     pub(super) timestep: f64,
     /// Positions at the start, 3 a particle, m: what a file does not say of fixed ones.
     pub(super) start: Vec<f64>,
-    /// Of each particle.
+    /// Whether each particle is fixed.
     pub(super) fixed: Vec<bool>,
     pub(super) free_axis: Option<FreeAxis>,
 }
@@ -23,14 +23,14 @@ pub struct FreeAxis {
 }
 
 impl FreeAxis {
-    /// Where it stands among all coordinates of a state.
+    /// Its index among all coordinates of a state.
     pub fn coordinate(self) -> usize {
         3 * self.particle + self.axis
     }
 }
 
 impl Expected {
-    /// `timestep` in seconds: the scene's own, or another that was asked for.
+    /// `timestep` in seconds: the scene's own, or another one given.
     pub fn new(scene: &Scene, timestep: f64) -> Self {
         Self {
             timestep,
@@ -51,8 +51,7 @@ impl Expected {
             .collect()
     }
 
-    /// The particle rows are about where they need not say: the scene's only one, or its only free
-    /// one.
+    /// The particle that rows without an id are about: the scene's only one, or its only free one.
     pub(super) fn only(&self) -> Option<usize> {
         match self.free()[..] {
             [id] => Some(id),

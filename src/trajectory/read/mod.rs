@@ -29,7 +29,7 @@ mod expected;
 mod npz;
 mod times;
 
-pub use error::{Place, ReadError};
+pub use error::{ErrorPlace, ReadError};
 pub use expected::{Expected, FreeAxis, free_axis};
 
 use super::{Precision, Rows};
@@ -63,8 +63,8 @@ pub enum Layout {
 }
 
 impl Layout {
-    /// By the first bytes, whatever the name says; by the name's extension where they say nothing,
-    /// and text where that says nothing either.
+    /// Guesses by the first bytes, whatever the name says. Where they tell nothing the name's
+    /// extension decides; where that tells nothing either, the file is text.
     pub fn guess(name: &str, bytes: &[u8]) -> Self {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
         if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06") {
@@ -81,7 +81,7 @@ impl Layout {
     }
 }
 
-/// What a file says, before its times are counted in steps.
+/// The contents of a file, before its times are counted in steps.
 struct Table {
     times: times::Times,
     /// Positions, m.
@@ -93,13 +93,13 @@ struct Table {
 /// Whole states, one after the other.
 struct Numbers {
     values: Vec<f64>,
-    /// As far as its form alone tells.
+    /// The precision that the form of the numbers alone tells.
     written: Precision,
 }
 
 impl Numbers {
-    /// How exactly states of so many numbers are given. Text of singles gives back the singles it was
-    /// printed from.
+    /// The precision of states of `dim` numbers, and the numbers. Text of singles gives back the
+    /// singles it was printed from.
     fn measured(mut self, dim: usize) -> (Precision, Vec<f64>) {
         let precision = digits::detect(&self.values, dim, self.written);
         if precision == Precision::Single {
@@ -129,12 +129,12 @@ pub fn read(
     })
 }
 
-/// Errors do not name the file.
+/// Reads the rows; errors do not name the file yet.
 fn rows(bytes: &[u8], layout: Layout, expected: &Expected) -> Result<Rows, ReadError> {
     if bytes.len() > limits::FILE_BYTES {
         let cap = limits::FILE_BYTES >> 30;
         let help = "keep fewer instants";
-        return Err(Wrong::new(format!("expected at most {cap} GiB"), help).at(Place::File));
+        return Err(Wrong::new(format!("expected at most {cap} GiB"), help).at(ErrorPlace::File));
     }
     let table = match layout {
         Layout::Csv => csv::read(bytes, expected)?,

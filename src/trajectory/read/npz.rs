@@ -1,7 +1,7 @@
 //! Trajectories as NumPy arrays: `t`, `x` and `v` in an archive, or the positions alone.
 
 use super::array::{Header, tuple};
-use super::error::{HALF, Place, ReadError, Wrong};
+use super::error::{ErrorPlace, HALF, ReadError, Wrong};
 use super::expected::Expected;
 use super::times::Times;
 use super::{Numbers, Precision, Table};
@@ -15,7 +15,7 @@ const EXAMPLE: &str = "np.savez('mine.npz', t=t, x=x, v=v) writes what is read h
 
 /// Reads an archive as `np.savez` and `np.savez_compressed` write it.
 pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError> {
-    let whole = |wrong: Wrong| wrong.at(Place::File);
+    let whole = |wrong: Wrong| wrong.at(ErrorPlace::File);
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| {
         whole(if bytes.starts_with(b"PK") {
             Wrong::new(format!("the archive cannot be read: {error}"), HALF)
@@ -89,7 +89,7 @@ pub(super) fn positions(bytes: &[u8], expected: &Expected) -> Result<Table, Read
 /// One array of a file.
 struct Array {
     name: &'static str,
-    /// Instants first, of which there are some.
+    /// The shape: instants first, at least one.
     sizes: Vec<usize>,
     /// What one instant of positions or velocities gives, in order: all coordinates, those of free
     /// particles, or the one on the free axis.
@@ -105,7 +105,7 @@ impl Array {
     ) -> Result<Self, ReadError> {
         let fail = |wrong: Wrong| wrong.at(of(name));
         let header = Header::read(&mut from).map_err(fail)?;
-        // The shape first: it says how much there is to read.
+        // The shape is read first: it says how much there is to read.
         let coordinates = coordinates(name, &header.shape, expected).map_err(fail)?;
         if header.shape[0] == 0 {
             let wrong = Wrong::new("expected at least one instant, found none", "");
@@ -113,7 +113,7 @@ impl Array {
         }
         let values = header.numbers(&mut from).map_err(fail)?;
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            let place = Place::Array {
+            let place = ErrorPlace::Array {
                 name: name.to_owned(),
                 index: index(at, &header.shape),
             };
@@ -133,7 +133,7 @@ impl Array {
         })
     }
 
-    /// Whole states, with what is not given as `missing` has it.
+    /// Whole states; what is not given is taken from `missing`.
     fn states(self, missing: &[f64]) -> Numbers {
         let Numbers { values, written } = self.numbers;
         if self.coordinates.len() == missing.len() {
@@ -153,8 +153,8 @@ impl Array {
     }
 }
 
-/// The coordinates an array of this name and shape gives at one instant, if it can be one of this
-/// scene's; none of times.
+/// The coordinates that an array of this name and shape gives at one instant, empty for times. An
+/// array that cannot be of this scene is an error.
 fn coordinates(name: &str, shape: &[usize], expected: &Expected) -> Result<Vec<usize>, Wrong> {
     if name == "t" {
         let help = "t.ravel() makes it so";
@@ -185,7 +185,7 @@ fn coordinates(name: &str, shape: &[usize], expected: &Expected) -> Result<Vec<u
     }
 }
 
-/// What the array probably is, in NumPy's words.
+/// A guess at what the array is, in NumPy's words.
 fn remedy(x: &str, shape: &[usize], n: usize) -> String {
     match *shape {
         [_, k] if k == 3 * n => format!("{x}.reshape(-1, {n}, 3) makes it so"),
@@ -197,15 +197,15 @@ fn remedy(x: &str, shape: &[usize], n: usize) -> String {
     }
 }
 
-/// The array as a whole.
-fn of(name: &str) -> Place {
-    Place::Array {
+/// The place of the array as a whole.
+fn of(name: &str) -> ErrorPlace {
+    ErrorPlace::Array {
         name: name.to_owned(),
         index: Vec::new(),
     }
 }
 
-/// Of the number at this place in C order.
+/// The index of the number at this place in C order.
 fn index(mut at: usize, shape: &[usize]) -> Vec<usize> {
     let mut index = vec![0; shape.len()];
     for (i, size) in index.iter_mut().zip(shape).rev() {

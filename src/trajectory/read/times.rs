@@ -3,7 +3,7 @@
 use super::super::Precision;
 use super::Numbers;
 use super::digits::{FULL, Sample};
-use super::error::{Place, ReadError, Wrong, of_field};
+use super::error::{ErrorPlace, ReadError, Wrong, of_field};
 use crate::scene::limits::STEPS;
 
 /// The times of all instants, s.
@@ -13,7 +13,7 @@ pub(super) struct Times {
     pub fields: Option<(Vec<u64>, usize)>,
 }
 
-/// A time lies this near to a whole number of steps, in steps, beside its own rounding.
+/// A time may be this far from a whole number of steps, in steps, besides its own rounding.
 const NEAR: f64 = 1e-6;
 
 /// Errors of a running sum may reach this part of a step: beyond, the next step is as near.
@@ -43,9 +43,9 @@ pub(super) fn follows(last: Option<f64>, t: f64) -> Result<(), Wrong> {
 /// How far a time may be off for having been rounded.
 #[derive(Debug, Clone, Copy)]
 enum Rounding {
-    /// As a float of this epsilon, after every step of a running sum.
+    /// The times are a running sum, rounded to a float of this epsilon after every step.
     Sum(f64),
-    /// To so many decimals or so many digits, whichever is coarser.
+    /// The text is rounded to this many decimals or digits, whichever is coarser.
     Text { decimals: u32, digits: u32 },
 }
 
@@ -76,7 +76,7 @@ impl Rounding {
         by_decimals.max(Precision::Digits(digits).half_unit(t))
     }
 
-    /// In steps.
+    /// How far a time may be from a whole number of steps, in steps.
     fn allowance(self, t: f64, timestep: f64) -> f64 {
         let n = (t / timestep).max(1.0);
         let sum = |epsilon: f64| (0.5 * epsilon * n * n).min(FARTHEST);
@@ -84,15 +84,15 @@ impl Rounding {
             Self::Sum(epsilon) => sum(epsilon),
             Self::Text { .. } => {
                 let given = self.given(t) / timestep;
-                // Coarser text tells nothing of the step: exact, or wrong.
+                // Coarser text tells nothing of the step: a time is then exact, or wrong.
                 let given = if given <= COARSEST { given } else { 0.0 };
                 given + sum(f64::EPSILON)
             }
         }
     }
 
-    /// How far a step of so many digits may be, relative, from what a row at this time says. Running
-    /// sums drift, but only a round step is worth more than they say.
+    /// How far, relative, a step of `digits` digits may be from what a row at this time says.
+    /// Running sums drift, but only a round step counts for more than what they say.
     fn relative(self, t: f64, digits: usize) -> f64 {
         match self {
             Self::Sum(epsilon) if digits < 6 => (1e6 * epsilon).min(1e-4),
@@ -138,7 +138,7 @@ impl Times {
         Ok(steps)
     }
 
-    /// A time that is no step's.
+    /// The error of a time that belongs to no step.
     fn misfit(&self, t: f64, timestep: f64, rounding: Rounding) -> Wrong {
         let steps = t / timestep;
         if steps > STEPS {
@@ -162,13 +162,13 @@ impl Times {
         Wrong::new(message, help)
     }
 
-    fn place(&self, k: usize, bytes: &[u8]) -> Place {
+    fn place(&self, k: usize, bytes: &[u8]) -> ErrorPlace {
         match &self.fields {
             Some((starts, field)) => {
                 let start = starts.get(k).copied().unwrap_or_default();
                 of_field(bytes, start, *field)
             }
-            None => Place::Array {
+            None => ErrorPlace::Array {
                 name: "t".to_owned(),
                 index: vec![k],
             },
@@ -176,7 +176,7 @@ impl Times {
     }
 }
 
-/// More steps than these from one row to the next explain any times.
+/// More steps than this from one row to the next would explain any times.
 const SPARSEST: f64 = 1000.0;
 
 /// The roundest step that all times are multiples of, if there is one worth naming.

@@ -1,4 +1,4 @@
-//! Groups of particles that move independently of all others: what a closed form is asked for.
+//! Groups of particles that move independently of all others: each has a closed form of its own, or none.
 
 use crate::physics::State;
 use crate::scene::{DampingModel, Scene, Spring};
@@ -18,15 +18,15 @@ pub(super) struct Group<'a> {
 /// A free particle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Body {
-    /// In the scene.
+    /// Index in the scene.
     pub id: usize,
     pub mass: f64,
     pub drag: f64,
-    /// At the start.
+    /// At the start: position, m, and velocity, m/s.
     pub position: Vector3<f64>,
     pub velocity: Vector3<f64>,
-    /// Acceleration under gravity and wind alone, m/s²: the same bits for equal masses, and without
-    /// wind for all.
+    /// Acceleration under gravity and wind alone, m/s²: equal masses have the same bits, and
+    /// without wind all have.
     pub constant: Vector3<f64>,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Body {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Link<'a> {
     pub spring: &'a Spring,
-    /// Where in `bodies` its ends stand; None is a fixed end.
+    /// Index in `bodies` of each end; None for a fixed end.
     pub ends: [Option<usize>; 2],
     /// Positions of its ends at the start, m.
     pub at: [Vector3<f64>; 2],
@@ -43,7 +43,7 @@ pub(super) struct Link<'a> {
 }
 
 /// The groups of a scene: free particles that springs join, directly or through one another; fixed
-/// ones join nothing. In order of their first particle.
+/// ones join nothing. Groups are in order of their first particle.
 pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Group<'a>> {
     let fixed = |i: usize| scene.particles[i].fixed;
     let acts = |spring: &&Spring| {
@@ -130,7 +130,7 @@ impl Link<'_> {
         self.spring.stiffness > 0.0 && self.spring.rest_length > 0.0
     }
 
-    /// From its first end to its second at the start, m.
+    /// The vector from its first end to its second at the start, m.
     pub fn between(&self) -> Vector3<f64> {
         self.at[1] - self.at[0]
     }

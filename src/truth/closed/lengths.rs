@@ -2,7 +2,7 @@
 
 use super::mode::{Mode, Start};
 
-/// A length may shrink to this share of itself in one step of the proof.
+/// A length may shrink to this fraction of itself in one step of the proof.
 const SHRINK: f64 = 0.75;
 
 /// Products of modes and springs after which the proof gives up.
@@ -10,9 +10,9 @@ const EFFORT: usize = 10_000_000;
 
 /// A spring's length over time: its start plus a sum over the modes.
 pub(super) struct Length {
-    /// m.
+    /// At the start, m.
     pub start: f64,
-    /// Of each mode.
+    /// Change of the length per unit of each mode.
     pub stretch: Vec<f64>,
 }
 
@@ -22,7 +22,7 @@ pub(super) struct Bounds {
     /// Lengths, m.
     pub shortest: f64,
     pub longest: f64,
-    /// Rate of change, m/s, either way.
+    /// Largest rate of change, m/s, either way.
     pub fastest: f64,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct Bounds {
 struct Instant {
     mode: Mode,
     position: f64,
-    /// As it goes on from here.
+    /// The start of its motion from here on.
     start: Start,
 }
 
@@ -62,7 +62,7 @@ pub(super) fn bounds(
             if l <= closest {
                 return None;
             }
-            // What it may lose at most from now on, as a negative number.
+            // The most it may lose from now on, as a negative number.
             let lost = length.sum(&now, |s, now| {
                 s.abs() * now.mode.lowest(now.start.times(s.signum()), left)
             });
@@ -91,7 +91,7 @@ pub(super) fn bounds(
     None
 }
 
-/// How long it takes at least to lose `room` at this speed and no more than this acceleration.
+/// The least time, s, to lose `room`, m, at this speed and at most this acceleration.
 fn safe(speed: f64, most: f64, room: f64) -> f64 {
     let root = speed.hypot((2.0 * most * room).sqrt());
     // The positive root of most s² / 2 - speed s - room, without cancellation.
@@ -118,13 +118,13 @@ impl Instant {
 }
 
 impl Length {
-    /// Over the modes, of something each does per unit of stretch.
+    /// The sum over the modes of `of`, which takes the stretch per unit of a mode.
     fn sum(&self, now: &[Instant], of: impl Fn(f64, &Instant) -> f64) -> f64 {
         let terms = self.stretch.iter().zip(now);
         terms.map(|(&s, now)| of(s, now)).sum()
     }
 
-    /// Bounds from the modes' energies alone; the shortest is not one yet.
+    /// Bounds from the modes' energies alone; `shortest` is still the length at the start.
     fn outer(&self, modes: &[(Mode, Start)], until: f64) -> Bounds {
         let mut bounds = Bounds {
             shortest: self.start,

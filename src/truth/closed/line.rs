@@ -17,10 +17,10 @@ pub(super) struct Line {
     /// Motion across the line, common to all particles.
     pub drift: Drift,
     /// What the file's rounding leaves across the line.
-    pub off: Off,
+    pub offset: Offset,
 }
 
-/// A mode without stiffness in every direction, from 0 at this velocity.
+/// The same mode without stiffness in every direction, from 0 at this velocity.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Drift {
     pub mode: Mode,
@@ -36,21 +36,21 @@ impl Drift {
 
 /// The largest position (m), velocity and acceleration across the line.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Off {
+pub(super) struct Offset {
     pub position: f64,
     pub velocity: f64,
     pub pull: f64,
 }
 
-impl Off {
-    /// Every particle is on the line to the last bit.
+impl Offset {
+    /// Whether every particle is on the line to the last bit.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 }
 
 impl Line {
-    /// None if motion leaves the line by more than the rounding of the scene's numbers.
+    /// The line of a group; None if motion leaves it by more than the rounding of the scene's numbers.
     pub fn of(group: &Group) -> Option<Self> {
         let velocities: Vec<_> = group.bodies.iter().map(|b| b.velocity).collect();
         let pulls: Vec<_> = group.bodies.iter().map(|b| b.constant).collect();
@@ -80,7 +80,7 @@ impl Line {
                 pull,
                 ..Drift::default()
             },
-            off: Off {
+            offset: Offset {
                 position,
                 velocity: off_velocity,
                 pull: off_pull,
@@ -95,7 +95,7 @@ impl Line {
             }
             line.drift.mode.g = 0.5 * high;
             let gained = norm(pull) * group.until.min(1.0 / high);
-            line.off.pull += (high - low) * (norm(velocity) + gained);
+            line.offset.pull += (high - low) * (norm(velocity) + gained);
         }
         Some(line)
     }
@@ -110,8 +110,8 @@ fn longest(vectors: &[Vector3<f64>]) -> Option<Vector3<f64>> {
     longest.filter(|&v| v != Vector3::zeros())
 }
 
-/// What these vectors have in common across the line, and how far they are from it at most: nothing
-/// if they lie along it, the first one's part if nothing is anchored and all agree.
+/// The part across the line that these vectors share, and their largest distance from it. The part
+/// is 0 if they lie along the line, and the first one's if nothing is anchored and all agree.
 fn common(
     vectors: &[Vector3<f64>],
     along: Vector3<f64>,
@@ -140,7 +140,7 @@ fn common(
 /// |y'|² + c |y|² grows no faster than at twice max(high - c, c - low) / 2 √c.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sideways {
-    off: Off,
+    offset: Offset,
     /// Largest over smallest mass norm of a unit offset.
     spread: f64,
     /// Bounds on the stiffness across the line over the mass, 1/s².
@@ -151,9 +151,9 @@ pub(super) struct Sideways {
 impl Sideways {
     /// None where a damper without a shortest length makes the stiffness unbounded. `lengths` are of the
     /// springs with a rest length, in order.
-    pub fn new(group: &Group, off: Off, lengths: &[Bounds]) -> Option<Self> {
+    pub fn new(group: &Group, offset: Offset, lengths: &[Bounds]) -> Option<Self> {
         let masses = || group.bodies.iter().map(|b| b.mass);
-        // Of each particle, by Gershgorin's rows.
+        // Bounds for each particle, by Gershgorin's rows.
         let (mut low, mut high) = (vec![0.0; masses().len()], vec![0.0; masses().len()]);
         let mut lengths = lengths.iter();
         for link in &group.links {
@@ -177,22 +177,26 @@ impl Sideways {
         }
         let lightest = masses().fold(f64::INFINITY, f64::min);
         Some(Self {
-            off,
+            offset,
             spread: (masses().sum::<f64>() / lightest).sqrt(),
             low: low.into_iter().fold(0.0, f64::min),
             high: high.into_iter().fold(0.0, f64::max),
         })
     }
 
-    /// No particle is farther off the line in [0, t], m.
+    /// Bound on the distance of any particle from the line in [0, t], m.
     pub fn bound(&self, t: f64) -> f64 {
-        let Self { low, high, off, .. } = *self;
+        let Self {
+            low, high, offset, ..
+        } = *self;
         if t == 0.0 {
-            return self.spread * off.position;
+            return self.spread * offset.position;
         }
         let c = (0.5 * (low + high)).max(-low).max(1.0 / (t * t));
         let rate = (high - c).max(c - low) / (2.0 * c.sqrt());
-        let start = off.position.hypot((off.velocity + off.pull * t) / c.sqrt());
+        let start = offset
+            .position
+            .hypot((offset.velocity + offset.pull * t) / c.sqrt());
         // Twice, for terms of second order in the offset.
         2.0 * self.spread * start * (rate * t).exp()
     }

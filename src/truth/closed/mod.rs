@@ -23,7 +23,7 @@ use super::{Motion, States, Truth, TruthKind};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use group::groups;
-use part::Part;
+use part::GroupMotion;
 
 /// Ids of the effects the forms account for. Any other effect in a scene means no closed form.
 const KNOWN: &[&str] = &["gravity", "springs", "drag", "wind"];
@@ -41,7 +41,7 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
     }
     let start = ParticleSystem::initial_state(scene);
     let groups = groups(scene, &start, until);
-    let parts: Vec<Part> = groups.iter().map(Part::of).collect::<Option<_>>()?;
+    let parts: Vec<GroupMotion> = groups.iter().map(GroupMotion::of).collect::<Option<_>>()?;
     let mut methods = each_once(parts.iter().map(|p| p.method.as_str()));
     let mut reasons = each_once(parts.iter().map(|p| p.reason.as_str()));
     if parts.is_empty() {
@@ -65,7 +65,7 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
     })
 }
 
-/// In order of first appearance; after three, `others`.
+/// Each text once, in order of first appearance; `others` stands for those after three.
 fn each_once<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut found: Vec<&str> = Vec::new();
     for text in texts {
@@ -86,7 +86,7 @@ struct Modal {
     v: Vec<f64>,
     /// Largest coordinate, m.
     farthest: f64,
-    parts: Vec<Part>,
+    parts: Vec<GroupMotion>,
 }
 
 impl Motion for Modal {

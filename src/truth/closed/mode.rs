@@ -10,11 +10,11 @@ pub(super) struct Mode {
     pub g: f64,
 }
 
-/// How a mode starts: at 0.
+/// The start of a mode, at position 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Start {
     pub velocity: f64,
-    /// Acceleration without damping, which stays: r.
+    /// The constant acceleration r.
     pub pull: f64,
 }
 
@@ -27,7 +27,7 @@ impl Start {
     }
 }
 
-/// What a mode does from rest, at one time.
+/// The responses of a mode at rest, at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Response {
     /// Position after a unit of velocity at t = 0, s.
@@ -44,7 +44,7 @@ impl Response {
         start.velocity * self.impulse + start.pull * self.step
     }
 
-    /// Its velocity, less the one it started with.
+    /// Its velocity minus the one at the start.
     pub fn gained(&self, start: Start) -> f64 {
         start.velocity * self.slowing + start.pull * self.impulse
     }

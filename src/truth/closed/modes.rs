@@ -13,19 +13,19 @@ pub(super) struct Modes {
     pub modes: Vec<Mode>,
     /// A column for each mode, a row for each particle, 1/√kg; orthonormal in the metric of M.
     shapes: DMatrix<f64>,
-    /// kg.
+    /// Smallest mass, kg.
     pub lightest: f64,
-    /// What of the damping matrix is left between different modes by rounding, 1/s: the largest sum
-    /// of a row.
+    /// The coupling between different modes that rounding leaves in the damping matrix, 1/s: the
+    /// largest sum of a row.
     pub leak: f64,
-    /// Modes of (nearly) one frequency that the damping told apart: how far their frequencies lay
-    /// from each other at most, 1/s.
+    /// Largest distance, 1/s, between the frequencies of modes of (nearly) one frequency that the
+    /// damping told apart.
     pub spread: f64,
 }
 
 impl Modes {
-    /// None if damping and stiffness have no modes in common (C M⁻¹ K is not symmetric), or if there
-    /// are more than [`MOST`] particles.
+    /// The modes of a group; None if damping and stiffness have no modes in common (C M⁻¹ K is not
+    /// symmetric), or if there are more than [`MOST`] particles.
     pub fn new(group: &Group) -> Option<Self> {
         let Group { bodies, links, .. } = group;
         let n = bodies.len();
@@ -44,7 +44,7 @@ impl Modes {
             }
         }
         let (vectors, w) = singular(&b)?;
-        // Below the rounding of the fastest a frequency cannot be told from none.
+        // A frequency below the rounding of the fastest cannot be told from 0.
         let noise = 2.0 * (n as f64) * f64::EPSILON * w.first().copied().unwrap_or(0.0);
         let modes = w.into_iter().map(|w| Mode {
             w: if w <= noise { 0.0 } else { w },
@@ -73,8 +73,8 @@ impl Modes {
         (!damped || found.damp(vectors, &roots, group)).then_some(found)
     }
 
-    /// Decay rates, and shapes that suit the damping too where a frequency repeats. False if damping
-    /// couples the modes by more than rounding.
+    /// Sets the decay rates and, where a frequency repeats, shapes that suit the damping too. False
+    /// if damping couples the modes by more than rounding.
     fn damp(&mut self, mut vectors: DMatrix<f64>, roots: &[f64], group: &Group) -> bool {
         let n = roots.len();
         let mut c = self.damping_matrix(group);
@@ -140,14 +140,14 @@ impl Modes {
         (0..self.modes.len()).map(stretch).collect()
     }
 
-    /// What forces on the particles (N), or momenta, are to each mode: accelerations, or velocities.
+    /// The acceleration of each mode under these forces on the particles, N; or its velocity, from momenta.
     pub fn of_forces(&self, forces: &[f64]) -> Vec<f64> {
         let dot = |j: usize| self.shape(j).iter().zip(forces).map(|(s, f)| s * f).sum();
         (0..self.modes.len()).map(dot).collect()
     }
 }
 
-/// Columns v as v_i / √m_i.
+/// The columns v scaled to v_i / √m_i.
 fn shapes(vectors: &DMatrix<f64>, roots: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(vectors.nrows(), vectors.ncols(), |i, j| {
         vectors[(i, j)] / roots[i]

@@ -10,24 +10,24 @@ use super::vector::norm;
 use super::words;
 use nalgebra::Vector3;
 
-/// A length has to stay above this share of the scene's size.
+/// A length has to stay above this fraction of the scene's size.
 const CLOSEST: f64 = 1e-9;
 
-/// Rounding may push particles off their line by this share of the scene's size.
+/// Rounding may push particles off their line by this fraction of the scene's size.
 const ASIDE: f64 = 1e-9;
 
-/// What the modes do along one axis.
+/// The motion of the modes along one axis.
 #[derive(Debug, Clone)]
 struct Axis {
     /// Unit vector.
     direction: Vector3<f64>,
-    /// Of each mode.
+    /// The start of each mode.
     starts: Vec<Start>,
 }
 
 /// x(t) = x(0) + axes times modes + drift.
 #[derive(Debug, Clone)]
-pub(super) struct Part {
+pub(super) struct GroupMotion {
     /// Scene ids of the free particles.
     particles: Vec<usize>,
     modes: Modes,
@@ -41,7 +41,7 @@ pub(super) struct Part {
     pub reason: String,
 }
 
-impl Part {
+impl GroupMotion {
     /// The group's motion, if it has a closed form.
     pub fn of(group: &Group) -> Option<Self> {
         if group.is_linear() {
@@ -51,7 +51,7 @@ impl Part {
         }
     }
 
-    /// All three axes move alike and apart from each other.
+    /// The motion along three axes, which are alike and independent.
     fn in_space(group: &Group) -> Option<Self> {
         let modes = Modes::new(group)?;
         let axes = [0, 1, 2].map(|c| {
@@ -68,7 +68,7 @@ impl Part {
         ))
     }
 
-    /// One axis, along a line that may move sideways as a whole.
+    /// The motion along one axis: a line that may move sideways as a whole.
     fn on_line(group: &Group) -> Option<Self> {
         let line = Line::of(group)?;
         let modes = Modes::new(group)?;
@@ -104,8 +104,8 @@ impl Part {
         let mut part = Self::new(group, modes, vec![along], line.drift, Default::default());
         let closest = (CLOSEST * part.size).max(4.0 * part.error_bar(group.until));
         let lengths = bounds(&both, &lengths, group.until, closest)?;
-        if !line.off.is_none() {
-            let sideways = Sideways::new(group, line.off, &lengths)?;
+        if !line.offset.is_none() {
+            let sideways = Sideways::new(group, line.offset, &lengths)?;
             let stays = sideways.bound(group.until) <= ASIDE * part.size;
             if !stays {
                 return None;
@@ -173,8 +173,8 @@ impl Part {
         }
     }
 
-    /// No particle is farther from where it started in [0, t], m: all of it, and what swings or
-    /// creeps back alone.
+    /// Bounds on the distance of any particle from its start in [0, t], m: of all motion, and of
+    /// what swings or creeps back alone.
     fn reach(&self, t: f64) -> (f64, f64) {
         let n = self.particles.len();
         let Drift {
@@ -224,8 +224,8 @@ impl Part {
         // Damping left between the modes pushes like leak times speed.
         let pushed =
             self.modes.leak * speed / self.modes.lightest.sqrt() * t * t.min(1.0 / slowest);
-        // A slow mode that stiff springs under tension push by their rounding may be off by more than
-        // it swings, one mode alone may not.
+        // The rounding of stiff springs under tension may push a slow mode farther than it swings;
+        // one mode alone stays within its swing.
         let swinging = if self.particles.len() == 1 {
             swing
         } else {
@@ -254,7 +254,7 @@ impl Axis {
         for link in &group.links {
             let force = tension(link);
             for (pull, stretch) in pulls.iter_mut().zip(modes.stretches(link)) {
-                // Both ends at once: on a mode that hardly stretches the spring they cancel here.
+                // Both ends are taken at once: on a mode that hardly stretches the spring they cancel here.
                 *pull -= force * stretch;
             }
         }

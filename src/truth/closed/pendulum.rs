@@ -17,7 +17,7 @@ pub struct Pendulum {
     /// Unit vectors: along gravity, and across it in the plane of motion.
     down: Vector3<f64>,
     side: Vector3<f64>,
-    /// m.
+    /// Length of the rod, m.
     length: f64,
     /// w, rad/s.
     w: f64,
@@ -25,14 +25,13 @@ pub struct Pendulum {
     round: Option<f64>,
     /// k, over 1 where the pendulum goes round.
     energy: f64,
-    /// How many times larger the rounding of 1 - k² is than of a product: where it nears 0, its two
-    /// terms cancel.
+    /// The rounding of 1 - k² over that of a product: where it nears 0, its two terms cancel.
     cancelled: f64,
     modulus: Modulus,
     start: Jacobi,
 }
 
-/// Components that should be 0 may be this share of the vector: a few roundings of the file's
+/// Components that should be 0 may be this fraction of the vector: a few roundings of the file's
 /// numbers and their products.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -164,7 +163,7 @@ impl Motion for Pendulum {
         let mut states = States::with_room(3, times.len());
         for &t in times {
             let (sin, cos, rate) = self.half(t);
-            // Of the whole angle.
+            // Sine and cosine of the whole angle.
             let (sin, cos) = (2.0 * sin * cos, (cos - sin) * (cos + sin));
             let (down, side) = (self.length * self.down, self.length * self.side);
             let x = self.pivot + cos * down + sin * side;
@@ -180,7 +179,7 @@ impl Motion for Pendulum {
         let period = 1.0 + self.cancelled / self.modulus.quarter_period();
         let phase = self.w * self.energy * t * period;
         let bar = 16.0 * f64::EPSILON * self.length * (1.0 + phase);
-        // On its circle it is in any case, also where the phase is not known at all.
+        // The bob is on its circle in any case, even where the phase is not known at all.
         bar.min(2.0 * self.length) + f64::EPSILON * (norm(self.pivot) + self.length)
     }
 }

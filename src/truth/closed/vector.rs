@@ -1,4 +1,4 @@
-//! What [`Vector3`] lacks: lengths and directions whose digits survive whatever their size.
+//! Functions [`Vector3`] lacks: lengths and directions whose digits survive whatever their size.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! What a closed form is called, and why it applies.
+//! The name of a closed form, and the reason why it applies.
 
 use super::group::Group;
 use super::line::Line;
@@ -17,7 +17,7 @@ pub(super) fn in_space(group: &Group, modes: &[Mode]) -> (String, String) {
         };
         return (method.to_owned(), reason.to_owned());
     }
-    let on_line = modes.len() == 1 && Line::of(group).is_some_and(|l| l.off.is_none());
+    let on_line = modes.len() == 1 && Line::of(group).is_some_and(|l| l.offset.is_none());
     let of = if group.links.len() == 1 {
         "whose rest length is 0"
     } else {
@@ -32,8 +32,8 @@ pub(super) fn in_space(group: &Group, modes: &[Mode]) -> (String, String) {
     (method(group, modes, where_), reason)
 }
 
-/// Method and reason of a group that moves on one line; `shortest` is what its springs with a rest
-/// length do not fall below.
+/// Method and reason of a group that moves on one line; `shortest` is a lower bound of its springs
+/// with a rest length, m.
 pub(super) fn on_line(group: &Group, modes: &[Mode], shortest: Option<f64>) -> (String, String) {
     let (moving, stays) = if group.links.len() == 1 {
         (
@@ -85,7 +85,7 @@ fn damping(modes: &[Mode]) -> &'static str {
 
 fn regime(mode: Mode) -> &'static str {
     let Mode { w, g } = mode;
-    // To the rounding of w and g.
+    // The two are equal to the rounding of w and g.
     if (g - w).abs() <= 4.0 * f64::EPSILON * w {
         "critically damped"
     } else if g > w {

@@ -1,5 +1,4 @@
-//! How far the reference may be off: what a third estimate, a neighbour and magnified rounding tell
-//! of it.
+//! The error bar of the reference, from a third estimate, a neighbour and magnified rounding.
 
 use super::level::{Level, apart, largest, running_largest};
 use super::mesh::Mesh;
@@ -9,7 +8,7 @@ use super::stepper::Precise;
 use crate::physics::{Power, System};
 use std::cell::RefCell;
 
-/// The bar is this many times what stands between the estimates and what rounding may do: two errors
+/// The bar is this many times the distance of the estimates plus the effect of rounding: two errors
 /// of one kind and one sign differ by less than either.
 const CAUTION: f64 = 3.0;
 
@@ -18,9 +17,9 @@ const CAUTION: f64 = 3.0;
 const OFFSET: f64 = 1e-8;
 
 impl Level {
-    /// The largest distance of the first estimate from the second, and from a third, itself at half
-    /// the steps, up to each instant, m. Two that meet by chance, as they may once one growing mode
-    /// is all that is left of their errors, rarely meet the third as well.
+    /// The largest distance, m, up to each instant, of the first estimate from the second and from
+    /// a third, which is the first at half the step. Two estimates may meet by chance once one
+    /// growing mode is all that is left of their errors, but they rarely meet the third as well.
     pub fn gaps_of_three(&self, system: &(dyn System + Sync), start: &Precise) -> Vec<f64> {
         let third = self.again(system, start, 2 * STEPS);
         let gaps = apart(&self.first, &third).into_iter().zip(&self.gaps);
@@ -63,7 +62,7 @@ impl Level {
         farther.map(|distance| distance / MAGNIFIED).collect()
     }
 
-    /// The error bar at each instant, m, where rounding may have led the motion astray so far, m.
+    /// The error bar at each instant, m. `rounding` is how far rounding may have led the motion astray, m.
     pub fn bars(&self, rounding: &[f64]) -> Vec<f64> {
         let instants = 0..=self.mesh.intervals();
         let magnitudes = running_largest(instants.map(|k| largest(self.first.x(k))));
@@ -73,9 +72,9 @@ impl Level {
     }
 }
 
-/// The rate at which neighbours part, 1/s: the slope of ln(amplification) over time, where an
-/// exponential describes the second half of the growth better than a power of time does and where it
-/// has run through at least e³. None otherwise: neighbours of regular motion part linearly.
+/// The rate at which neighbours part, 1/s: the slope of ln(amplification) over time. None unless an
+/// exponential describes the later growth better than a power of time, and has run through at least
+/// e³: neighbours of regular motion part linearly.
 pub(super) fn growth_rate(amplification: &[f64], mesh: &Mesh) -> Option<f64> {
     // Beyond a thousandth of the size, distances no longer grow as small ones do.
     let small = |factor: &f64| *factor < 1e-3 / OFFSET;
@@ -113,8 +112,8 @@ const MAGNIFIED: f64 = 4096.0;
 
 /// A system seen through noise: positions and velocities on the way in and accelerations on the way
 /// out are off by up to [`MAGNIFIED`] last bits, each by an amount that its own bits and the seed
-/// decide. A motion computed with it leaves the true one as rounding makes it leave, so many times
-/// faster; two estimates that happen to be rounded alike do not hide that.
+/// decide. A motion computed with it leaves the true one as rounding makes it leave, but faster by
+/// the same factor; two estimates that happen to be rounded alike do not hide that.
 ///
 /// The idea of CESTAC (Vignes 1993), with noise well above what it stands for.
 struct Noisy<'a> {
@@ -150,7 +149,7 @@ impl System for Noisy<'_> {
         let mut seen = self.seen.borrow_mut();
         let [seen_x, seen_v] = &mut *seen;
         for (at, inverse_mass) in self.inverse_mass().iter().enumerate() {
-            // What is fixed stands where it stands.
+            // Fixed coordinates keep their values.
             let free = *inverse_mass > 0.0;
             seen_x[at] = if free { self.off(x[at]) } else { x[at] };
             seen_v[at] = if free { self.off(v[at]) } else { v[at] };

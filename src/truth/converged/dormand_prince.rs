@@ -8,13 +8,13 @@ use crate::integrators::adaptive::{ERROR_3, ERROR_5, mixed};
 use crate::integrators::nystrom::{self, LANES, NystromStage, Weight, sums, weights};
 use crate::physics::System;
 
-/// Steps of an explicit tableau in Nyström form, of compensated states.
+/// An explicit tableau in Nyström form that steps compensated states.
 ///
-/// The first weight is taken as what makes the weights sum to 1, and to 1/2 for positions: rounded
+/// The first weight is chosen so that the weights sum to 1, and to 1/2 for positions: rounded
 /// coefficients would drift with time.
 pub struct DormandPrince {
     stages: Vec<NystromStage>,
-    /// Weights of the end, the first stage's left out.
+    /// Weights of the step's end, without the first stage's.
     end: Vec<Weight>,
     /// Weights of the error estimates of order 5 and 3.
     errors: [Vec<Weight>; 2],
@@ -32,7 +32,7 @@ impl Default for DormandPrince {
 }
 
 impl DormandPrince {
-    /// With another explicit tableau, at least consistent. Its error estimates mean nothing.
+    /// A stepper with another explicit tableau, at least consistent. Its error estimates mean nothing.
     pub fn with(tableau: &Tableau) -> Self {
         let stages = tableau.b.len();
         let mut end = weights(tableau, tableau.b);
@@ -47,8 +47,8 @@ impl DormandPrince {
         }
     }
 
-    /// An estimate of the error of the step of `h` seconds just taken, largest over the coordinates:
-    /// in position, m, and in velocity, m/s. Of the order of the method's own, and larger.
+    /// An estimate of the error of the step of `h` seconds just taken, largest over the coordinates: in
+    /// position, m, and in velocity, m/s. It is of the order of the method's own error, and larger.
     pub(super) fn local_error(&self, h: f64) -> [f64; 2] {
         let [of_5, of_3] = [&self.errors[0], &self.errors[1]].map(|rows| self.largest_sums(rows));
         [h * h * mixed(of_5[0], of_3[0]), h * mixed(of_5[1], of_3[1])]

@@ -35,7 +35,7 @@ impl Default for Gragg {
 }
 
 impl Gragg {
-    /// With other numbers of substeps, even and ascending.
+    /// A stepper with other numbers of substeps, even and ascending.
     pub fn with(substeps: &[u32]) -> Self {
         let factor = |i: u32, j: u32| 1.0 / ((f64::from(j) / f64::from(i)).powi(2) - 1.0);
         let row = |(row, &j)| {

@@ -8,7 +8,7 @@ use super::stepper::Precise;
 use super::{NotConverged, thousands};
 use crate::physics::{State, System};
 
-/// Bytes of kept states.
+/// Most bytes of kept states.
 const MEMORY: usize = 10 << 20;
 
 /// The first steps are at most this long, in units of the fastest time constant: barely stable.
@@ -17,22 +17,21 @@ const FIRST_STEP: f64 = 1.0;
 /// No fewer pieces than this at first: a scene without forces still has its bar.
 const FEWEST: u64 = 16;
 
-/// Halving all steps but shrinking what is left by less than this was the last time: rounding is
-/// left.
+/// Halving ends when halving all steps shrinks the gaps by less than this: what is left is rounding.
 const WORTHWHILE: f64 = 1.4;
 
-/// Twice in a row by less than this was the last time too: what is left is of order 2 or less.
+/// It also ends when they shrink by less than this twice in a row: what is left is of order 2 or less.
 const SMOOTH: f64 = 4.0;
 
 /// Halvings of single steps may go on this many times without bringing the estimates closer: a
 /// collision has to be resolved first.
-const PATIENCE: u32 = 16;
+const MOST_IDLE: u32 = 16;
 
 /// The level to use, and how well it is known. Lists have an entry for each instant of the level's
 /// mesh and never fall.
 pub(super) struct Halved {
     pub level: Level,
-    /// The size wanted, or of the motion where it has none, m.
+    /// The given size, or that of the motion where it is 0, m.
     pub size: f64,
     /// How far neighbours have parted, in units of their distance at the start.
     pub amplification: Vec<f64>,
@@ -40,12 +39,12 @@ pub(super) struct Halved {
     pub bars: Vec<f64>,
     /// Force evaluations times coordinates that were spent.
     pub spent: u64,
-    pub ended: Ended,
+    pub ended: StopReason,
 }
 
 /// Why no further halving was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Ended {
+pub(super) enum StopReason {
     /// The estimates agree.
     Agreed,
     /// Smaller steps no longer bring them closer.
@@ -54,9 +53,9 @@ pub(super) enum Ended {
     Spent,
 }
 
-/// Takes as many steps as the fastest rate asks for; then halves those with too large an error of
-/// their own; and once there are none, all. Time is in seconds, the size in m, 0 if it has none; the
-/// budget counts force evaluations times coordinates.
+/// Starts with as many steps as the fastest rate asks for. Then halves those whose own error is too
+/// large; and once there are none, all. Time is in s, the size in m, 0 if it has none; the budget
+/// counts force evaluations times coordinates.
 ///
 /// # Errors
 /// When the budget does not allow even the first, or forces are not finite.
@@ -94,7 +93,7 @@ pub(super) fn halve(
         let pieces = mesh.pieces() as u64;
         let cost = (per_piece + at_the_end).saturating_mul(pieces);
         if spent.saturating_add(cost) > budget {
-            break Ended::Spent;
+            break StopReason::Spent;
         }
         spent += per_piece * pieces;
         let level = Level::new(system, &start, mesh);
@@ -110,10 +109,10 @@ pub(super) fn halve(
             coarser = best.replace(level);
         }
         if agreed {
-            break Ended::Agreed;
+            break StopReason::Agreed;
         }
         if shrunk.is_some_and(|factor| progress.is_over(factor, all)) {
-            break Ended::Stalled;
+            break StopReason::Stalled;
         }
         all = next_all;
     };
@@ -121,7 +120,7 @@ pub(super) fn halve(
         return Err(not_finite());
     };
     let size = level.size_or(size);
-    // Larger steps tell what rounding does as well, unless they are too large to follow the motion.
+    // Larger steps show the effect of rounding as well, unless they are too large to follow the motion.
     let with = coarser.filter(|coarser| coarser.gap() < LOST * size);
     let with = with.as_ref().unwrap_or(&level);
     let (gaps, (amplification, rounding)) = rayon::join(
@@ -150,7 +149,7 @@ fn not_finite() -> NotConverged {
     NotConverged::new("the forces at the start are not finite")
 }
 
-/// Whether it is still worth going on.
+/// Counts the halvings that helped little.
 #[derive(Default)]
 struct Progress {
     slow: u32,
@@ -158,7 +157,7 @@ struct Progress {
 }
 
 impl Progress {
-    /// After gaps shrank by `factor` as `all` steps were halved, or some.
+    /// Whether to end, after gaps shrank by `factor` as `all` steps were halved, or some.
     fn is_over(&mut self, factor: f64, all: bool) -> bool {
         if factor >= SMOOTH {
             *self = Self::default();
@@ -169,7 +168,7 @@ impl Progress {
             return factor < WORTHWHILE || self.slow == 2;
         }
         self.idle += 1;
-        self.idle == PATIENCE
+        self.idle == MOST_IDLE
     }
 }
 
@@ -179,7 +178,7 @@ fn instants(dim: usize) -> u64 {
     1 << states.saturating_sub(1).max(1).ilog2()
 }
 
-/// A power of two.
+/// The number of pieces to start with, a power of two.
 fn first_pieces(rate: f64, until: f64) -> u64 {
     let needed = (rate * until / (FIRST_STEP * f64::from(STEPS))).ceil();
     (needed.min(1e15) as u64).max(FEWEST).next_power_of_two()

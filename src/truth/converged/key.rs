@@ -1,4 +1,4 @@
-//! What a scene's motion depends on, as one number.
+//! The key of a scene's motion: all it depends on, as one number.
 
 use super::{BUDGET, VERSION};
 use crate::scene::model::PARTS;
@@ -21,7 +21,8 @@ pub fn key(scene: &Scene, until: f64) -> String {
         for row in part.rows.iter().filter(|row| row.flat.is_some()) {
             add(count as u64);
             for at in 0..count {
-                // A 1 before each component and a 0 after the last, so that an absent value differs from 0.
+                // The hash takes a 1 before each component and a 0 after the last, so that an absent value
+                // differs from 0.
                 for value in row.values(scene, at) {
                     add(1);
                     match value {

@@ -1,4 +1,4 @@
-//! Both estimates on one mesh, and what they tell.
+//! Both estimates on one mesh, and what follows from them.
 
 use super::dormand_prince::DormandPrince;
 use super::gragg::Gragg;
@@ -12,10 +12,10 @@ use crate::truth::{States, farthest};
 /// estimated to be smaller need no halving before others.
 const TARGET: f64 = 1e-13;
 
-/// So have those closer than this many units of rounding of the largest coordinate.
+/// Estimates closer than this, relative to the largest coordinate, have converged too.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// Estimates that differ by this share of the size have lost the motion.
+/// Estimates that differ by this fraction of the size have lost the motion.
 pub(super) const LOST: f64 = 0.1;
 
 /// Both estimates on one mesh.
@@ -33,7 +33,7 @@ impl Level {
         let mut errors = vec![[0.0_f64; 2]; mesh.pieces()];
         let note = |piece: usize, h: f64, method: &DormandPrince| {
             for (most, error) in errors[piece].iter_mut().zip(method.local_error(h)) {
-                // What is not finite needs halving too.
+                // A piece whose error is not finite needs halving too.
                 *most = if error.is_finite() {
                     most.max(error)
                 } else {
@@ -54,7 +54,7 @@ impl Level {
     }
 
     /// The mesh with those pieces halved whose own error is too large, or all if there are none;
-    /// and whether it is all. What comes long after the estimates have lost the motion can wait.
+    /// and whether it is all. Pieces long after the estimates have lost the motion can wait.
     pub fn halved(&self, size: f64, most: u64) -> (Mesh, bool) {
         let speed = largest(&self.first.v);
         let needed = |piece: usize| {
@@ -93,7 +93,7 @@ impl Level {
         integrate(method, system, start, &self.mesh, each, |_, _, _| {})
     }
 
-    /// Values at the instants of a coarser level, each up to that instant, at those of this one.
+    /// Spreads values that hold up to each instant of a coarser level over the instants of this one.
     pub fn spread(&self, coarse: &[f64]) -> Vec<f64> {
         let instants = self.mesh.intervals();
         let ratio = (instants / (coarse.len() - 1).max(1)).max(1);
@@ -134,7 +134,7 @@ impl Level {
         distances.filter(|d| d.is_finite()).fold(0.0, f64::max)
     }
 
-    /// Steps of the reference.
+    /// Number of steps of the reference.
     pub fn steps(&self) -> u64 {
         self.mesh.pieces() as u64 * u64::from(STEPS)
     }
@@ -161,7 +161,7 @@ pub(super) fn apart(a: &States, b: &States) -> Vec<f64> {
     running_largest((0..a.len()).map(|k| farthest(a.x(k), b.x(k))))
 }
 
-/// Each element the largest so far.
+/// For each value, the largest so far.
 pub(super) fn running_largest(values: impl Iterator<Item = f64>) -> Vec<f64> {
     let largest = values.scan(0.0, |most: &mut f64, value| {
         *most = most.max(value);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Halvings below an interval; beyond that a piece is as short as a rounding of the whole.
+/// Most halvings of an interval; beyond that a piece is as short as a rounding of the whole.
 const DEEPEST: u8 = 40;
 
 /// A stretch of time from 0 in equal intervals, each halved into pieces as often as it needs.
@@ -17,20 +17,20 @@ pub(super) struct Mesh {
     ends: Vec<usize>,
 }
 
-/// A part of an interval, in units of its length: exact.
+/// A step through a part of an interval, in units of the interval's length: exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Part {
+pub(super) struct MeshStep {
     pub offset: f64,
     pub length: f64,
 }
 
-impl Part {
+impl MeshStep {
     pub fn end(self) -> f64 {
         self.offset + self.length
     }
 }
 
-/// Of a piece, in units of its interval.
+/// Length of a piece, in units of its interval.
 fn length(depth: u8) -> f64 {
     0.5_f64.powi(i32::from(depth))
 }
@@ -48,8 +48,7 @@ impl Mesh {
         }
     }
 
-    /// Whether it covers this time and its pieces fill each interval exactly: one that was read may
-    /// not.
+    /// Whether it covers this time and its pieces fill each interval exactly: a mesh from a store may not.
     pub fn fills(&self, until: f64) -> bool {
         let mut start = 0;
         let filled = |&end: &usize| {
@@ -63,12 +62,12 @@ impl Mesh {
             && self.ends.last() == Some(&self.depths.len())
     }
 
-    /// Seconds.
+    /// The end of the mesh, s.
     pub fn until(&self) -> f64 {
         self.until
     }
 
-    /// Seconds of each interval.
+    /// Length of each interval, s.
     pub fn interval(&self) -> f64 {
         self.until / self.ends.len() as f64
     }
@@ -86,21 +85,21 @@ impl Mesh {
         self.depths.len()
     }
 
-    /// Which pieces interval k consists of.
+    /// The pieces of interval k.
     pub fn range(&self, k: usize) -> std::ops::Range<usize> {
         let start = k.checked_sub(1).map_or(0, |before| self.ends[before]);
         start..self.ends[k]
     }
 
     /// The steps through interval k, `each` equal ones, a power of two, through every piece.
-    pub fn steps(&self, k: usize, each: u32) -> impl Iterator<Item = Part> {
+    pub fn steps(&self, k: usize, each: u32) -> impl Iterator<Item = MeshStep> {
         let pieces = self.depths[self.range(k)].iter();
         let lengths = pieces.flat_map(move |depth| {
             let length = length(*depth) / f64::from(each);
             std::iter::repeat_n(length, each as usize)
         });
         lengths.scan(0.0, |offset, length| {
-            let part = Part {
+            let part = MeshStep {
                 offset: *offset,
                 length,
             };

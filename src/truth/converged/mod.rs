@@ -33,30 +33,31 @@ pub use stepper::{Precise, Stepper};
 use super::Store;
 use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
-use halving::{Ended, Halved, halve};
+use halving::{Halved, StopReason, halve};
 use reference::Record;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// Changes whenever the same scene would get other bits, or they would be kept otherwise.
+/// Version of the stored form. It changes whenever a scene would get other bits, or they would be
+/// kept otherwise.
 const VERSION: u32 = 3;
 
-/// What [`find`] may spend on a scene, in force evaluations times coordinates.
+/// The budget of [`find`] for a scene, in force evaluations times coordinates.
 pub const BUDGET: u64 = 1 << 30;
 
-/// The horizon ends where the error bar exceeds this share of the size.
+/// The horizon ends where the error bar exceeds this fraction of the size.
 pub const HORIZON: f64 = 1e-6;
 
-/// A converged reference and what is known of it.
+/// A converged reference and the facts about it.
 pub struct Converged {
-    pub known: Known,
+    pub facts: ReferenceFacts,
     pub motion: Reference,
 }
 
-/// What is known of a converged reference.
+/// The facts about a converged reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Known {
+pub struct ReferenceFacts {
     /// Both estimates and their steps.
     pub method: String,
     /// How well the estimates agree and what ends the horizon.
@@ -72,7 +73,7 @@ pub struct Known {
     pub spent: u64,
 }
 
-/// There is no converged reference, and why.
+/// The reason why there is no converged reference.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 #[error("{reason}")]
 pub struct NotConverged {
@@ -112,7 +113,7 @@ pub fn converge(
             "independent estimates of {} steps differ by more than {limit:.1e} m from the start; {}",
             thousands(level.steps()),
             match halved.ended {
-                Ended::Spent => TOO_MUCH,
+                StopReason::Spent => TOO_MUCH,
                 _ => "smaller steps do not bring them together",
             }
         )));
@@ -126,7 +127,7 @@ pub fn converge(
     if horizon < until {
         let _ = match (growth, halved.ended) {
             (Some(rate), _) => write!(reason, "; neighbours part at {rate:.2} /s"),
-            (None, Ended::Spent) => write!(reason, "; {TOO_MUCH}"),
+            (None, StopReason::Spent) => write!(reason, "; {TOO_MUCH}"),
             (None, _) => write!(
                 reason,
                 "; beyond it smaller steps do not bring them together"
@@ -134,7 +135,7 @@ pub fn converge(
         };
     }
     Ok(Converged {
-        known: Known {
+        facts: ReferenceFacts {
             method: format!(
                 "Dormand-Prince 8 with {} steps, against Gragg extrapolation of order {} with {}",
                 thousands(level.steps()),
@@ -158,12 +159,12 @@ pub fn converge(
     })
 }
 
-/// What more would have been needed.
+/// The reason given where the budget ended the halving.
 const TOO_MUCH: &str = "smaller steps would cost more than allowed";
 
-/// The converged reference of a scene and the system built from it, from the store or anew within
-/// [`BUDGET`]. What was found, and that nothing was found, is saved under the scene's [`key`]; a
-/// stored one gives the same bits.
+/// Finds the converged reference of a scene and the system built from it, in the store or anew
+/// within [`BUDGET`]. Success and failure are both saved under the scene's [`key`]; a stored
+/// reference gives the same bits.
 ///
 /// # Errors
 /// As [`converge`].

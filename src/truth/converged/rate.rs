@@ -3,7 +3,7 @@
 use crate::physics::{State, System};
 use crate::truth::farthest;
 
-/// More change little: a factor of two in the rate is one halving.
+/// More iterations change little: a factor of two in the rate is one halving.
 const ITERATIONS: usize = 20;
 
 /// An estimate of the largest |eigenvalue| of the linearised motion, 1/s: with w² and c the largest

@@ -1,10 +1,10 @@
-//! A converged reference as a motion: states at any time, from kept ones by the same method. And as
-//! bytes: what a [`Store`](crate::truth::Store) keeps.
+//! A converged reference as a motion, which steps from kept states to any time by the same method;
+//! and as the bytes that a [`Store`](crate::truth::Store) keeps.
 
 use super::dormand_prince::DormandPrince;
 use super::mesh::Mesh;
 use super::stepper::{Precise, Stepper};
-use super::{Converged, Known, NotConverged, VERSION};
+use super::{Converged, NotConverged, ReferenceFacts, VERSION};
 use crate::physics::System;
 use crate::truth::{Motion, States};
 use rayon::prelude::*;
@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 
-/// Steps of the reference through each piece of its mesh, to one of the other estimate: both then
-/// cost about the same.
+/// Steps of the reference through each piece of its mesh. The other estimate takes one, which costs
+/// about as much.
 pub(super) const STEPS: u32 = 2;
 
 /// Times handled by one thread at a time.
@@ -40,7 +40,7 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// Whether it is one of so many coordinates up to `until`, s, and holds together.
+    /// Whether it has `dim` coordinates, reaches up to `until`, s, and is consistent.
     pub fn fits(&self, dim: usize, until: f64) -> bool {
         let Self {
             mesh,
@@ -57,7 +57,7 @@ impl Record {
 
 impl Reference {
     /// The states at ascending times, each by whole steps from the kept state before it and one
-    /// shorter step. Which other times are asked for changes no bit.
+    /// shorter step. The other times asked for change no bit.
     fn integrate(&self, times: &[f64]) -> States {
         let Record {
             mesh,
@@ -138,23 +138,23 @@ impl Motion for Reference {
     }
 }
 
-/// Version, key, and what was found: in postcard's format, followed by their SHA-256.
-type Kept = (u32, String, Result<(Known, Record), NotConverged>);
+/// The stored form: version, key, and what was found, in postcard's format. Their SHA-256 follows it.
+type Kept = (u32, String, Result<(ReferenceFacts, Record), NotConverged>);
 
 /// Length of the checksum.
 const CHECKSUM: usize = 32;
 
-/// What was found under this key, or why nothing was. None if it cannot be written down.
+/// The bytes of what was found under this key, or of why nothing was. None if it cannot be written.
 pub(super) fn encode(found: &Result<Converged, NotConverged>, key: &str) -> Option<Vec<u8>> {
-    let found = found.as_ref().map(|f| (&f.known, &f.motion.record));
+    let found = found.as_ref().map(|f| (&f.facts, &f.motion.record));
     let mut bytes = postcard::to_allocvec(&(VERSION, key, found)).ok()?;
     let checksum = Sha256::digest(&bytes);
     bytes.extend_from_slice(&checksum);
     Some(bytes)
 }
 
-/// None if these are not the bytes of this key, version and system, whole to the last byte and
-/// unchanged.
+/// What was found, or why nothing was. None unless these are the bytes of this key, version and
+/// system, whole to the last byte and unchanged.
 pub(super) fn decode(
     bytes: &[u8],
     key: &str,
@@ -169,13 +169,13 @@ pub(super) fn decode(
     if version != VERSION || name != key || !rest.is_empty() {
         return None;
     }
-    let (known, record) = match found {
+    let (facts, record) = match found {
         Ok(found) => found,
         Err(not) => return Some(Err(not)),
     };
     record.fits(system.dim(), until).then(|| {
         let system = Arc::clone(system);
         let motion = Reference { system, record };
-        Ok(Converged { known, motion })
+        Ok(Converged { facts, motion })
     })
 }

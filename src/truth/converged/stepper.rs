@@ -1,5 +1,5 @@
-//! What the two estimates have in common: states that remember what rounding took from them, steps that
-//! advance them, and whole integrations.
+//! The parts both estimates share: states that keep what rounding took from them, steps that advance
+//! them, and whole integrations.
 
 use super::mesh::Mesh;
 use crate::physics::{State, System};
@@ -15,7 +15,7 @@ pub struct Precise {
     pub x: Vec<f64>,
     /// Velocities, m/s.
     pub v: Vec<f64>,
-    /// What belongs to the positions below their last bit, m.
+    /// The part of the positions below their last bit, m.
     pub x_low: Vec<f64>,
     /// The same of the velocities, m/s.
     pub v_low: Vec<f64>,

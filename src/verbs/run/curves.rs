@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use super::record::Record;
 use super::truths::Truths;
-use crate::measure::{EnergySeries, Known};
+use crate::measure::{EnergySeries, TrueStates};
 use crate::scene::Scene;
 use crate::solvers::Status;
 use crate::verbs::run::{Curves, Figures, PlotAxis, TruthCurves};
@@ -71,7 +71,7 @@ fn truth(
     scene: &Scene,
     drawn: &[usize],
     plane: [usize; 2],
-    known: &Known,
+    known: &TrueStates,
     timestep: f64,
 ) -> TruthCurves {
     let states = || (0..known.steps.len()).map(|k| known.states.x(k));

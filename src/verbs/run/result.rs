@@ -1,7 +1,7 @@
 //! What `run` and `compare` found, as data: one [`Outcome`] an engine and timestep, and the series its figures are drawn from.
 
 use crate::measure::identify::Identified;
-use crate::measure::{Deviation, Energy, Momentum, Spread};
+use crate::measure::{Deviation, Energy, ErrorSummary, Momentum};
 use crate::solvers::{SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use serde::{Deserialize, Serialize};
@@ -22,8 +22,8 @@ pub struct Outcome {
     /// Why it ended early or is unsupported.
     pub reason: Option<String>,
     /// Against the truth; null where there is none.
-    pub position_error_m: Option<Spread>,
-    pub velocity_error_m_s: Option<Spread>,
+    pub position_error_m: Option<ErrorSummary>,
+    pub velocity_error_m_s: Option<ErrorSummary>,
     /// Against each reference engine that ran at this timestep.
     pub deviation_m: BTreeMap<String, Deviation>,
     /// Null when nothing was recorded (unsupported) or no velocities are known.

@@ -2,7 +2,7 @@
 
 use super::plan::Plan;
 use super::record::Record;
-use crate::measure::{self, Errors, Known};
+use crate::measure::{self, Errors, TrueStates};
 use crate::trajectory::Trajectory;
 use crate::truth::Truth;
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// One truth, sampled once for all the runs of a timestep.
 pub struct Truths {
     /// By timestep.
-    known: Vec<(f64, Known)>,
+    known: Vec<(f64, TrueStates)>,
 }
 
 impl Truths {
@@ -33,16 +33,16 @@ impl Truths {
     }
 
     /// What is known at the instants of this timestep; None where nothing is.
-    pub fn at(&self, timestep: f64) -> Option<&Known> {
+    pub fn at(&self, timestep: f64) -> Option<&TrueStates> {
         let (_, known) = self.known.iter().find(|(h, _)| *h == timestep)?;
         (!known.steps.is_empty()).then_some(known)
     }
 }
 
 /// The truth at every instant up to the horizon that any run of this timestep recorded.
-fn known(plan: &Plan, records: &[Record], truth: &Truth, timestep: f64) -> Known {
+fn known(plan: &Plan, records: &[Record], truth: &Truth, timestep: f64) -> TrueStates {
     let Some(motion) = truth.motion() else {
-        return Known::default();
+        return TrueStates::default();
     };
     let mut steps: Vec<u64> = Vec::new();
     for (case, record) in plan.cases.iter().zip(records) {
@@ -59,7 +59,7 @@ fn known(plan: &Plan, records: &[Record], truth: &Truth, timestep: f64) -> Known
     let last = truth.horizon * (1.0 + 4.0 * f64::EPSILON);
     steps.retain(|step| time(step) <= last);
     let times: Vec<f64> = steps.iter().map(|s| time(s).min(truth.horizon)).collect();
-    Known {
+    TrueStates {
         states: motion.states(&times),
         steps,
     }

@@ -2,7 +2,7 @@
 
 use super::Shared;
 use crate::integrators::{Amplification, Stage};
-use crate::measure::stability::{Limit, Measured, Prediction};
+use crate::measure::stability::{Limit, MeasuredLimit, Prediction};
 use crate::solvers::Solver;
 use crate::verbs::stability::StabilityRow;
 
@@ -15,7 +15,7 @@ pub fn remarks(
     solver: &Solver,
     row: &StabilityRow,
     predicted: Option<&Prediction>,
-    measured: &Measured,
+    measured: &MeasuredLimit,
 ) -> Vec<String> {
     let mut remarks = Vec::new();
     match predicted.map(|predicted| (&predicted.limit, &predicted.reason)) {

@@ -2,7 +2,7 @@
 
 use super::StabilityPlan;
 use crate::integrators::Method;
-use crate::measure::stability::{Along, Linearised};
+use crate::measure::stability::{Linearised, LinearisedTrajectory};
 use crate::physics::{ParticleSystem, State};
 use crate::solvers::{Setting, Solver};
 use crate::trajectory::Observer;
@@ -17,7 +17,7 @@ const REACH: u64 = 20_000_000;
 pub struct Path {
     /// Linearised at some of its states, the start left out; None where every state has the same
     /// limits.
-    pub along: Option<Along>,
+    pub along: Option<LinearisedTrajectory>,
     /// When it ends, s.
     pub until: f64,
     /// Whose trajectory it is.
@@ -61,7 +61,7 @@ pub fn of(
     kept.states.retain(State::is_finite);
     Path {
         until: run.state().t.min(scene.duration),
-        along: Some(Along::new(system, &kept.states)),
+        along: Some(LinearisedTrajectory::new(system, &kept.states)),
         method: Some(method),
     }
 }

@@ -17,7 +17,7 @@ pub fn hostile() -> Report {
     report.header.scene.own_integrator = long.clone();
     report.header.truth.reason = Some(long.clone());
     report.outcomes_mut()[0].engine = long.clone();
-    report.outcomes_mut()[0].position_error_m = Some(Spread {
+    report.outcomes_mut()[0].position_error_m = Some(ErrorSummary {
         last: 0.0,
         max: 1e-17,
         rms: 0.0,
@@ -93,7 +93,7 @@ pub fn extreme() -> Report {
             .map(|name| (name.to_string(), least.clone()))
             .into();
         outcome.status = Status::Unsupported;
-        outcome.position_error_m = Some(Spread {
+        outcome.position_error_m = Some(ErrorSummary {
             last: 1e-300,
             max: 1e-300,
             rms: 1e-300,

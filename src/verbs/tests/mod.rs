@@ -220,7 +220,7 @@ fn pictures() {
 /// Everything reports are made of.
 mod data {
     pub use crate::measure::stability::{Cell, TightestLimit};
-    pub use crate::measure::{Check, CheckStatus, Deviation, Energy, EnergyClass, Spread};
+    pub use crate::measure::{Check, CheckStatus, Deviation, Energy, EnergyClass, ErrorSummary};
     pub use crate::report::{EffectUse, Header, SceneFacts, TruthFacts};
     pub use crate::solvers::{SolverKind, Status};
     pub use crate::truth::TruthKind;

@@ -2,7 +2,7 @@
 //! reading; in arrays the place is written down.
 
 use super::{CHAIN, HANGING, archive, doubles, expected, npy, read};
-use springcheck::trajectory::{self, Layout, Place};
+use springcheck::trajectory::{self, ErrorPlace, Layout};
 
 const SORT: &str = "help: rows of one time stand together, one a particle: sort them by time";
 const HALF: &str = "help: half a file? The program that wrote it may have stopped early";
@@ -284,7 +284,7 @@ fn a_layout_asked_for_is_the_one_read() {
 #[test]
 fn ids_go_with_whole_positions() {
     let error = read("t,id,x\n0,1,1\n", HANGING).unwrap_err();
-    assert_eq!(error.place, Place::Text { line: 1, column: 1 });
+    assert_eq!(error.place, ErrorPlace::Text { line: 1, column: 1 });
     // And the only free particle needs none, but only once an instant.
     let error = read("t,x\n0,1\n0,1\n", HANGING).unwrap_err();
     assert_eq!(

@@ -2,7 +2,7 @@
 
 use super::{CHAIN, HANGING, archive, doubles, expected, npy};
 use proptest::prelude::*;
-use springcheck::trajectory::{self, Layout, Place};
+use springcheck::trajectory::{self, ErrorPlace, Layout};
 
 fn answers(bytes: &[u8]) {
     for scene in [HANGING, CHAIN] {
@@ -29,7 +29,7 @@ fn answers(bytes: &[u8]) {
                 Err(error) => {
                     assert!(error.to_string().starts_with("x:"), "{error}");
                     assert!(error.to_string().len() < 600, "{error}");
-                    if let Place::Text { line, column } = error.place {
+                    if let ErrorPlace::Text { line, column } = error.place {
                         assert!(line > 0 && column > 0);
                     }
                 }

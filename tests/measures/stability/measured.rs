@@ -8,7 +8,7 @@ use springcheck::conformance::measured_limit;
 use springcheck::conformance::systems::Oscillator;
 use springcheck::integrators::{EnergyLaw, Method, Settings, Stable, fixed};
 use springcheck::measure::stability::Cell;
-use springcheck::measure::stability::{Limit, Make, Measured, classify, measure};
+use springcheck::measure::stability::{Limit, MakeRun, MeasuredLimit, classify, measure};
 use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::Scene;
 use springcheck::solvers::{Run, Setting, Solver, Unsupported};
@@ -73,7 +73,7 @@ fn engine(method: &'static Method) -> impl Fn(&Scene, f64) -> Result<Run, Unsupp
     }
 }
 
-fn found(make: &Make, scene: &Scene, near: Option<f64>) -> Measured {
+fn found(make: &MakeRun, scene: &Scene, near: Option<f64>) -> MeasuredLimit {
     let h = scene.solver.timestep;
     let system = ParticleSystem::new(scene);
     measure(scene, &system, make, h, near, PATIENT, &|_| ())

@@ -66,20 +66,20 @@ fn seen(found: &Result<Converged, NotConverged>) -> (Vec<String>, Vec<u64>) {
         Err(none) => (vec![none.reason.clone()], Vec::new()),
         Ok(c) => {
             let texts = vec![
-                c.known.method.clone(),
-                c.known.reason.clone(),
-                format!("{:?}", c.known.growth),
+                c.facts.method.clone(),
+                c.facts.reason.clone(),
+                format!("{:?}", c.facts.growth),
             ];
             let times = times(UNTIL);
             let states = c.motion.states(&times);
             let bars = times.iter().map(|&t| c.motion.error_bar(t));
-            let numbers = [c.known.horizon, c.known.error_bound]
+            let numbers = [c.facts.horizon, c.facts.error_bound]
                 .into_iter()
                 .chain(bars);
             let all = numbers.chain(states.x).chain(states.v);
             (
                 texts,
-                all.map(f64::to_bits).chain([c.known.spent]).collect(),
+                all.map(f64::to_bits).chain([c.facts.spent]).collect(),
             )
         }
     }

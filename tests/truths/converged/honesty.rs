@@ -69,9 +69,9 @@ fn the_bar_is_honest_and_not_absurd() {
                 let mut known = make();
                 known.until *= 1.0 - 0.05 * f64::from(run);
                 let converged = of(&known);
-                assert_eq!(converged.known.horizon, known.until, "{}", known.name);
+                assert_eq!(converged.facts.horizon, known.until, "{}", known.name);
                 let bar = converged.motion.error_bar(known.until);
-                assert_eq!(converged.known.error_bound, bar);
+                assert_eq!(converged.facts.error_bound, bar);
                 honesty_law(&known, &converged).unwrap()
             })
             .collect();
@@ -105,7 +105,7 @@ fn a_pendulum_is_where_elliptic_functions_put_it() {
         let (system, start) = pendulum(k);
         let converged = converge(&system, &start, 10.0, 1.0, BUDGET).expect("it converges");
         let q = converged.motion.states(&[10.0]).x[0];
-        let (error, bar) = ((q - wanted).abs(), converged.known.error_bound);
+        let (error, bar) = ((q - wanted).abs(), converged.facts.error_bound);
         println!("pendulum {k}: error {error:.1e}, bar {bar:.1e}");
         // Half a last digit of the published number.
         assert!(error <= bar + 5e-16, "k = {k}: {error:.1e} > {bar:.1e}");
@@ -145,18 +145,18 @@ fn the_pleiades_are_where_the_test_set_puts_them() {
     let system = ParticleSystem::new(&scene);
     let converged = find(&scene, &system, 3.0, &NoStore).expect("it converges");
     let error = distance(&converged.motion.states(&[3.0]).x, &published);
-    let bar = converged.known.error_bound;
+    let bar = converged.facts.error_bound;
     println!(
         "Pleiades: error {error:.1e}, bar {bar:.1e}; {}",
-        converged.known.method
+        converged.facts.method
     );
-    assert_eq!(converged.known.horizon, 3.0);
+    assert_eq!(converged.facts.horizon, 3.0);
     // Extrapolation of order 16 in 19-digit arithmetic agrees with the published digits to 1e-13.
     assert!(error <= bar, "{error:.1e} > {bar:.1e}");
     // Measured 1.1e-11, for an error of 8.1e-13.
     assert!(bar < 3e-11, "bar {bar:.1e}");
     // Seven stars meet at close quarters: it shows in how neighbours part.
-    assert!(converged.known.growth.is_some_and(|rate| rate > 0.6));
+    assert!(converged.facts.growth.is_some_and(|rate| rate > 0.6));
 }
 
 #[test]

@@ -23,7 +23,7 @@ fn the_growth_of_an_unstable_equilibrium_is_its_rate() {
     let system = closure(1, move |x, a| a[0] = w * w * x[0]);
     let start = State::new(vec![0.0], vec![0.0]);
     let converged = converge(&system, &start, 12.0, 1.0, BUDGET).expect("it converges");
-    let growth = converged.known.growth.expect("neighbours part");
+    let growth = converged.facts.growth.expect("neighbours part");
     // The cosh's flat start, an eighth of which is left out, takes some away: measured 1.492.
     assert!((growth - w).abs() < 0.02, "measured {growth}");
 }
@@ -38,7 +38,7 @@ fn neighbours_of_regular_motion_have_no_growth_rate() {
     ] {
         let converged = converge(&known.system, &known.start, known.until, known.size, BUDGET);
         let converged = converged.expect(known.name);
-        assert_eq!(converged.known.growth, None, "{}", known.name);
+        assert_eq!(converged.facts.growth, None, "{}", known.name);
     }
 }
 
@@ -59,17 +59,17 @@ fn chaos_ends_the_horizon_and_its_rate_says_when() {
     let until = 40.0;
     let converged = of(&scene, until).expect("it converges for a while");
     let limit = HORIZON * scene.size();
-    let growth = converged.known.growth.expect("chaotic");
-    println!("{} {growth}", converged.known.reason);
-    assert!(converged.known.horizon > 5.0 && converged.known.horizon < until);
-    assert!(converged.known.error_bound <= limit);
+    let growth = converged.facts.growth.expect("chaotic");
+    println!("{} {growth}", converged.facts.reason);
+    assert!(converged.facts.horizon > 5.0 && converged.facts.horizon < until);
+    assert!(converged.facts.error_bound <= limit);
     assert_eq!(
-        converged.known.error_bound,
-        converged.motion.error_bar(converged.known.horizon)
+        converged.facts.error_bound,
+        converged.motion.error_bar(converged.facts.horizon)
     );
-    assert!(converged.motion.error_bar(converged.known.horizon + 0.2) > limit);
+    assert!(converged.motion.error_bar(converged.facts.horizon + 0.2) > limit);
     // From rounding to the limit there are ln(1e-6 / 1e-16) = 23 e-foldings.
-    let foldings = growth * converged.known.horizon;
+    let foldings = growth * converged.facts.horizon;
     assert!((10.0..46.0).contains(&foldings), "{foldings} e-foldings");
     // Beyond, states are still numbers.
     let states = converged.motion.states(&[until]);
@@ -84,14 +84,14 @@ fn the_shipped_scenes_lie_within_their_horizons() {
         let converged = of(&scene, until).expect("it converges");
         println!(
             "{name}: {}; bound {:.1e}, growth {:?}, spent {}",
-            converged.known.reason,
-            converged.known.error_bound,
-            converged.known.growth,
-            converged.known.spent
+            converged.facts.reason,
+            converged.facts.error_bound,
+            converged.facts.growth,
+            converged.facts.spent
         );
-        assert_eq!(converged.known.horizon, until, "{name}");
+        assert_eq!(converged.facts.horizon, until, "{name}");
         // Rounding of coordinates of up to 120 m, amplified; measured 5.5e-13 and below.
-        assert!(converged.known.error_bound < 1e-12, "{name}");
+        assert!(converged.facts.error_bound < 1e-12, "{name}");
     }
 }
 
@@ -104,10 +104,10 @@ fn a_spring_is_followed_through_its_own_end() {
         let converged = of(&scene, 5.0).expect("it converges");
         println!(
             "{miss}: {} {:.1e}",
-            converged.known.reason, converged.known.error_bound
+            converged.facts.reason, converged.facts.error_bound
         );
-        assert_eq!(converged.known.horizon, 5.0, "{miss}");
-        assert!(converged.known.error_bound < bound, "{miss}");
+        assert_eq!(converged.facts.horizon, 5.0, "{miss}");
+        assert!(converged.facts.error_bound < bound, "{miss}");
         // Whichever way it went, its energy is still there.
         let system = ParticleSystem::new(&scene);
         let energy = |x: &[f64], v: &[f64]| system.kinetic(v) + system.potential(0.0, x);
@@ -128,7 +128,7 @@ fn what_no_method_can_follow_has_no_reference_or_a_short_one() {
     let start = State::new(vec![1.0], vec![0.0]);
     match converge(&system, &start, 20.0, 1.0, BUDGET / 16) {
         Err(none) => println!("{none}"),
-        Ok(short) => assert!(short.known.horizon < 2.0, "{}", short.known.reason),
+        Ok(short) => assert!(short.facts.horizon < 2.0, "{}", short.facts.reason),
     }
 }
 
@@ -147,7 +147,7 @@ fn too_fast_a_motion_says_what_it_would_take() {
     let known = problems::chain();
     let within = |budget| converge(&known.system, &known.start, known.until, known.size, budget);
     assert!(within(10).is_err());
-    assert!(within(BUDGET).is_ok_and(|c| c.known.spent <= BUDGET));
+    assert!(within(BUDGET).is_ok_and(|c| c.facts.spent <= BUDGET));
 }
 
 #[test]
@@ -161,9 +161,9 @@ fn forces_that_are_no_numbers_have_no_reference() {
     let start = State::new(vec![1.0], vec![2.0]);
     let converged = converge(&blows_up, &start, 2.0, 1.0, BUDGET / 64).expect("up to then");
     assert!(
-        (0.5..1.0).contains(&converged.known.horizon),
+        (0.5..1.0).contains(&converged.facts.horizon),
         "{}",
-        converged.known.reason
+        converged.facts.reason
     );
     let states = converged.motion.states(&times(2.0));
     assert!(states.x.iter().chain(&states.v).all(|c| c.is_finite()));
@@ -195,7 +195,7 @@ fn nothing_moves_where_all_is_fixed() {
         assert_eq!((states.x(k), states.v(k)), (&start.x[..], &start.v[..]));
     }
     assert_eq!(
-        (converged.known.horizon, converged.known.growth),
+        (converged.facts.horizon, converged.facts.growth),
         (5.0, None)
     );
 }
@@ -209,9 +209,9 @@ fn any_times_give_the_same_bits_and_any_number_of_threads() {
         pool.expect("threads").install(|| {
             let converged = of(&scene, 4.0).expect("it converges");
             let facts = (
-                converged.known.horizon,
-                converged.known.error_bound,
-                converged.known.method,
+                converged.facts.horizon,
+                converged.facts.error_bound,
+                converged.facts.method,
             );
             (facts, converged.motion.states(&all))
         })

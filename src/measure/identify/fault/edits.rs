@@ -7,7 +7,7 @@ use crate::measure::identify::Quantity;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// What no step can do: numbers that are none, or a fixed particle that moves.
+/// A fault that no step can make: numbers that are not finite, or a fixed particle that moves.
 pub(super) fn impossible(spot: &Spot) -> Option<String> {
     let i = spot.worst;
     let is_none = |quantity| (0..3).any(|a| !spot.found(quantity, 3 * i + a).is_finite());
@@ -56,7 +56,7 @@ fn near(spot: &Spot, quantity: Quantity, at: usize, value: f64) -> bool {
     off <= FIT * spot.unit(quantity, at)
 }
 
-/// Whoever is off has the numbers of the row before, to the last digit.
+/// Every particle that is off has the numbers of the row before, to the last digit.
 fn left_behind(spot: &Spot) -> Option<String> {
     let rows = spot.replay.rows;
     let stays = |i: usize| {

@@ -1,4 +1,4 @@
-//! Which change explains a fault.
+//! The change that explains a fault.
 
 use super::super::candidate::Candidate;
 use super::super::replay::FIT;
@@ -8,20 +8,20 @@ use super::spot::{Spot, vector};
 use super::{edits, fit, guesses, is_finite, within};
 use crate::measure::identify::{Fault, Quantity};
 
-/// A guess this near needs no better one: what data of a scheme itself can reach.
+/// A guess with a defect this small is good: data of the scheme itself can have as much.
 const GOOD: f64 = 0.25 * FIT;
-/// And it leaves at most this share of the departure.
+/// A good guess also leaves at most this fraction of the departure.
 const MUCH: f64 = 0.25;
-/// When only the writing went wrong.
+/// The words where only the writing went wrong.
 const ALONE: &str = "in this row only, and the next follows from the one before it";
 /// Transitions after the first that a guess is tried on, to see whether it lasts.
 const AFTER: usize = 6;
-/// How a guess does.
+/// The result of trying a guess.
 struct Tried<'a> {
     guess: &'a Guess,
-    /// At the first departure.
+    /// The defect at the first departure.
     units: f64,
-    /// Positions alone: the change lies in the step before the one that shows it.
+    /// Whether, with positions alone, the change lies in the step before the one that shows it.
     earlier: bool,
     /// Departures after the first that it explains as well, of those looked at.
     later: usize,
@@ -101,8 +101,8 @@ impl Spot<'_> {
         self.replay.defect(&mut replayer, &past).fits()
     }
 
-    /// Of those that rounding lets explain the departure, the ones that explain most of those after
-    /// it; of these the first that is good, else the nearest.
+    /// Of the guesses that explain the departure to rounding, those that explain most departures
+    /// after it; of these the first that is good, else the nearest.
     fn best<'g>(&self, guesses: &'g [Guess]) -> Option<Tried<'g>> {
         let wanted = self.again().min(1);
         let mut fitting = Vec::new();
@@ -126,7 +126,7 @@ impl Spot<'_> {
         Some(fitting.swap_remove(at))
     }
 
-    /// None where rounding does not explain it, or it explains little.
+    /// Tries a guess; None where rounding does not explain what is left, or the guess explains little.
     fn tried<'g>(&self, guess: &'g Guess) -> Option<Tried<'g>> {
         let own = |leg: &Candidate, candidate: &Candidate, steps: u64| {
             self.distance(self.arrive(leg, candidate, steps).as_ref())
@@ -153,8 +153,8 @@ impl Spot<'_> {
         fits(here, false).or_else(before)
     }
 
-    /// Of the transitions after the first departure: departures the guess explains, and whether it
-    /// follows all that were looked at.
+    /// The number of departures after the first that the guess explains, and whether it follows all
+    /// transitions that were looked at.
     fn later(&self, guess: &Guess) -> (usize, bool) {
         let Way::Scheme(candidate) = &guess.way else {
             return (0, false);
@@ -205,7 +205,7 @@ fn off_by(spot: &Spot) -> String {
     format!("particle {i} is off by {x} m and {v} m/s")
 }
 
-/// The same, where nothing explains it.
+/// The words where nothing explains the fault.
 fn unexplained(spot: &Spot) -> String {
     format!("{}, which no single change explains", off_by(spot))
 }

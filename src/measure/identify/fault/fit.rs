@@ -6,15 +6,15 @@ use super::spot::Spot;
 use super::words::{short, spring_name};
 use crate::scene::Scene;
 
-/// Gauss and Newton's steps at most.
+/// Most Gauss-Newton steps.
 const STEPS: usize = 8;
 
-/// A number of the scene that may be another.
+/// A number of the scene that may be wrong.
 struct Knob<'a> {
     name: String,
     unit: &'static str,
     value: f64,
-    /// A change of this size is felt.
+    /// Size of a change that has an effect.
     scale: f64,
     build: Box<dyn Fn(f64) -> Candidate + 'a>,
 }

@@ -18,7 +18,7 @@ pub(super) struct Guess {
 /// How the transition is taken instead.
 pub(super) enum Way {
     Scheme(Candidate),
-    /// By the scheme itself, but so many steps.
+    /// By the scheme itself, but in this many steps.
     Steps(u64),
 }
 
@@ -27,7 +27,7 @@ const ROWS_LOST: u64 = 16;
 /// Substeps that are tried.
 const SUBSTEPS: u32 = 16;
 
-/// All of them; of several that explain as well, the first is told.
+/// All guesses; of several that explain equally well, the first is reported.
 pub(super) fn all(spot: &Spot) -> Vec<Guess> {
     let mut guesses = effects(spot);
     guesses.extend(springs(spot));

@@ -1,4 +1,5 @@
-//! One transition that left the scheme: who is off, by how much, and where another would arrive.
+//! One transition that left the scheme: the particles that are off, by how much, and where another
+//! candidate would arrive.
 
 use super::super::Question;
 use super::super::candidate::Candidate;
@@ -9,7 +10,7 @@ use super::words;
 use crate::measure::identify::{Fault, Quantity};
 use crate::physics::State;
 
-/// Two errors within this share of each other are equally large.
+/// Two errors within this fraction of each other are equally large.
 const TIE: f64 = 1e-3;
 
 /// The first transition that departs.
@@ -18,7 +19,7 @@ pub(super) struct Spot<'a> {
     pub(super) replay: &'a Replay<'a>,
     pub(super) followed: &'a Candidate,
     pub(super) at: Transition,
-    /// By the scheme.
+    /// The state predicted by the scheme.
     pub(super) predicted: State,
     /// What rounding explains of each number: positions, then velocities.
     pub(super) units: Vec<f64>,
@@ -30,12 +31,12 @@ pub(super) struct Spot<'a> {
     pub(super) worst: usize,
     pub(super) quantity: Quantity,
     pub(super) transitions: &'a [Transition],
-    /// Places of those that depart, from this one on.
+    /// Indices of the transitions that depart, from this one on.
     pub(super) departures: &'a [usize],
 }
 
 impl<'a> Spot<'a> {
-    /// At the first of these departures; None without any, or if rounding explains it.
+    /// The first of these departures; None without any, or if rounding explains it.
     pub(super) fn new(
         question: &'a Question<'a>,
         replay: &'a Replay<'a>,
@@ -65,7 +66,7 @@ impl<'a> Spot<'a> {
         (!spot.off.is_empty()).then_some(spot)
     }
 
-    /// Velocities are where forces act: they speak first.
+    /// Forces act on velocities, so these are looked at first.
     fn find_worst(&mut self) {
         let particles = self.replay.rows.dim / 3;
         let is_off = |i: usize, quantity| (0..3).any(|axis| self.is_off(quantity, 3 * i + axis));
@@ -108,7 +109,7 @@ impl<'a> Spot<'a> {
         }
     }
 
-    /// What rounding explains of it.
+    /// The part of the difference that rounding explains.
     pub(super) fn unit(&self, quantity: Quantity, i: usize) -> f64 {
         let place = match quantity {
             Quantity::Position => i,
@@ -122,7 +123,7 @@ impl<'a> Spot<'a> {
         difference.is_nan() || difference > BEYOND * self.unit(quantity, i)
     }
 
-    /// As recorded at the end of the transition.
+    /// The number recorded at the end of the transition.
     pub(super) fn found(&self, quantity: Quantity, i: usize) -> f64 {
         let rows = self.replay.rows;
         let row = match quantity {
@@ -176,7 +177,7 @@ impl<'a> Spot<'a> {
         stepped.ok().filter(|()| state.is_finite()).map(|()| state)
     }
 
-    /// Departures after this one that are not its own.
+    /// Number of departures after this one that it did not cause itself.
     pub(super) fn again(&self) -> usize {
         let first = self.departures.first().copied().unwrap_or(0);
         // Without velocities a transition is seen from three rows, so one fault shows up to thrice.
@@ -209,7 +210,7 @@ impl<'a> Spot<'a> {
         words::how_often(self.span(), self.again(), after)
     }
 
-    /// With this step and explanation; how many particles are off is added.
+    /// The fault with this step and explanation; the number of particles that are off is added.
     pub(super) fn fault(&self, step: u64, says: String) -> Fault {
         let at = 3 * self.worst;
         let row = match self.quantity {

@@ -6,7 +6,7 @@ use crate::integrators::{
 };
 use crate::physics::{State, System};
 
-/// How a step ends.
+/// The result of a step.
 type Stepped = Result<(), StepError>;
 
 fn acceleration(system: &dyn System, t: f64, x: &[f64], v: &[f64]) -> Vec<f64> {

@@ -13,7 +13,7 @@ fn changed(scene: &Scene, there: bool, change: impl FnOnce(&mut Scene)) -> Optio
     })
 }
 
-/// Gravity times this.
+/// Gravity times `factor`.
 fn gravity(scene: &Scene, factor: f64) -> Option<ParticleSystem> {
     changed(scene, falls(scene), |wrong| wrong.solver.gravity *= factor)
 }
@@ -54,7 +54,7 @@ pub(super) fn damping_forgotten(scene: &Scene) -> Option<ParticleSystem> {
     damping(scene, 0.0)
 }
 
-/// Dampers and drag times this.
+/// Dampers and drag times `factor`.
 fn damping(scene: &Scene, factor: f64) -> Option<ParticleSystem> {
     let dragged = scene.particles.iter().any(|p| !p.fixed && p.drag != 0.0);
     changed(scene, dragged || has_dampers(scene), |wrong| {
@@ -122,7 +122,7 @@ fn falls(scene: &Scene) -> bool {
     scene.solver.gravity != 0.0
 }
 
-/// Some free particle's mass is not 1.
+/// Whether some free particle's mass is not 1.
 fn weighs(scene: &Scene) -> bool {
     scene.particles.iter().any(|p| !p.fixed && p.mass != 1.0)
 }

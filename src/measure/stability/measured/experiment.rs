@@ -1,6 +1,7 @@
-//! A scene and what solves it, ready to be probed: how it is perturbed, what is watched, what is known.
+//! A scene and a solver, ready to be probed: its perturbation, the energy watched and the limits known
+//! so far.
 
-use super::Make;
+use super::MakeRun;
 use super::perturbation::{Perturbation, Quadratic};
 use super::probe::{Budget, Probed, Runs, Watch, probe};
 use super::watched::{DifferenceEnergy, ExcessEnergy};
@@ -10,36 +11,36 @@ use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::Unsupported;
 
-/// Times the energy scale at which a run is lost.
+/// A run is lost once its energy is this many times the energy scale.
 const LOST: f64 = 1e4;
-/// Steps of a full probe, where patience allows.
+/// Steps of a full probe, where the budget allows.
 pub(super) const STEPS: u64 = 20_000;
-/// Rise of ln(energy) that is growth: where the map is linear a trend is clean, ...
+/// Rise of ln(energy) that counts as growth where the map is linear: a trend is clean there.
 const CLEAR_LINEAR: f64 = 1e-2;
-/// ... elsewhere energy wanders between motions a method treats differently.
+/// The same elsewhere, where energy wanders between motions a method treats differently.
 const CLEAR: f64 = 0.1;
-/// The energy scale, in roundings, below which a kick would drown in them: of a scene that starts next
-/// to equilibrium.
+/// The least energy scale, in roundings. Below it, in a scene that starts next to equilibrium, a kick
+/// would drown in them.
 const SEEN: f64 = 1e8;
-/// Full probes a search is meant to afford.
+/// Full probes that the budget of a search should pay for.
 const PROBES: u64 = 24;
-/// Steps a full probe takes at least.
+/// Fewest steps of a full probe.
 const FEWEST: u64 = 500;
 /// Steps over which a map is seen to be linear or not.
 const LINEAR_STEPS: usize = 4;
 /// Newton's residuals and rounding are far below this, a direction that turns far above.
 const LINEAR: f64 = 1e-7;
-/// Times what grows fastest is run at the coarse step; each multiplies it a millionfold.
+/// Runs at the coarse step that bring out what grows fastest; each multiplies it a millionfold.
 const ROUNDS: usize = 6;
-/// Fraction of the undirected perturbation beside it.
+/// Fraction of the undirected perturbation that is added to it.
 const TRACE: f64 = 1e-6;
 
 /// One scene and one solver.
 pub(super) struct Experiment<'a> {
     pub scene: &'a Scene,
     pub system: &'a ParticleSystem,
-    make: &'a Make<'a>,
-    /// Where differences of runs obey a linear map.
+    make: &'a MakeRun<'a>,
+    /// The energy of differences, where they obey a linear map.
     quadratic: Option<Quadratic>,
     pub perturbation: Perturbation,
     /// The energy scale, J.
@@ -53,12 +54,12 @@ pub(super) struct Experiment<'a> {
     pub known: (Option<f64>, Option<f64>),
 }
 
-/// A limit, and in words how the first failing step fails, or how far was looked.
+/// A limit, and in words how the first failing step fails, or how far the search went.
 pub(super) type Found = (Limit, String);
 
 /// Why a search ends before a limit is bracketed.
 pub(super) enum Stop {
-    /// There is none to bracket.
+    /// There is no limit to bracket.
     Found(Found),
     Unsupported(Unsupported),
     /// The budget is spent.
@@ -72,14 +73,14 @@ impl From<Unsupported> for Stop {
 }
 
 impl<'a> Experiment<'a> {
-    /// `unit`: the shortest time scale, s. `patience` is in steps of the whole search; `tick` is called with
+    /// `unit`: the shortest time scale, s. `budget` is in steps of the whole search; `tick` is called with
     /// steps taken.
     pub fn new(
         scene: &'a Scene,
         system: &'a ParticleSystem,
-        make: &'a Make<'a>,
+        make: &'a MakeRun<'a>,
         unit: f64,
-        patience: u64,
+        budget: u64,
         tick: &'a (dyn Fn(u64) + Sync),
     ) -> Result<Self, Unsupported> {
         let mut quadratic = Quadratic::new(system);
@@ -98,10 +99,10 @@ impl<'a> Experiment<'a> {
                 Perturbation::slight(system, scale)
             },
             scale,
-            // Two runs a probe where the map is linear.
-            steps: (patience / PROBES / if linear { 2 } else { 1 }).clamp(FEWEST, STEPS),
+            // A probe takes two runs where the map is linear.
+            steps: (budget / PROBES / if linear { 2 } else { 1 }).clamp(FEWEST, STEPS),
             unit,
-            budget: Budget::new(patience, tick),
+            budget: Budget::new(budget, tick),
             known: (None, None),
         })
     }
@@ -120,7 +121,7 @@ impl<'a> Experiment<'a> {
         }
     }
 
-    /// Is `h` stable, over `steps`?
+    /// Probes whether `h` is stable, over `steps` steps.
     pub fn probe(&mut self, h: f64, steps: u64, extensions: u32) -> Result<Probed, Stop> {
         let watch = Watch {
             steps,
@@ -141,7 +142,7 @@ impl<'a> Experiment<'a> {
         probed.ok_or(Stop::Spent)
     }
 
-    /// Two runs of a linear map.
+    /// Probes two runs of a linear map.
     fn watch_pair(&mut self, runs: &mut Runs, watch: Watch) -> Option<Probed> {
         let mut gauge = DifferenceEnergy::new(runs, self.quadratic.clone()?);
         probe(runs, &mut gauge, watch, &mut self.budget)
@@ -152,9 +153,9 @@ impl<'a> Experiment<'a> {
         Runs::new(self.make, h, &[self.scene, &shape.apply(self.scene)])
     }
 
-    /// ln(amplitude) per second at `h`, once what grows fastest has outgrown the rest: that is
-    /// brought about beforehand at the shortest time scale, where growth is steep. None where the map is not linear:
-    /// what grows there changes its rate.
+    /// Growth of ln(amplitude) per second at `h`, once what grows fastest has outgrown the rest. Runs at
+    /// the shortest time scale, where growth is steep, bring that about beforehand. None where the map is
+    /// not linear: the rate of growth changes there.
     pub fn growth(&mut self, h: f64) -> Option<f64> {
         let mut quadratic = self.quadratic.clone()?;
         let wanted = quadratic.energy(&self.perturbation);
@@ -175,7 +176,7 @@ impl<'a> Experiment<'a> {
             }
             shape = grown.scaled((wanted / energy).sqrt());
         }
-        // A trace of everything else, in case something else grows here.
+        // A trace of everything else is added, in case something else grows here.
         let shape = shape.plus(&self.perturbation.scaled(TRACE));
         watch.steps = STEPS;
         watch.extensions = 2;
@@ -195,9 +196,9 @@ fn rounding(scene: &Scene) -> f64 {
     f64::EPSILON * gravity * heights.sum::<f64>()
 }
 
-/// Whether at `h`, a step well inside every limit, twice the perturbation makes twice the difference, to rounding. What the scene is made of
-/// does not tell: some methods are not linear where the forces are.
-fn linear(scene: &Scene, make: &Make, by: &Perturbation, h: f64) -> Result<bool, Unsupported> {
+/// Whether twice the perturbation makes twice the difference, to rounding, at `h`, a step well inside every
+/// limit. The scene's effects do not tell: some methods are not linear where the forces are.
+fn linear(scene: &Scene, make: &MakeRun, by: &Perturbation, h: f64) -> Result<bool, Unsupported> {
     let starts = [scene, &by.apply(scene), &by.scaled(2.0).apply(scene)];
     let mut runs = Runs::new(make, h, &starts)?;
     if (0..LINEAR_STEPS).any(|_| runs.step().is_err()) {

@@ -14,73 +14,73 @@ use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
 use experiment::Experiment;
 use perturbation::Perturbation;
-use probe::{Budget, Fate, Runs, Watch, probe};
+use probe::{Budget, ProbeOutcome, Runs, Watch, probe};
 use serde::{Deserialize, Serialize};
 use watched::ExcessEnergy;
 
-/// What a run at one step does: one cell of a stability map.
+/// The behaviour of a run at one step: one cell of a stability map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cell {
     /// None of the others: it keeps its energy, or loses what dampers take.
     Stable,
-    /// Half of the energy scale S is gone at the end that no damper took (numerical dissipation).
+    /// At the end half of the energy scale S is gone that no damper took (numerical dissipation).
     Dissipating,
-    /// Energy that nothing put in keeps growing, or stays at a hundred times S.
+    /// Energy that nothing put in keeps growing, or stays above a thousand times S.
     Growing,
-    /// A step fails, a number is not finite, the energy passes 1e12 S, or the engine cannot run.
+    /// A step fails, a number is not finite, the energy passes 1e12 S, or the solver cannot run.
     Failed,
 }
 
 /// Starts a run of a scene at a timestep, s, or says why there can be none.
-pub type Make<'a> = dyn Fn(&Scene, f64) -> Result<Run, Unsupported> + Sync + 'a;
+pub type MakeRun<'a> = dyn Fn(&Scene, f64) -> Result<Run, Unsupported> + Sync + 'a;
 
-/// What running found.
+/// The limit found by running.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+pub struct MeasuredLimit {
     /// The largest step found stable, to 1e-3, below the first that was not; `Between` those found so
-    /// far where patience ended.
+    /// far where the budget ended.
     pub limit: Limit,
-    /// The engine's own map is linear (twice the perturbation, twice the difference): not every
-    /// method's is where every force is.
+    /// Whether the solver's map is linear (twice the perturbation makes twice the difference):
+    /// where every force is linear, not every method's map is.
     pub linear: bool,
-    /// Of the amplitude at the timestep asked for, 1/s, where no step is stable: half the rate at
-    /// which ln(energy) grows.
+    /// Growth of the amplitude at the given timestep, 1/s, where no step is stable: half the rate
+    /// at which ln(energy) grows.
     pub growth_per_s: Option<f64>,
     /// As [`Prediction::smooth_below_s`](crate::measure::stability::Prediction::smooth_below_s), by looking at signs.
     pub smooth_below_s: Option<f64>,
     /// Steps taken in all.
     pub steps: u64,
-    /// What there is to say in words: how the first failing step fails, or how far was looked.
+    /// The reason in words: how the first failing step fails, or how far the search went.
     pub reason: Option<String>,
 }
 
-/// Searches the limit to 1e-3 of itself. `timestep`, s, is where growth is taken; `near` a guess of
+/// Searches the limit to 1e-3 of itself. Growth is measured at `timestep`, s. `near` is a guess of
 /// the limit in seconds (a prediction), which only makes the search shorter. `tick` is called with
-/// steps taken; `patience` is in steps of all probes together, a step of more than 20 force passes
-/// counting as several, after which the answer is `Between` or Unknown.
+/// steps taken. `budget` is in steps of all probes together, where a step of more than 20 force
+/// passes counts as several; once it is spent the answer is `Between` or Unknown.
 ///
-/// A probe is 20,000 steps, fewer where patience is short (`reason` says how many), four or sixteen times
-/// as many while it is undecided. Where the engine's map is linear (twice the perturbation, twice the
-/// difference) it watches the energy of the difference between two runs, else the energy of one slightly
-/// perturbed run; see docs/stability.md. Steps are probed on a geometric grid, since stability need not be
-/// monotone, then bisected between the first that fails and the one before. A window of instability narrower
-/// than a fifth of its step can be missed, unless `near` points at it.
+/// A probe is 20,000 steps, fewer where the budget is short (`reason` says how many), four or sixteen times
+/// as many while it is undecided. Where the solver's map is linear it watches the energy of the difference
+/// between two runs, else the energy of one slightly perturbed run; see docs/stability.md. Steps are probed
+/// on a geometric grid, since stability need not be monotone, then bisected between the first that fails
+/// and the one before. A window of instability narrower than a fifth of its step can be missed, unless
+/// `near` points at it.
 pub fn measure(
     scene: &Scene,
     system: &ParticleSystem,
-    make: &Make,
+    make: &MakeRun,
     timestep: f64,
     near: Option<f64>,
-    patience: u64,
+    budget: u64,
     tick: &(dyn Fn(u64) + Sync),
-) -> Measured {
+) -> MeasuredLimit {
     let start = ParticleSystem::initial_state(scene);
     let unit = predicted::shortest(system, &start).unwrap_or(timestep);
-    let mut experiment = match Experiment::new(scene, system, make, unit, patience, tick) {
+    let mut experiment = match Experiment::new(scene, system, make, unit, budget, tick) {
         Ok(experiment) => experiment,
         Err(Unsupported { reason }) => {
-            return Measured {
+            return MeasuredLimit {
                 limit: Limit::Unknown(reason),
                 linear: false,
                 growth_per_s: None,
@@ -91,14 +91,14 @@ pub fn measure(
         }
     };
     let near = near.filter(|near| *near > 0.0 && near.is_finite());
-    let (limit, reason) = experiment.limit(near, patience);
+    let (limit, reason) = experiment.limit(near, budget);
     let growth = (limit == Limit::Never).then(|| experiment.growth(timestep));
     let upto = match limit {
         Limit::At(h) => Some(h),
         _ => None,
     };
     let linear = experiment.is_linear();
-    Measured {
+    MeasuredLimit {
         growth_per_s: growth.flatten().filter(|growth| growth.is_finite()),
         smooth_below_s: linear
             .then(|| smooth::below(&mut experiment, upto))
@@ -112,18 +112,18 @@ pub fn measure(
 
 /// Rise of ln(energy) over the second half of a map's run that counts as growth.
 const CLEAR: f64 = 0.1;
-/// As for a run that counts as diverged.
+/// Times the energy scale at which a run is lost, as for a run that counts as diverged.
 const DIVERGED: f64 = 1e12;
 /// Fraction of the energy scale a dissipating run loses.
 const DISSIPATED: f64 = 0.5;
 
-/// One cell of a stability map: what becomes of the scene at step `h`, s, in at most `steps` steps. One
-/// run, slightly perturbed so that motions a symmetry hides show, and shorter where it fails.
+/// One cell of a stability map: the behaviour of the scene at step `h`, s, in at most `steps` steps. It
+/// is one run, slightly perturbed so that motions a symmetry hides show, and shorter where it fails.
 /// Deterministic. Quicker and coarser than [`measure`]: growth by less than a tenth over half the run is
 /// not seen. `tick` is called with steps taken.
 pub fn classify(
     scene: &Scene,
-    make: &Make,
+    make: &MakeRun,
     h: f64,
     steps: u64,
     tick: &(dyn Fn(u64) + Sync),
@@ -143,10 +143,10 @@ pub fn classify(
     let mut gauge = ExcessEnergy::new(&runs, system, &scene, scale, DIVERGED, late);
     let before = gauge.balance(&runs);
     let mut budget = Budget::new(u64::MAX, tick);
-    let fate = probe(&mut runs, &mut gauge, watch, &mut budget).map(|probed| probed.fate);
-    match fate {
-        Some(Fate::Grows { lost: true, .. }) => Cell::Failed,
-        Some(Fate::Grows { .. }) => Cell::Growing,
+    let outcome = probe(&mut runs, &mut gauge, watch, &mut budget).map(|probed| probed.outcome);
+    match outcome {
+        Some(ProbeOutcome::Grows { lost: true, .. }) => Cell::Failed,
+        Some(ProbeOutcome::Grows { .. }) => Cell::Growing,
         _ if gauge.late_balance() - before < -DISSIPATED * scale => Cell::Dissipating,
         _ => Cell::Stable,
     }

@@ -16,12 +16,13 @@ pub(super) struct Perturbation {
 /// Fraction of the energy scale a non-linear scene is perturbed with.
 const SLIGHT: f64 = 1e-2;
 
-/// Metres or joules where a scene has no size or energy of its own.
+/// Size, m, or energy, J, of a scene that has none of its own.
 const UNIT: f64 = 1.0;
 
 impl Perturbation {
-    /// For linear scenes, where the size changes nothing: as large as the scene, so that rounding is far
-    /// below it, with half of its energy in velocities, so that stiff modes do not drown soft ones.
+    /// The perturbation of a linear scene, where the size changes nothing: as large as the scene, so
+    /// that rounding is far below it, with half of its energy in velocities, so that stiff modes do not
+    /// drown soft ones.
     pub fn large(scene: &Scene, system: &ParticleSystem, quadratic: &mut Quadratic) -> Self {
         let size = Some(scene.size()).filter(|l| *l > 0.0).unwrap_or(UNIT);
         let x = noise(system.inverse_mass(), 1, |_| size);
@@ -34,8 +35,8 @@ impl Perturbation {
         Self { x, v }
     }
 
-    /// For other scenes: a kick of a hundredth of `scale`, J, shared by every free coordinate, so that
-    /// motions across springs, which the scene's symmetry may hide, are there to grow.
+    /// The perturbation of other scenes: a kick of a hundredth of `scale`, J, shared by every free
+    /// coordinate, so that motions across springs, which the scene's symmetry may hide, are there to grow.
     pub fn slight(system: &ParticleSystem, scale: f64) -> Self {
         Self {
             x: vec![0.0; system.dim()],
@@ -74,7 +75,8 @@ impl Perturbation {
         }
     }
 
-    /// The scene started from there: a scene, not a state, since rapier's worlds are made of it.
+    /// The scene with the perturbation added to its start: a scene, not a state, since rapier's
+    /// worlds are made of it.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut perturbed = scene.clone();
         let moved = self.x.chunks_exact(3).zip(self.v.chunks_exact(3));
@@ -89,14 +91,14 @@ impl Perturbation {
     }
 }
 
-/// What counts as rounding, in positions and velocities.
+/// The relative size of rounding in positions and velocities.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// K(dv) + the potential energy of dx under linear forces.
 #[derive(Clone)]
 pub(super) struct Quadratic {
     system: ParticleSystem,
-    /// Forces at the origin, at rest: what does not depend on the state.
+    /// Forces at the origin, at rest: the part that does not depend on the state.
     constant: Vec<f64>,
     zero: Vec<f64>,
     force: Vec<f64>,
@@ -126,7 +128,7 @@ impl Quadratic {
         self.potential(&of.x) + self.system.kinetic(&of.v)
     }
 
-    /// Of the roundings of a state, every other coordinate the other way, so that no translation hides it.
+    /// The energy of the roundings of a state, with alternating signs, so that no translation hides it.
     pub fn rounding(&mut self, State { x, v, .. }: &State) -> f64 {
         let signs = [ROUNDING, -ROUNDING].into_iter().cycle();
         let free = x.iter().zip(self.system.inverse_mass());

@@ -6,19 +6,19 @@
 //! steps to reach 1e4 only from δ = 1.2 % on at ζ = 0.1. Largest values, not means: near a limit the energy
 //! swings by orders of magnitude, but comes back to the same height.
 
-use super::Make;
+use super::MakeRun;
 use super::perturbation::{Perturbation, scramble};
 use crate::integrators::StepError;
 use crate::physics::State;
 use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
 
-/// What becomes of runs.
+/// The outcome of a probe.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Fate {
-    /// Bounded, as far as it was watched.
+pub(super) enum ProbeOutcome {
+    /// The energy is bounded, as far as it was watched.
     Steady,
-    /// Rising throughout, too slowly to call it growth.
+    /// It rises throughout, too slowly to call it growth.
     Creeps,
     Decays,
     /// Unstable, and how; `lost` where the run could not go on.
@@ -31,20 +31,20 @@ pub(super) enum Fate {
 /// A probe's answer.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Probed {
-    pub fate: Fate,
-    /// Of ln(energy), per step; None where nothing was left to measure.
+    pub outcome: ProbeOutcome,
+    /// Growth of ln(energy) per step; None where nothing was left to measure.
     pub rate: Option<f64>,
 }
 
 impl Probed {
     pub fn unstable(&self) -> bool {
-        matches!(self.fate, Fate::Grows { .. })
+        matches!(self.outcome, ProbeOutcome::Grows { .. })
     }
 
-    /// To nothing.
+    /// The energy decays to nothing.
     pub fn decays() -> Self {
         Self {
-            fate: Fate::Decays,
+            outcome: ProbeOutcome::Decays,
             rate: None,
         }
     }
@@ -52,12 +52,12 @@ impl Probed {
     fn grows(why: impl Into<String>, lost: bool, rate: Option<f64>) -> Self {
         let why = why.into();
         Self {
-            fate: Fate::Grows { why, lost },
+            outcome: ProbeOutcome::Grows { why, lost },
             rate,
         }
     }
 
-    /// After `step` steps to so large a logarithm of the energy that it does not come back.
+    /// After `step` steps the logarithm of the energy is so large that it does not come back.
     pub fn explodes(log: f64, step: u64) -> Self {
         let why = match step {
             1 => "its energy explodes within one step".to_owned(),
@@ -75,12 +75,12 @@ impl Probed {
 /// Runs at one timestep from different starts, advanced together.
 pub(super) struct Runs(Vec<Run>);
 
-/// What a linear solve counts as, in force passes.
+/// The force passes that a linear solve counts as.
 const SOLVE: u64 = 3;
 
 impl Runs {
-    /// One from the start of each scene, at `h` seconds.
-    pub fn new(make: &Make, h: f64, scenes: &[&Scene]) -> Result<Self, Unsupported> {
+    /// One run from the start of each scene, at step `h`, s.
+    pub fn new(make: &MakeRun, h: f64, scenes: &[&Scene]) -> Result<Self, Unsupported> {
         let runs = scenes.iter().map(|scene| make(scene, h));
         Ok(Self(runs.collect::<Result<_, _>>()?))
     }
@@ -89,7 +89,7 @@ impl Runs {
         self.0.len()
     }
 
-    /// A step of each.
+    /// Takes a step of each run.
     pub fn step(&mut self) -> Result<(), StepError> {
         self.0.iter_mut().try_for_each(|run| run.advance(1))
     }
@@ -98,14 +98,14 @@ impl Runs {
         self.0[run].state()
     }
 
-    /// The state of one run less that of the first.
+    /// The state of one run minus that of the first.
     pub fn difference(&self, run: usize) -> Perturbation {
         let mut difference = Perturbation::default();
         difference.set_difference(self.state(0), self.state(run));
         difference
     }
 
-    /// Force passes so far, linear solves turned into such, where engines count them.
+    /// Force passes so far, linear solves counted as such, where solvers count them.
     pub fn passes(&self) -> u64 {
         let passes = self.0.iter().map(|run| {
             let counts = run.counts();
@@ -115,13 +115,13 @@ impl Runs {
     }
 }
 
-/// What is watched of runs.
+/// The energy of runs that a probe watches.
 pub(super) trait Gauge {
-    /// Where the energy is after so many steps.
+    /// The energy after `step` steps.
     ///
     /// # Errors
-    /// What became of the runs, where the energy leaves no other answer.
-    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed>;
+    /// The answer of the probe, where the energy leaves no other.
+    fn level(&mut self, runs: &Runs, step: u64) -> Result<EnergyLevel, Probed>;
 
     /// Whether what is watched is no larger than rounding.
     fn is_rounding(&mut self, _runs: &Runs) -> bool {
@@ -130,17 +130,17 @@ pub(super) trait Gauge {
 }
 
 /// An energy against its start or its scale.
-pub(super) struct Level {
+pub(super) struct EnergyLevel {
     /// Its logarithm.
     pub log: f64,
-    /// Too high to stay there.
+    /// Whether it is too high for a stable run to stay there.
     pub high: bool,
 }
 
 /// How long to watch, and how much is growth.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Watch {
-    /// At first; up to 4^`extensions` as many while the trend is undecided.
+    /// Steps at first; up to 4^`extensions` as many while the trend is undecided.
     pub steps: u64,
     pub extensions: u32,
     /// Rise of ln(energy) over the tail from which growth counts.
@@ -150,7 +150,7 @@ pub(super) struct Watch {
 /// Counts steps against a budget.
 pub(super) struct Budget<'a> {
     left: u64,
-    /// In all.
+    /// Steps taken in all.
     pub taken: u64,
     tick: &'a (dyn Fn(u64) + Sync),
 }
@@ -168,8 +168,8 @@ impl<'a> Budget<'a> {
         }
     }
 
-    /// Steps, and what of `passes`, all they took, was more work than steps usually are. False when
-    /// nothing is left.
+    /// Spends `steps` steps, and more if their force passes, `passes`, exceed what steps usually
+    /// take. False when nothing is left.
     pub fn spend(&mut self, steps: u64, passes: u64) -> bool {
         self.taken += steps;
         (self.tick)(steps);
@@ -187,7 +187,7 @@ fn stride(step: u64) -> u64 {
     1 + scramble(step) % 7
 }
 
-/// Steps are paid for in lots of so many.
+/// Steps are counted against the budget in batches of this many.
 const PAID: u64 = 256;
 
 /// Steps the runs until the answer is clear; None when the budget ends first.
@@ -223,7 +223,7 @@ pub(super) fn probe(
                     break 'watched Some(Probed::grows(why, true, None));
                 }
                 step += 1;
-                // Also at the end of every window: what grows is largest there.
+                // The runs are looked at at the end of every window too: what grows is largest there.
                 if step >= look || step >= rest {
                     look = step + stride(step);
                     match gauge.level(runs, step) {
@@ -247,7 +247,7 @@ pub(super) fn probe(
                 }
             }
             pay(runs, std::mem::take(&mut unpaid))?;
-            if maxima.judge(watch.clear).fate != Fate::Creeps {
+            if maxima.judge(watch.clear).outcome != ProbeOutcome::Creeps {
                 break;
             }
         }
@@ -258,7 +258,7 @@ pub(super) fn probe(
         return ended;
     }
     let judged = maxima.judge(watch.clear);
-    // In the last quarter.
+    // The energy was too high in the last quarter.
     if !judged.unstable() && high > 0 && high >= step - step / 4 {
         let why = "its energy stays far too high";
         return Some(Probed::grows(why, false, judged.rate));
@@ -274,7 +274,7 @@ const TAIL: usize = WINDOWS / 2;
 const ENDS: usize = 3;
 /// Steps from the middle of one end to that of the other, in windows.
 const SPAN: f64 = (TAIL - ENDS) as f64;
-/// Growth must be so many times the largest fall between two windows.
+/// Growth must be this many times the largest fall between two windows.
 const SURE: f64 = 4.0;
 /// Fraction of a clear rise below which there is none.
 const FAINT: f64 = 1e-3;
@@ -291,7 +291,7 @@ struct Maxima {
 }
 
 impl Maxima {
-    /// For a run of `steps`; what is handed in are logarithms.
+    /// The windows of a run of `steps` steps; the values are logarithms.
     fn new(steps: u64) -> Self {
         Self {
             window: (steps / WINDOWS as u64).max(1),
@@ -304,7 +304,7 @@ impl Maxima {
         self.window * WINDOWS as u64
     }
 
-    /// The value after step `step`, from 1; others may be left out.
+    /// Adds the value after step `step`, from 1; steps may be left out.
     fn push(&mut self, step: u64, value: f64) {
         let at = (step.saturating_sub(1) / self.window) as usize;
         if self.values.len() <= at {
@@ -313,7 +313,7 @@ impl Maxima {
         self.values[at] = self.values[at].max(value);
     }
 
-    /// Windows four times as long, for a run four times as long.
+    /// Makes windows four times as long, for a run four times as long.
     fn widen(&mut self) {
         self.window *= 4;
         let four = self.values.chunks(4);
@@ -321,7 +321,7 @@ impl Maxima {
         self.values = four.map(largest).collect();
     }
 
-    /// What the last half does. `clear` is the rise of the logarithm from which growth counts; what creeps
+    /// Judges the last half. `clear` is the rise of the logarithm from which growth counts; what creeps
     /// rises without a break, but by too little to be sure: more steps would tell.
     fn judge(&self, clear: f64) -> Probed {
         let tail = &self.values[self.values.len().saturating_sub(TAIL)..];
@@ -333,14 +333,14 @@ impl Maxima {
         if rise > clear && rise > SURE * largest_fall(tail) {
             return Probed::grows("its energy keeps growing", false, rate);
         }
-        let fate = if rise < -clear {
-            Fate::Decays
+        let outcome = if rise < -clear {
+            ProbeOutcome::Decays
         } else if rise > FAINT * clear && tail.is_sorted() {
-            Fate::Creeps
+            ProbeOutcome::Creeps
         } else {
-            Fate::Steady
+            ProbeOutcome::Steady
         };
-        Probed { fate, rate }
+        Probed { outcome, rate }
     }
 }
 

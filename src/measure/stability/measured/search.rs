@@ -1,11 +1,11 @@
-//! Where to probe next: from a guess to the first step that fails, to 5e-4 of itself.
+//! The choice of the next probe: from a guess to the first step that fails, to 5e-4 of itself.
 
 use super::experiment::{Experiment, Found, STEPS, Stop};
-use super::probe::{Fate, Probed, span};
+use super::probe::{ProbeOutcome, Probed, span};
 use crate::measure::stability::Limit;
 use crate::solvers::Unsupported;
 
-/// A step and what became of it.
+/// A step and the answer of its probe.
 #[derive(Clone)]
 struct Tried {
     h: f64,
@@ -14,33 +14,34 @@ struct Tried {
 
 /// Relative width to which a limit is promised.
 const PROMISED: f64 = 1e-3;
-/// The answer's: half of that.
+/// The width the search goes to: half of that.
 const WIDTH: f64 = 5e-4;
 /// Largest step tried, in shortest time scales.
 const FAR: f64 = 1e6;
-/// Smallest.
+/// Smallest step tried, in shortest time scales.
 const SMALL: f64 = 1e-5;
 /// A good guess is seen to be one at this relative distance to either side.
 const BESIDE: f64 = 2e-3;
-/// Brief probes are so many times shorter: what fails far out or in a window fails soon.
+/// Brief probes are this many times shorter: what fails far out or in a window fails soon.
 const BRIEF: u64 = 5;
-/// How larger steps are tried: up to so many times the guess, by this ratio from one to the next, so many
-/// times as short as a full probe. The farther from the guess, the coarser and the briefer.
+/// The zones in which larger steps are tried: up to this many times the guess, by this ratio from one to
+/// the next, in probes this many times shorter than a full one. Farther from the guess, steps are coarser
+/// and probes briefer.
 const ZONES: [(f64, f64, u64); 3] = [
     (4.0, 1.189_207_115_002_721, BRIEF),
     (32.0, 2.0, 2 * BRIEF),
     (f64::INFINITY, 8.0, 4 * BRIEF),
 ];
-/// Factors of √2 below the limit that are looked through for windows.
+/// Factors of √2 below the limit that are searched for windows of instability.
 const BELOW: i32 = 10;
-/// Times a clear rise that cannot be overlooked.
+/// A rise of this many times a clear one cannot be overlooked.
 const VISIBLE: f64 = 4.0;
 /// Growth rates that belong to one power of h have exponents this close.
 const SAME_POWER: f64 = 0.4;
 
 impl Experiment<'_> {
-    /// The limit and what there is to say of it. `near` and `patience` as in [`measure`](super::measure).
-    pub fn limit(&mut self, near: Option<f64>, patience: u64) -> (Limit, Option<String>) {
+    /// The limit and its reason in words. `near` and `budget` as in [`measure`](super::measure).
+    pub fn limit(&mut self, near: Option<f64>, budget: u64) -> (Limit, Option<String>) {
         let bracket = self.bracket(near);
         match bracket.and_then(|(stable, unstable)| self.within(stable, unstable)) {
             Ok((limit, mut reason)) | Err(Stop::Found((limit, mut reason))) => {
@@ -50,7 +51,7 @@ impl Experiment<'_> {
                 (limit, Some(reason))
             }
             Err(Stop::Unsupported(Unsupported { reason })) => (Limit::Unknown(reason), None),
-            Err(Stop::Spent) => unfinished(self.known, patience),
+            Err(Stop::Spent) => unfinished(self.known, budget),
         }
     }
 
@@ -109,12 +110,12 @@ impl Experiment<'_> {
     /// Whether growth does not end at `tried` but only falls below what can be seen: the energy still
     /// creeps up there and further down, or its rate fell like a power of the step so far.
     fn vanishes(&mut self, tried: &Tried, unstable: &[Tried]) -> Result<bool, Stop> {
-        Ok(match tried.probed.fate {
-            Fate::Creeps => {
+        Ok(match tried.probed.outcome {
+            ProbeOutcome::Creeps => {
                 let further = self.full(tried.h * std::f64::consts::FRAC_1_SQRT_2)?;
-                further.probed.fate == Fate::Creeps || self.power_law(unstable)
+                further.probed.outcome == ProbeOutcome::Creeps || self.power_law(unstable)
             }
-            Fate::Steady => self.power_law(unstable),
+            ProbeOutcome::Steady => self.power_law(unstable),
             _ => false,
         })
     }
@@ -148,7 +149,7 @@ impl Experiment<'_> {
             }
             stable = tried;
         }
-        // Briefly they were; once more at length, where nothing was tried at length yet.
+        // All were stable in brief probes; the last is probed in full, since nothing was yet.
         let last = match self.full(stable.h) {
             Err(Stop::Spent) => return Err(unconditional(stable.h, ", looked at briefly")),
             last => last?,
@@ -173,7 +174,7 @@ impl Experiment<'_> {
             if tried.probed.unstable() {
                 let (lower, tried) = match lower {
                     Some(lower) => (lower, tried),
-                    // Unstable from there on: what was found stable is a window itself.
+                    // Every smaller step is unstable so far: the step found stable is in a window itself.
                     None => self.down(tried)?,
                 };
                 return self.bisect(lower, tried);
@@ -196,8 +197,8 @@ impl Experiment<'_> {
             self.known.0 = Some(h);
             Ok(true)
         })?;
-        let why = match failing.probed.fate {
-            Fate::Grows { why, .. } => why,
+        let why = match failing.probed.outcome {
+            ProbeOutcome::Grows { why, .. } => why,
             _ => String::new(),
         };
         Ok((Limit::At(low), format!("at {:.4e} s {why}", failing.h)))
@@ -226,9 +227,9 @@ pub(super) fn bisect<E>(
     Ok(low)
 }
 
-/// What is known when patience ends: a step found stable, and one found unstable.
-fn unfinished(known: (Option<f64>, Option<f64>), patience: u64) -> (Limit, Option<String>) {
-    let ended = format!("no closer within {patience} steps");
+/// The answer when the budget ends: a step found stable, and one found unstable.
+fn unfinished(known: (Option<f64>, Option<f64>), budget: u64) -> (Limit, Option<String>) {
+    let ended = format!("no closer within {budget} steps");
     let why = match known {
         (Some(low), Some(high)) if low < high && high - low <= PROMISED * low => {
             return (Limit::At(low), Some(format!("unstable at {high:.4e} s")));

@@ -1,4 +1,4 @@
-//! Up to which step nothing changes sign from one step to the next.
+//! The largest step at which nothing changes sign from one step to the next.
 
 use super::experiment::Experiment;
 use super::perturbation::Perturbation;
@@ -10,13 +10,13 @@ use crate::scene::Scene;
 /// Differences taken of the run: the k-th multiplies each mode by (R - 1)^k, which leaves the mode
 /// whose R is farthest below 1, the first to turn negative, and costs 2^k roundings.
 const DIFFERENCES: usize = 16;
-/// Times this is repeated from where it led.
+/// Times the differences are taken anew from where they led.
 const ROUNDS: usize = 6;
 /// Roundings in a velocity.
 const ROUNDINGS: f64 = 16.0;
 /// How far above rounding a difference is believed.
 const MARGIN: f64 = 1e3;
-/// Squared sine from which differences are not parallel, and what it leaves of rounding in factors.
+/// Squared sine from which differences are not parallel, and the rounding that it leaves in factors.
 const APART: f64 = 1e-8;
 const NOISE: f64 = 1e-6;
 /// Coordinates beyond which the true motion's spectrum is not looked at.
@@ -70,7 +70,7 @@ fn sign_kept(experiment: &Experiment, h: f64) -> Option<bool> {
     for _ in 0..ROUNDS {
         let differences = differences(experiment, &shape, h)?;
         let Some(Differences { rows, rounding }) = differences else {
-            // Not finite: nothing decays.
+            // A run that is not finite does not decay.
             return Some(false);
         };
         let [first, second, third] = &rows;
@@ -98,13 +98,13 @@ fn sign_kept(experiment: &Experiment, h: f64) -> Option<bool> {
     kept
 }
 
-/// Three successive differences of one order, and what of them is rounding.
+/// Three successive differences of one order, and their rounding.
 struct Differences {
     rows: [Perturbation; 3],
     rounding: f64,
 }
 
-/// Of the perturbation `shape`; the inner None where it leaves the finite numbers.
+/// The differences of the perturbation `shape`; the inner None where it leaves the finite numbers.
 fn differences(
     experiment: &Experiment,
     shape: &Perturbation,
@@ -141,7 +141,7 @@ fn differences(
     Some(Some(Differences { rows, rounding }))
 }
 
-/// Of velocities, weighted by mass, in which modes are orthogonal where they are at all.
+/// The product of velocities weighted by mass, in which modes are orthogonal where they are at all.
 fn product(system: &ParticleSystem, a: &Perturbation, b: &Perturbation) -> f64 {
     let weights = system.inverse_mass();
     let pairs = a.v.iter().zip(&b.v).zip(weights);
@@ -155,7 +155,8 @@ fn norm(system: &ParticleSystem, shape: &Perturbation) -> f64 {
     product(system, shape, shape).sqrt()
 }
 
-/// Whether the linearised scene has an eigenvalue that is not real, or is too large to ask.
+/// Whether the linearised scene has an eigenvalue that is not real, or is too large for that to be
+/// computed.
 fn may_oscillate(scene: &Scene, system: &ParticleSystem) -> bool {
     let free = system.inverse_mass().iter().filter(|w| **w > 0.0).count();
     if free == 0 || free > LARGEST {

@@ -10,7 +10,7 @@
 //! motion decays.
 
 use super::perturbation::{Perturbation, Quadratic};
-use super::probe::{Gauge, Level, Probed, Runs};
+use super::probe::{EnergyLevel, Gauge, Probed, Runs};
 use crate::measure::scale::free_fall;
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
@@ -18,7 +18,7 @@ use crate::scene::Scene;
 /// The energy of the difference between two runs, against its start.
 pub(super) struct DifferenceEnergy {
     quadratic: Quadratic,
-    /// J.
+    /// The energy at the start, J.
     start: f64,
     difference: Perturbation,
 }
@@ -30,7 +30,7 @@ const GONE: f64 = 1e-22;
 const BLOWN_UP: f64 = 1e12;
 
 impl DifferenceEnergy {
-    /// Of two runs at their start.
+    /// The energy of two runs at their start.
     pub fn new(runs: &Runs, quadratic: Quadratic) -> Self {
         let mut gauge = Self {
             quadratic,
@@ -48,7 +48,7 @@ impl DifferenceEnergy {
 }
 
 impl Gauge for DifferenceEnergy {
-    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed> {
+    fn level(&mut self, runs: &Runs, step: u64) -> Result<EnergyLevel, Probed> {
         let energy = self.energy(runs) / self.start;
         if !energy.is_finite() {
             Err(Probed::not_finite(step))
@@ -58,7 +58,7 @@ impl Gauge for DifferenceEnergy {
             Err(Probed::explodes(energy.ln(), step))
         } else {
             let (log, high) = (energy.ln(), false);
-            Ok(Level { log, high })
+            Ok(EnergyLevel { log, high })
         }
     }
 
@@ -69,7 +69,7 @@ impl Gauge for DifferenceEnergy {
     }
 }
 
-/// The energy one run has no right to, against the scene's energy scale.
+/// The energy one run has beyond what is due to it, against the scene's energy scale.
 pub(super) struct ExcessEnergy {
     system: ParticleSystem,
     /// S, J.
@@ -79,13 +79,13 @@ pub(super) struct ExcessEnergy {
     fall: f64,
     /// Times the scale beyond which a run is lost whatever it does next.
     bound: f64,
-    /// From when on the largest balance is kept, s, and that balance, J.
+    /// The time from which on the largest balance is kept, s, and that balance, J.
     late: (f64, f64),
 }
 
-/// Times the scale that, where it stays, is instability too: a spring stretched far enough turns so
-/// slowly that its method is stable again. Not less, since at a relative distance δ inside its limit
-/// the energy of a stable method swings by about 1/δ.
+/// An energy that stays above this many times the scale is instability too: a spring stretched far
+/// enough turns so slowly that its method is stable again. Not less, since at a relative distance δ
+/// inside its limit the energy of a stable method swings by about 1/δ.
 const SATURATED: f64 = 1e3;
 /// Rises below this fraction of the energy in motion are no growth: in a free fall a first-order
 /// method errs by one part in the number of steps.
@@ -94,8 +94,8 @@ const NEGLIGIBLE: f64 = 1e-2;
 const FLOOR: f64 = 1e-3;
 
 impl ExcessEnergy {
-    /// Of one run at its start; `scale` in J, positive; lost beyond `bound` of it. The largest balance is
-    /// kept from `late` seconds on.
+    /// The energy of one run at its start. `scale` is in J and positive; the run is lost beyond `bound`
+    /// times it. The largest balance is kept from `late` seconds on.
     pub fn new(
         runs: &Runs,
         system: ParticleSystem,
@@ -132,7 +132,7 @@ fn energy_less_work(system: &ParticleSystem, state: &State) -> f64 {
 }
 
 impl Gauge for ExcessEnergy {
-    fn level(&mut self, runs: &Runs, step: u64) -> Result<Level, Probed> {
+    fn level(&mut self, runs: &Runs, step: u64) -> Result<EnergyLevel, Probed> {
         let state = runs.state(0);
         let moving = self.system.kinetic(&state.v) + self.system.elastic(state.t, &state.x);
         let excess = energy_less_work(&self.system, state) - self.start;
@@ -151,7 +151,7 @@ impl Gauge for ExcessEnergy {
         } else {
             excess
         };
-        Ok(Level {
+        Ok(EnergyLevel {
             log: (1.0 + counted / self.scale).max(FLOOR).ln(),
             high: counted > SATURATED * self.scale && counted > 0.1 * moving,
         })

@@ -19,7 +19,7 @@ use super::spectrum::Mode;
 use super::{Effort, Limit};
 use crate::integrators::{Amplification, DampingTreatment, Stage, bisect};
 
-/// Whose matrix it is.
+/// The kind of method whose matrix it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Definite {
     Explicit,
@@ -27,14 +27,14 @@ pub(super) enum Definite {
     Material,
 }
 
-/// Vectors an action of the damping's function takes at most.
+/// Most vectors for the action of the damping's function.
 const INNER: usize = 80;
 /// Newton's iteration on the form squares its error.
 const ITERATIONS: usize = 40;
 
 impl Definite {
-    /// None of methods with more than one kick, after merging neighbours, the step's last stage being
-    /// the next one's neighbour. Textbook kicks do not merge.
+    /// The kind of a method; None if it has more than one kick after neighbours are merged, where a
+    /// step's last stage and the next step's first are neighbours. Textbook kicks do not merge.
     pub fn of(amplification: Amplification) -> Option<Self> {
         let (stages, damping) = match amplification {
             Amplification::Rational(_) => return None,
@@ -57,8 +57,8 @@ impl Definite {
         self.root(mode.stiffness, 0.0, &[(mode.damping, 1.0)])
     }
 
-    /// The h at which the form of a vector vanishes: of stiffness `k` and `material`, damped as the
-    /// `nodes` (c, weight) say, the weights summing to 1.
+    /// The h at which the form of a vector of stiffness `k` and `material` vanishes. Its damping is
+    /// given by the `nodes` (c, weight), whose weights sum to 1.
     fn root(self, k: f64, material: f64, nodes: &[(f64, f64)]) -> Option<f64> {
         let c: f64 = nodes.iter().map(|(c, weight)| c * weight).sum();
         match self {
@@ -85,8 +85,8 @@ impl Definite {
         }
     }
 
-    /// What a part allows, without growth: Newton's iteration on h, each time for the vector whose form is the
-    /// first to vanish. None where Lanczos does not converge. K, C and K' are taken for symmetric.
+    /// The limit of a part, without growth: Newton's iteration on h, each time for the vector whose form is
+    /// the first to vanish. None where Lanczos does not converge. K, C and K' are taken for symmetric.
     pub fn limit(self, part: &Part, effort: &Effort) -> Option<Prediction> {
         let n = part.n();
         let Part {

@@ -24,7 +24,7 @@ pub(super) fn top(n: usize, product: Product, effort: &Effort) -> Option<(f64, V
 }
 
 /// As [`top`], by Lanczos begun anew from its best vector until the residual is at most `enough` of the
-/// spectrum's size, and whether it is. Where it is not the eigenvalue is one from below.
+/// spectrum's size, and whether it came to that. Where it did not, the eigenvalue is a lower bound.
 pub(super) fn best(
     n: usize,
     product: Product,
@@ -119,7 +119,7 @@ impl Nodes {
     }
 }
 
-/// Of a symmetric matrix and q: a space of at most `most` vectors.
+/// The nodes of a symmetric matrix and q, from a space of at most `most` vectors.
 pub(super) fn nodes(product: Product, q: &[f64], most: usize) -> Option<Nodes> {
     let mut space = Space::new(unit(q)?, dot);
     loop {

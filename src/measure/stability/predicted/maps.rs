@@ -5,14 +5,14 @@ use super::definite::Definite;
 use super::parts::Part;
 use super::prediction::Prediction;
 use super::regions::stiffest_binds;
-use super::spectrum::{Known, Mode, Spectrum};
+use super::spectrum::{Coverage, Mode, Spectrum};
 use super::{Effort, Limit};
 use crate::integrators::{Amplification, DampingTreatment, Stage, bisect, map};
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use nalgebra::Complex;
 
-/// What a method does to a part at `h`, s; None where nothing of it could grow.
+/// The prediction for a part at `h`, s; None where nothing of it could grow.
 pub(super) fn predict(
     amplification: Amplification,
     spectrum: &Spectrum,
@@ -22,8 +22,8 @@ pub(super) fn predict(
     match amplification {
         Amplification::Composition(stages, damping) if spectrum.proportional => {
             let found = by_modes(stages, damping, &spectrum.modes, h)?;
-            match spectrum.known {
-                Known::Sampled => stiffest_binds(found, &spectrum.modes),
+            match spectrum.coverage {
+                Coverage::Sampled => stiffest_binds(found, &spectrum.modes),
                 _ => Some(found),
             }
         }
@@ -37,7 +37,7 @@ fn growth(modulus: f64, h: f64) -> f64 {
     modulus.clamp(f64::MIN_POSITIVE, f64::MAX).ln() / h
 }
 
-/// What a composition does to modes that are damped by themselves.
+/// The prediction for modes that are damped by themselves.
 fn by_modes(
     stages: &'static [Stage],
     damping: DampingTreatment,
@@ -61,14 +61,14 @@ fn by_modes(
             let failure = first_failure(mode.rate(), upto, &|h| at(h).is_smooth());
             failure.unwrap_or(upto)
         });
-        // What oscillates from the first cell on is not smooth up to anything worth saying.
+        // A mode that oscillates from the first cell on has no smooth step worth reporting.
         let smooth = smooth.filter(|smooth| *smooth > NEAR / mode.rate() * 0.5);
         Prediction::of(mode, limit, growth(at(h).modulus(), h), smooth, h)
     });
     each.reduce(Prediction::and)
 }
 
-/// Cells a scan takes, in units of the mode's rate; then in parts of how far it has come.
+/// Length of a scan's cells, in units of 1 over the mode's rate; beyond 1, relative to how far it has come.
 const FINE: f64 = 0.01;
 /// Nothing of what a method promises begins below; far above, limits are those of drag's flow.
 const NEAR: f64 = 0.02;
@@ -95,8 +95,8 @@ fn first_failure(rate: f64, upto: f64, holds: &dyn Fn(f64) -> bool) -> Option<f6
 /// A modulus above 1 by no more than this is rounding of a composition of nine factors.
 const ROUNDING: f64 = 1e-12;
 
-/// The two eigenvalues of a composition's map of one mode. Without stiffness the place keeps its value; that
-/// eigenvalue 1 is left out, and 0 stands for it.
+/// The two eigenvalues of a composition's map of one mode. Without stiffness the position keeps its value:
+/// this eigenvalue 1 is left out, and 0 stands for it.
 struct Pair {
     half_trace: f64,
     determinant: f64,
@@ -108,7 +108,7 @@ impl Pair {
         let (trace, determinant) = match damping {
             _ if mode.stiffness != 0.0 => (a + d, a * d - b * c),
             DampingTreatment::Explicit => (d, 0.0),
-            // Flows of damping alone make one: their product overflows where kicks go backward.
+            // Flows of damping alone merge into one: their product overflows where kicks go backward.
             DampingTreatment::ExactFlow => ((-h * mode.damping).exp(), 0.0),
         };
         Self {
@@ -143,7 +143,7 @@ impl Pair {
     }
 }
 
-/// Where modes are coupled, by damping or by stiffness a method leaves out.
+/// The prediction where modes are coupled, by damping or by stiffness a method leaves out.
 fn coupled(
     amplification: Amplification,
     spectrum: &Spectrum,
@@ -185,15 +185,15 @@ struct StepMap {
     material: Mat<f64>,
     /// Eigenvalues of C, 1/s.
     damping: Vec<f64>,
-    /// Something is without restoring force, or grows in truth.
+    /// Whether something is without restoring force, or grows in truth.
     at_rest: bool,
     unstable: bool,
 }
 
-/// Beyond 1 by this is growth. The eigenvalues of an unsymmetric matrix carry some rounding, and where
-/// the limit is, they grow linearly in h at least.
+/// A modulus beyond 1 by more than this is growth. The eigenvalues of an unsymmetric matrix carry some
+/// rounding, and where the limit is, they grow linearly in h at least.
 const GROWING: f64 = 1e-10;
-/// What is at rest has the eigenvalue 1 twice: about the root of rounding away from it.
+/// A mode at rest has the eigenvalue 1 twice, so rounding moves it by about its root.
 const AT_REST: f64 = 1e-5;
 /// The scan's steps, in parts of h.
 const CELL: f64 = 0.02;

@@ -16,9 +16,9 @@ use crate::scene::{DampingModel, Scene};
 pub(super) use parts::shortest;
 pub use prediction::Prediction;
 use serde::{Deserialize, Serialize};
-use spectrum::{Known, Spectrum};
+use spectrum::{Coverage, Spectrum};
 
-/// Where along the trajectory the predicted limit is smallest.
+/// The point of the trajectory where the predicted limit is smallest.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TightestLimit {
     pub limit_s: f64,
@@ -28,18 +28,18 @@ pub struct TightestLimit {
 /// x'' = -K x - C v about a state, mass-normalised, as its parts that do not couple.
 #[derive(Debug, Clone)]
 pub struct Linearised {
-    /// Those with a spectrum.
+    /// The parts with a spectrum.
     parts: Vec<Spectrum>,
     excluded: Vec<String>,
-    /// Why nothing, or not everything, can be said.
+    /// The reason why nothing, or not everything, is known.
     failed: Option<&'static str>,
     effort: Effort,
 }
 
 impl Linearised {
-    /// About the state of all particles, fixed ones included (3n coordinates).
+    /// Linearises about the state of all particles, fixed ones included (3n coordinates).
     ///
-    /// Not cheap: at full effort the whole spectrum of up to 600 coordinates that couple.
+    /// This is not cheap: full effort computes the whole spectrum of up to 600 coordinates that couple.
     pub fn new<S: System + ?Sized>(system: &S, state: &State, effort: Effort) -> Self {
         let mut linearised = Self {
             parts: Vec::new(),
@@ -89,16 +89,16 @@ impl Linearised {
         linearised
     }
 
-    /// The largest angular frequency, rad/s; None where nothing oscillates, or nobody knows
+    /// The largest angular frequency, rad/s; None where nothing oscillates, or that is unknown
     /// ([`Self::is_unsure`]).
     pub fn omega_max(&self) -> Option<f64> {
         let omegas = self.parts.iter().filter_map(Spectrum::omega_max);
         omegas.max_by(f64::total_cmp)
     }
 
-    /// Whether [`Self::omega_max`] is None because nobody knows.
+    /// Whether [`Self::omega_max`] is None because it is unknown.
     pub fn is_unsure(&self) -> bool {
-        let unknown = |part: &Spectrum| matches!(part.known, Known::Outermost(_));
+        let unknown = |part: &Spectrum| matches!(part.coverage, Coverage::Outermost(_));
         self.omega_max().is_none() && (self.failed.is_some() || self.parts.iter().any(unknown))
     }
 
@@ -114,7 +114,7 @@ impl Linearised {
         &self.excluded
     }
 
-    /// What `method` does to it: its limit, and its growth at `timestep`, s.
+    /// The prediction for `method`: its limit, and its growth at `timestep`, s.
     pub fn predict(&self, method: &Method, timestep: f64) -> Prediction {
         let parts = self
             .parts
@@ -132,14 +132,18 @@ impl Linearised {
         whole.explained(undamped, modes)
     }
 
-    /// Modes that neither decay nor rest, and all that do not rest; zeros where nobody counted.
+    /// The numbers of modes that neither decay nor rest, and of all that do not rest; zeros where
+    /// they were not counted.
     fn undamped(&self) -> (usize, usize) {
         let mut counts = (0, 0);
         for Spectrum {
-            part, modes, known, ..
+            part,
+            modes,
+            coverage,
+            ..
         } in &self.parts
         {
-            if !matches!(known, Known::All) {
+            if !matches!(coverage, Coverage::All) {
                 return (0, 0);
             }
             let undamped = modes.iter().filter(|mode| mode.damping == 0.0).count();
@@ -150,7 +154,7 @@ impl Linearised {
     }
 }
 
-/// Sizes, in coordinates that couple, up to which things are done, and how far Krylov spaces go.
+/// Sizes, in coordinates that couple, up to which each method is used, and how far Krylov spaces go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
     /// All modes of a symmetric stiffness, damped by themselves.
@@ -201,19 +205,19 @@ impl Effort {
 
 /// A trajectory linearised at some of its states; made once for all methods.
 #[derive(Debug, Clone)]
-pub struct Along {
+pub struct LinearisedTrajectory {
     states: Vec<(f64, Linearised)>,
 }
 
-/// States looked at, where a part couples few coordinates; of larger scenes fewer.
+/// Most states looked at; larger scenes have fewer.
 const STATES: usize = 64;
-/// Coordinates times states.
+/// Most coordinates times states.
 const WORK: usize = 8_000;
-/// States at least.
+/// Fewest states looked at.
 const FEWEST: usize = 8;
 
-impl Along {
-    /// Of states in order of time, evenly thinned, both ends included, to at most 64.
+impl LinearisedTrajectory {
+    /// Linearises at these states, in order of time, evenly thinned to at most 64 with both ends included.
     pub fn new<'a, S: System + ?Sized>(
         system: &S,
         states: impl IntoIterator<Item = &'a State>,
@@ -235,13 +239,13 @@ impl Along {
     /// step, or at none.
     pub fn tightest(&self, method: &Method) -> Option<TightestLimit> {
         let limits = self.states.iter().filter_map(|(t_s, linearised)| {
-            // Any timestep: growth is not asked for.
+            // Any timestep will do: growth is not used.
             match linearised.predict(method, 1.0).limit {
                 Limit::At(limit_s) => Some(TightestLimit { limit_s, t_s: *t_s }),
                 _ => None,
             }
         });
-        // The first of equal ones.
+        // Of equal limits this takes the first.
         limits.min_by(|a, b| a.limit_s.total_cmp(&b.limit_s))
     }
 }

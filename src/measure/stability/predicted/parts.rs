@@ -34,7 +34,7 @@ impl Part {
         [&self.stiffness, &self.damping, &self.material]
     }
 
-    /// The largest first.
+    /// Orders parts, the largest first.
     fn order(&self, other: &Self) -> Ordering {
         let matrices = self.matrices().into_iter().zip(other.matrices());
         let sizes = other.n().cmp(&self.n());
@@ -179,7 +179,7 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    /// Repeated places add up, in the order given.
+    /// A matrix of these entries; repeated places add up, in the order given.
     pub fn new(n: usize, entries: impl IntoIterator<Item = (usize, usize, f64)>) -> Self {
         let mut rows = vec![Vec::new(); n];
         for (row, column, value) in entries {
@@ -207,7 +207,7 @@ impl Matrix {
         rows.flat_map(|(row, entries)| entries.iter().map(move |&(column, v)| (row, column, v)))
     }
 
-    /// By the number of their entries, then by these in turn.
+    /// Orders matrices by the number of their entries, then by these in turn.
     pub fn order(&self, other: &Self) -> Ordering {
         let values = |m: &Self| -> Vec<f64> { m.entries().map(|(.., value)| value).collect() };
         let (own, others) = (values(self), values(other));

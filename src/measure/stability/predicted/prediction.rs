@@ -1,21 +1,20 @@
-//! What a method does to a linearised scene: of one part of it, and of several together.
+//! The effect of a method on a linearised scene: on one part of it, and on several together.
 
 use super::Limit;
 use super::spectrum::Mode;
 
-/// What one method does to a linearised scene.
+/// The effect of one method on a linearised scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
     pub limit: Limit,
-    /// ln(spectral radius) / h of the amplitude at the timestep asked for, 1/s; at most 0 where it
-    /// is stable, 0 where all motion is free. None where it would take the full spectrum of too
-    /// many coordinates.
+    /// ln(spectral radius) / h of the amplitude at the given timestep, 1/s; at most 0 where it is stable, 0
+    /// where all motion is free. None where it would take the full spectrum of too many coordinates.
     pub growth_per_s: Option<f64>,
     /// Where nothing oscillates (drag alone, overdamped modes): the largest step, s, up to which every
     /// mode decays without changing sign from step to step; None where something oscillates in truth,
     /// where no step is too large (`reason` says so), and for splittings where damping couples modes.
     pub smooth_below_s: Option<f64>,
-    /// What there is to say in words: which mode binds, how sure the limit is, or why there is none.
+    /// The reason in words: which mode binds, how sure the limit is, or why there is none.
     pub reason: Option<String>,
     /// The mode that sets the limit.
     pub(super) binding: Option<Mode>,
@@ -57,12 +56,12 @@ impl Prediction {
         }
     }
 
-    /// The prediction for two parts together. A limit of never outranks an unknown one, and an unknown one
+    /// The prediction for two parts together. `Never` outranks an unknown limit, and an unknown limit
     /// outranks a known one.
     pub(super) fn and(self, other: Self) -> Self {
         let growth_per_s = match (self.growth_per_s, other.growth_per_s) {
             (Some(a), Some(b)) => Some(a.max(b)),
-            // One that grows is enough to say so.
+            // One part that grows is enough.
             (one, another) => one.or(another).filter(|growth| *growth > 0.0),
         };
         let smooth = self.smooth_below_s.zip(other.smooth_below_s);

@@ -2,21 +2,21 @@
 
 use super::Limit;
 use super::prediction::Prediction;
-use super::spectrum::{Bound, Known, Mode, Spectrum, shown};
+use super::spectrum::{Bound, Coverage, Mode, Spectrum, shown};
 use crate::integrators::{Rational, Stable};
 use nalgebra::Complex;
 
-/// What a method does to a part at `h`, s; None where nothing of it could grow.
+/// The prediction for a part at `h`, s; None where nothing of it could grow.
 pub(super) fn predict(rational: &Rational, spectrum: &Spectrum, h: f64) -> Option<Prediction> {
     let of = |eigenvalues: &[(Complex<f64>, Mode)]| of_eigenvalues(rational, eigenvalues, h);
     let outermost = &spectrum.eigenvalues;
-    match spectrum.known {
-        Known::All => of(outermost),
-        Known::Sampled => stiffest_binds(of(outermost)?, &spectrum.modes),
-        Known::Outermost(Some(bound)) if outermost.is_empty() => {
+    match spectrum.coverage {
+        Coverage::All => of(outermost),
+        Coverage::Sampled => stiffest_binds(of(outermost)?, &spectrum.modes),
+        Coverage::Outermost(Some(bound)) if outermost.is_empty() => {
             Some(of_bound(rational, bound, of(&bound.stiffest.eigenvalues())))
         }
-        Known::Outermost(_) => Some(of_outermost(rational, outermost, of(outermost))),
+        Coverage::Outermost(_) => Some(of_outermost(rational, outermost, of(outermost))),
     }
 }
 
@@ -52,8 +52,8 @@ pub(super) fn stiffest_binds(found: Prediction, modes: &[Mode]) -> Option<Predic
     ))
 }
 
-/// From outermost eigenvalues. The others are no larger than the least of them, so nothing was missed where
-/// the half disc of that radius is stable.
+/// The prediction from outermost eigenvalues. The others are no larger than the least of them, so nothing
+/// was missed where the half disc of that radius is stable.
 fn of_outermost(
     rational: &Rational,
     outermost: &[(Complex<f64>, Mode)],
@@ -98,7 +98,7 @@ fn of_outermost(
     }
 }
 
-/// From the stiffest vector and a radius that no eigenvalue exceeds.
+/// The prediction from the stiffest vector and a radius that no eigenvalue exceeds.
 fn of_bound(rational: &Rational, bound: Bound, known: Option<Prediction>) -> Prediction {
     let stable = rational.half_disc();
     let sure = stable / bound.radius;

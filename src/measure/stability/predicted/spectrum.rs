@@ -12,18 +12,18 @@ pub(super) struct Spectrum {
     pub part: Part,
     /// Whether damping acts on each mode by itself (C a combination of K and 1).
     pub proportional: bool,
-    /// Where it does the modes, ascending in stiffness; else one for each eigenvalue.
+    /// With proportional damping all modes, ascending in stiffness; else one for each eigenvalue.
     pub modes: Vec<Mode>,
     /// Eigenvalues with Im >= 0 of (x, v)' = (v, -K x - C v), 1/s, and the mode each belongs to.
     pub eigenvalues: Vec<(Complex<f64>, Mode)>,
-    pub known: Known,
-    /// None where nobody counted.
+    pub coverage: Coverage,
+    /// None where they were not counted.
     pub left_out: Option<LeftOut>,
 }
 
 /// How much of a spectrum is known.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Known {
+pub(super) enum Coverage {
     All,
     /// A sample of a large part's modes, the last the stiffest.
     Sampled,
@@ -32,32 +32,37 @@ pub(super) enum Known {
     Outermost(Option<Bound>),
 }
 
-/// What is known without any eigenvalue.
+/// Bounds that are known without any eigenvalue.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bound {
     /// The stiffest vector, as a mode.
     pub stiffest: Mode,
-    /// Within it all eigenvalues lie, 1/s.
+    /// Radius within which all eigenvalues lie, 1/s.
     pub radius: f64,
 }
 
 /// Modes that are left out.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LeftOut {
-    /// Without restoring force.
+    /// Number of modes without restoring force.
     pub at_rest: usize,
-    /// Growing in truth.
+    /// Number of modes that grow in truth.
     pub unstable: usize,
 }
 
 impl Spectrum {
-    fn of_modes(part: Part, modes: Vec<Mode>, known: Known, left_out: Option<LeftOut>) -> Self {
+    fn of_modes(
+        part: Part,
+        modes: Vec<Mode>,
+        coverage: Coverage,
+        left_out: Option<LeftOut>,
+    ) -> Self {
         Self {
             part,
             proportional: true,
             eigenvalues: modes.iter().flat_map(|mode| mode.eigenvalues()).collect(),
             modes,
-            known,
+            coverage,
             left_out,
         }
     }
@@ -65,7 +70,7 @@ impl Spectrum {
     fn of_eigenvalues(
         part: Part,
         values: impl Iterator<Item = Complex<f64>>,
-        known: Known,
+        coverage: Coverage,
         left_out: Option<LeftOut>,
     ) -> Self {
         let eigenvalues: Vec<_> = values.map(|value| (value, Mode::of(value))).collect();
@@ -74,7 +79,7 @@ impl Spectrum {
             proportional: false,
             modes: eigenvalues.iter().map(|(_, mode)| *mode).collect(),
             eigenvalues,
-            known,
+            coverage,
             left_out,
         }
     }
@@ -84,9 +89,9 @@ impl Spectrum {
         let oscillating = self.eigenvalues.iter().filter(|(value, _)| value.im > 0.0);
         let fastest = oscillating.map(|(_, mode)| mode.omega());
         let fastest = fastest.max_by(f64::total_cmp);
-        match self.known {
+        match self.coverage {
             // Eigenvalues may be decays only, while others within them oscillate.
-            Known::Outermost(Some(Bound { stiffest, .. })) if stiffest.oscillates() => {
+            Coverage::Outermost(Some(Bound { stiffest, .. })) if stiffest.oscillates() => {
                 fastest.or(Some(stiffest.omega()))
             }
             _ => fastest,
@@ -99,7 +104,8 @@ impl Spectrum {
 const DOUBLE_ZERO: f64 = 1e-6;
 /// Growth or decay of an unsymmetric matrix's eigenvalue below this part of the largest is rounding.
 const NEUTRAL: f64 = 1e-11;
-/// Real but for rounding: the root of it where two eigenvalues coincide.
+/// An eigenvalue is real if its imaginary part is a smaller part of it than this: where two
+/// eigenvalues coincide, the root of rounding.
 const REAL: f64 = 1e-7;
 /// Modes a large part is sampled at.
 const SAMPLES: usize = 200;
@@ -141,7 +147,7 @@ fn zero(n: usize, norm: f64) -> f64 {
     8.0 * n as f64 * f64::EPSILON * norm
 }
 
-/// Ascending.
+/// Stiffnesses of the modes, 1/s², ascending.
 fn stiffnesses(part: &Part) -> Option<Vec<f64>> {
     if part.n() == 1 {
         return Some(vec![part.stiffness.at(0, 0)]);
@@ -176,7 +182,12 @@ fn modes(part: Part, damping: (f64, f64)) -> Option<Spectrum> {
             modes.push(mode);
         }
     }
-    Some(Spectrum::of_modes(part, modes, Known::All, Some(left_out)))
+    Some(Spectrum::of_modes(
+        part,
+        modes,
+        Coverage::All,
+        Some(left_out),
+    ))
 }
 
 fn sampled(part: Part, damping: (f64, f64), effort: &Effort) -> Option<Spectrum> {
@@ -184,10 +195,10 @@ fn sampled(part: Part, damping: (f64, f64), effort: &Effort) -> Option<Spectrum>
     let (stiffest, _) = krylov::top(part.n(), &product, effort)?;
     let sample = |i| damped(stiffest.max(0.0) * i as f64 / SAMPLES as f64, damping);
     let modes = (1..=SAMPLES).map(sample).collect();
-    Some(Spectrum::of_modes(part, modes, Known::Sampled, None))
+    Some(Spectrum::of_modes(part, modes, Coverage::Sampled, None))
 }
 
-/// Of (s x, v): s balances the two halves.
+/// The factor s of (s x, v) that balances the two halves.
 fn balance(part: &Part) -> f64 {
     let (k, c) = (part.stiffness.norm(), part.damping.norm());
     if k > 0.0 { k.sqrt() } else { c }
@@ -223,12 +234,12 @@ fn eigenvalues(part: Part) -> Option<Spectrum> {
     Some(Spectrum::of_eigenvalues(
         part,
         stable,
-        Known::All,
+        Coverage::All,
         Some(left_out),
     ))
 }
 
-/// An eigenvalue without its rounding; None of the lower one of a pair.
+/// An eigenvalue without its rounding; None for the lower one of a pair.
 fn settled(root: Complex<f64>, largest: f64) -> Option<Complex<f64>> {
     let re = if root.re.abs() <= NEUTRAL * largest {
         0.0
@@ -265,8 +276,8 @@ fn outermost(part: Part, effort: &Effort) -> Spectrum {
     };
     let largest = all.first().map_or(0.0, |root| root.norm());
     let settled = all.into_iter().filter_map(|root| settled(root, largest));
-    let known = Known::Outermost(bound(&part, effort));
-    Spectrum::of_eigenvalues(part, settled.filter(|root| root.re <= 0.0), known, None)
+    let coverage = Coverage::Outermost(bound(&part, effort));
+    Spectrum::of_eigenvalues(part, settled.filter(|root| root.re <= 0.0), coverage, None)
 }
 
 /// Residual at which the stiffest vector will do, relative to the spectrum; the eigenvalue is then good to
@@ -308,7 +319,7 @@ pub(super) struct Mode {
 }
 
 impl Mode {
-    /// The one an eigenvalue belongs to, or, of a real one, that decays as it does.
+    /// The mode an eigenvalue belongs to; for a real one, the mode that decays as it does.
     pub fn of(root: Complex<f64>) -> Self {
         if root.im == 0.0 {
             Self {
@@ -323,7 +334,7 @@ impl Mode {
         }
     }
 
-    /// Its eigenvalues other than 0 with Im >= 0: two real ones, or one of a pair. Each with the mode.
+    /// Its eigenvalues other than 0 with Im >= 0, two real ones or one of a pair, each with the mode.
     pub fn eigenvalues(self) -> Vec<(Complex<f64>, Self)> {
         let (k, half) = (self.stiffness, 0.5 * self.damping);
         if self.oscillates() {

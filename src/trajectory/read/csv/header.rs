@@ -5,16 +5,16 @@ use super::super::expected::Expected;
 use super::bare;
 use crate::scene::words::{nearest, shorten};
 
-/// Where in a record the numbers stand.
+/// The fields of a record in which the numbers stand.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Columns {
     pub t: usize,
     pub id: Option<usize>,
-    /// Three, or the one on the scene's free axis.
+    /// Fields of the positions: three, or the one on the scene's free axis.
     pub x: Vec<usize>,
-    /// As many as `x`, or none.
+    /// Fields of the velocities: as many as `x`, or none.
     pub v: Vec<usize>,
-    /// Fields of a record.
+    /// Number of fields in a record.
     pub count: usize,
 }
 
@@ -22,7 +22,7 @@ const NAMES: [&str; 9] = ["t", "id", "x", "y", "z", "vx", "vy", "vz", "v"];
 const EXAMPLE: &str = "write `t,id,x,y,z` or `t,id,x,y,z,vx,vy,vz` above the numbers";
 
 impl Columns {
-    /// From the fields of the header; an error comes with the field it is about.
+    /// Reads the fields of the header; an error comes with the field it is about.
     pub fn new<'a>(
         fields: impl Iterator<Item = &'a [u8]>,
         expected: &Expected,
@@ -85,7 +85,7 @@ impl Columns {
     }
 }
 
-/// A name that is no column's.
+/// The error of a name that belongs to no column.
 fn unknown(name: &str) -> Wrong {
     if name.parse::<f64>().is_ok() {
         return Wrong::new(

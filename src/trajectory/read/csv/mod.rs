@@ -6,7 +6,7 @@ use super::digits::Form;
 use super::error::{HALF, ReadError, Wrong, of_end, of_field, without_mark};
 use super::expected::Expected;
 use super::times::{self, Times};
-use super::{Numbers, Place, Table, limits};
+use super::{ErrorPlace, Numbers, Table, limits};
 use crate::scene::words::shorten;
 use ::csv::{ByteRecord, ReaderBuilder};
 use header::Columns;
@@ -16,7 +16,7 @@ use header::Columns;
 pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError> {
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         let wrong = Wrong::new("this text is UTF-16", "save it as UTF-8");
-        return Err(wrong.at(Place::Text { line: 1, column: 1 }));
+        return Err(wrong.at(ErrorPlace::Text { line: 1, column: 1 }));
     }
     let text = without_mark(bytes);
     let mut reader = ReaderBuilder::new()
@@ -45,7 +45,7 @@ pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError
             rows.add(&record, start, last).map_err(fail)?;
             continue;
         }
-        // Numbers right below a comment that names the columns.
+        // The numbers follow right below a comment that names the columns.
         if let Some(columns) = commented.take().filter(|_| number(first).is_some()) {
             let rows = rows.insert(Rows::new(columns, expected));
             rows.add(&record, start, last).map_err(fail)?;
@@ -74,9 +74,9 @@ struct Rows<'a> {
     v: Vec<f64>,
     /// How times, positions and velocities are written.
     forms: [Form; 3],
-    /// Of each particle: how many states there were when it was last given.
+    /// For each particle, the number of states there were when it was last given.
     given_in: Vec<usize>,
-    /// Particles of the last state given so far.
+    /// Number of particles given so far in the last state.
     given: usize,
 }
 
@@ -97,7 +97,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// One record that starts at this byte; errors name the field.
+    /// Adds the record that starts at this byte; errors name the field.
     fn add(&mut self, record: &ByteRecord, start: u64, last: bool) -> Located<()> {
         if record.len() != self.columns.count {
             let (count, found) = (self.columns.count, record.len());
@@ -117,7 +117,7 @@ impl<'a> Rows<'a> {
         self.store(record, particle)
     }
 
-    /// A state at another time than the last.
+    /// Begins a state at another time than the last one's.
     fn begin(&mut self, t: f64, start: u64) -> Result<(), Wrong> {
         times::follows(self.times.last().copied(), t)?;
         self.complete("before the next time begins")?;
@@ -168,11 +168,11 @@ impl<'a> Rows<'a> {
     fn particle(&mut self, record: &ByteRecord) -> Located<usize> {
         let count = self.given_in.len();
         let (field, particle) = match self.columns.id {
-            // Checked with the header: there is only one to be about.
+            // The header was checked: the rows can be about one particle only.
             None => (self.columns.t, self.expected.only().unwrap_or_default()),
             Some(field) => {
                 let text = record.get(field).unwrap_or_default();
-                // Whole numbers in any form: `np.savetxt` writes 1.000000e+00.
+                // Ids may be whole numbers in any form: `np.savetxt` writes 1.000000e+00.
                 let whole = number(text).filter(|id| *id >= 0.0 && id.fract() == 0.0);
                 let Some(id) = whole.map(|id| id as usize).filter(|id| *id < count) else {
                     let found = shown(text);
@@ -216,7 +216,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// A field as a finite number, a time (0), position (1) or velocity (2).
+    /// Reads a field as a finite number: a time (0), position (1) or velocity (2).
     fn number(&mut self, record: &ByteRecord, field: usize, kind: usize) -> Located<f64> {
         let text = record.get(field).unwrap_or_default();
         match number(text) {
@@ -276,7 +276,7 @@ fn bare(field: &[u8]) -> &[u8] {
         .map_or(field, <[u8]>::trim_ascii)
 }
 
-/// Possibly infinite or NaN; None where it is no number at all.
+/// The number in a field, possibly infinite or NaN; None where there is none.
 fn number(field: &[u8]) -> Option<f64> {
     std::str::from_utf8(bare(field)).ok()?.parse().ok()
 }

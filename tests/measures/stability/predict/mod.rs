@@ -6,7 +6,7 @@ use crate::testkit::{Build, Oscillator, Random, built, method, own};
 use springcheck::conformance::measured_limit;
 use springcheck::conformance::systems::Across;
 use springcheck::integrators::{Amplification, Method, Rational, Stable, fixed};
-use springcheck::measure::stability::{Along, Effort, Limit, Linearised, is_linear};
+use springcheck::measure::stability::{Effort, Limit, Linearised, LinearisedTrajectory, is_linear};
 use springcheck::physics::{Jacobian, Linearization, Power, State, System};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
 

@@ -188,7 +188,9 @@ fn a_spring_that_turns_is_tightest_where_it_is_stretched() {
             ..State::new(x.clone(), rest.clone())
         })
         .collect();
-    let found = Along::new(&system, &given).tightest(verlet).unwrap();
+    let found = LinearisedTrajectory::new(&system, &given)
+        .tightest(verlet)
+        .unwrap();
     // At z = 0 both pull along x: ω² = 2 k, at t = 1.
     assert!(
         (found.limit_s / (2.0 / 10.0) - 1.0).abs() < 1e-13,
@@ -202,6 +204,6 @@ fn a_spring_that_turns_is_tightest_where_it_is_stretched() {
         };
         assert!(limit > found.limit_s);
     }
-    let unbound = Along::new(&system, &given).tightest(method("implicit_euler"));
+    let unbound = LinearisedTrajectory::new(&system, &given).tightest(method("implicit_euler"));
     assert!(unbound.is_none());
 }
