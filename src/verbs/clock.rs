@@ -1,7 +1,8 @@
-//! Wall times of equal runs.
+//! Statistics of wall times.
 
 use serde::{Deserialize, Serialize};
 
+/// Wall times of equal runs, s.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct WallTime {
     pub min: f64,
@@ -10,18 +11,18 @@ pub struct WallTime {
     pub mad: Option<f64>,
 }
 
-/// Wall times of equal runs; at least one.
+/// The spread of the wall times of equal runs, s; `times` holds at least one.
 pub fn spread(mut times: Vec<f64>) -> WallTime {
     let median = median(&mut times);
-    let mut off: Vec<f64> = times.iter().map(|t| (t - median).abs()).collect();
+    let mut deviations: Vec<f64> = times.iter().map(|t| (t - median).abs()).collect();
     WallTime {
         min: times[0],
         median,
-        mad: (off.len() > 1).then(|| self::median(&mut off)),
+        mad: (deviations.len() > 1).then(|| self::median(&mut deviations)),
     }
 }
 
-/// Sorts; not empty.
+/// The median; it sorts the values, which are not empty.
 fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     let half = values.len() / 2;

@@ -1,5 +1,5 @@
-//! What the reports of all verbs state of a scene and its truth, and what their runs share: the energy scale,
-//! and when a run counts as diverged.
+//! The facts about a scene and its truth that the reports of all verbs state, and what all their runs use: the
+//! energy scale and the limits beyond which a run has diverged.
 
 use crate::measure::{self, Check, CheckStatus};
 use crate::physics::effects::Effect;
@@ -10,7 +10,7 @@ use crate::solvers::Limits;
 use crate::truth::{Truth, TruthKind};
 use std::time::{Duration, Instant};
 
-/// The scale S of energy errors, J, with the largest kinetic energy of the truth up to its horizon.
+/// The scale S of energy errors, J. It takes in the largest kinetic energy of the truth up to its horizon.
 pub fn energy_scale(scene: &Scene, system: &ParticleSystem, truth: &Truth) -> Option<f64> {
     let peak = truth.motion().map(|motion| {
         let times = motion.landmarks(truth.horizon);
@@ -21,14 +21,14 @@ pub fn energy_scale(scene: &Scene, system: &ParticleSystem, truth: &Truth) -> Op
     measure::energy_scale(scene, system, peak.filter(|peak| peak.is_finite()))
 }
 
-/// When a run of this scene counts as diverged, which must not depend on whether a truth was asked for.
+/// The limits beyond which a run of this scene has diverged. They do not depend on whether a truth is known.
 pub fn limits(scene: &Scene, system: &ParticleSystem) -> Limits {
     let scale = measure::energy_scale(scene, system, None);
     Limits::new(system.clone(), measure::divergence_limit(scene, scale))
 }
 
-/// What the file says, its energy scale, and each effect in force with its evaluations by hand-written
-/// integrators: so many of all forces, so many of damping alone.
+/// The file's facts, its energy scale (J), and each active effect with how often hand-written integrators
+/// evaluated it: `forces` counts evaluations of all forces, `damping` further ones of damping alone.
 pub fn scene(
     scene: &Scene,
     system: &ParticleSystem,
@@ -59,7 +59,7 @@ pub fn scene(
     }
 }
 
-/// Nanoseconds of one evaluation: the least of three batches.
+/// The wall time of one evaluation, ns: the least of three batches.
 fn wall_ns(effect: &dyn Effect, x: &[f64], v: &[f64]) -> f64 {
     let mut f = vec![0.0; x.len()];
     let batch = |f: &mut [f64]| {
@@ -76,19 +76,19 @@ fn wall_ns(effect: &dyn Effect, x: &[f64], v: &[f64]) -> f64 {
     (0..3).map(|_| batch(&mut f)).fold(f64::INFINITY, f64::min)
 }
 
-/// A truth as reports state it.
+/// The facts that reports state about a truth.
 pub fn truth(truth: &Truth) -> TruthFacts {
-    let there = truth.kind != TruthKind::None;
+    let known = truth.kind != TruthKind::None;
     TruthFacts {
         kind: truth.kind,
         method: truth.method.clone(),
-        error_bound_m: there.then_some(truth.error_bound),
-        horizon_s: there.then_some(truth.horizon),
+        error_bound_m: known.then_some(truth.error_bound),
+        horizon_s: known.then_some(truth.horizon),
         reason: Some(truth.reason.clone()),
     }
 }
 
-/// Says why errors have no relative size in a scene without an energy scale.
+/// The skipped check that says why energy errors have no relative size; None where the scene has an energy scale.
 pub fn no_scale(scale: Option<f64>) -> Option<Check> {
     scale.is_none().then(|| Check {
         id: "energy-scale".to_owned(),

@@ -1,4 +1,4 @@
-//! How a report is written: the formats, one row each, and the figures.
+//! The formats a report is written in, one row each, and its figures.
 
 use super::{Body, Report, cost, run, stability};
 use crate::report::json::{self, Tool};
@@ -7,17 +7,17 @@ use crate::report::{View, terminal};
 
 /// One way to write reports down.
 pub struct Format {
-    /// As `--format` takes it.
+    /// The name that `--format` takes.
     pub id: &'static str,
-    /// Of the file it goes to, without the dot.
+    /// The extension of its file, without the dot.
     pub extension: &'static str,
-    /// Written beside the scene's figures in every run that writes files.
+    /// Whether every run that writes files writes it, beside the figures.
     pub file: bool,
-    /// One text for all the reports of a command, and for the program that made them.
+    /// Renders all the reports of one command, made by this program, as one text.
     pub render: fn(&Tool, &[Report]) -> String,
 }
 
-/// Every format there is.
+/// All formats.
 pub const FORMATS: &[Format] = &[
     Format {
         id: "human",
@@ -50,8 +50,8 @@ fn joined(reports: &[Report], render: fn(&Report) -> String) -> String {
 }
 
 impl Report {
-    /// What its files are called, without the dot and what follows: verbs do not write over each
-    /// other's.
+    /// The name of its files without their extension. Verbs have different ones, so that they do not overwrite
+    /// each other's files.
     pub fn stem(&self) -> &'static str {
         match &self.body {
             Body::Run { .. } | Body::Compare { .. } => "report",
@@ -60,7 +60,7 @@ impl Report {
         }
     }
 
-    /// What the verb has to say of it.
+    /// The parts that the terminal and the page show, as the verb words them.
     pub fn view(&self) -> View<'_> {
         match &self.body {
             Body::Run { outcomes } | Body::Compare { outcomes, .. } => run::view(self, outcomes),
@@ -69,7 +69,7 @@ impl Report {
         }
     }
 
-    /// The whole page, with its figures linked as files beside it.
+    /// The whole page. It links its figures, which are files beside it.
     pub fn markdown(&self) -> String {
         let view = self.view();
         match &self.body {
@@ -79,26 +79,26 @@ impl Report {
         }
     }
 
-    /// The figures it has data for, in the order they are shown.
+    /// The figures it has data for, in the order they are shown: file name, title, chart.
     fn charts(&self) -> impl Iterator<Item = (&'static str, &'static str, Chart)> {
         let figures: &[Figure<Report>] = match &self.body {
             Body::Run { .. } | Body::Compare { .. } => run::FIGURES,
             Body::Stability { .. } => stability::FIGURES,
             Body::Cost { .. } => cost::FIGURES,
         };
-        let chart = |(file, about, chart): &Figure<Report>| Some((*file, *about, chart(self)?));
+        let chart = |(file, title, chart): &Figure<Report>| Some((*file, *title, chart(self)?));
         figures.iter().filter_map(chart)
     }
 
-    /// Those figures as files: name and SVG.
+    /// The figures as files: name and SVG.
     pub fn svg(&self) -> Vec<(&'static str, String)> {
         let drawn = self.charts().map(|(file, _, chart)| (file, chart.draw()));
         drawn.collect()
     }
 
-    /// Links to those files, for the page.
+    /// The page's links to the figures' files.
     pub fn images(&self) -> String {
-        let link = |(file, about, _)| format!("![{about}]({file})\n\n");
+        let link = |(file, title, _)| format!("![{title}]({file})\n\n");
         self.charts().map(link).collect()
     }
 }

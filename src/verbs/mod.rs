@@ -1,5 +1,5 @@
-//! The verbs, one folder each: arguments, plan, result, text and figures. Here is what they share: the
-//! [`Report`], which holds everything one verb found of one scene and reads back.
+//! The verbs, one folder each: arguments, plan, result, text and figures. They share the [`Report`], which
+//! holds everything one verb found about one scene and can be read back.
 //!
 //! Every number that could be missing is an `Option`; no field ever holds NaN or infinity.
 
@@ -24,11 +24,11 @@ pub use run::names;
 use crate::measure::identify::Fault;
 use crate::report::Header;
 use cost::{Cost, CostPanels};
-use run::{Figures, Outcome};
+use run::{Outcome, RunSeries};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use stability::Stability;
 
-/// Everything one verb found of one scene: complete when it is made, and equal after it was written
+/// Everything one verb found about one scene. It is complete when it is made, and equal after it was written
 /// as JSON and read again.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Report {
@@ -36,12 +36,12 @@ pub struct Report {
     pub header: Header,
     #[serde(flatten)]
     pub body: Body,
-    /// What only figures need. The JSON says whether there is any; it lies in a file beside it.
-    #[serde(rename = "series", default)]
-    pub beside: Beside,
+    /// The series that only figures need. The JSON says whether there are any; they lie in a file beside it.
+    #[serde(default)]
+    pub series: SeriesState,
 }
 
-/// What one verb found. The JSON's key `verb` says which it is.
+/// The result of one verb. The JSON's key `verb` says which it is.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(tag = "verb", rename_all = "snake_case")]
 pub enum Body {
@@ -50,11 +50,11 @@ pub enum Body {
     },
     Compare {
         outcomes: Vec<Outcome>,
-        /// The first step that leaves the scheme; null where none does.
+        /// The first step that deviates from the scheme; null where none does.
         fault: Option<Fault>,
     },
     Stability {
-        /// There for readers that look for outcomes in every report.
+        /// Always empty: some readers look for outcomes in every report.
         outcomes: [(); 0],
         stability: Stability,
     },
@@ -66,7 +66,7 @@ pub enum Body {
 }
 
 impl Report {
-    /// One for each engine and timestep; none where the verb has other answers.
+    /// One outcome for each engine and timestep; none where the verb has a result of another kind.
     pub fn outcomes(&self) -> &[Outcome] {
         match &self.body {
             Body::Run { outcomes } | Body::Compare { outcomes, .. } => outcomes,
@@ -74,7 +74,7 @@ impl Report {
         }
     }
 
-    /// Of `stability` alone.
+    /// The result of `stability`; None for other verbs.
     pub fn stability(&self) -> Option<&Stability> {
         match &self.body {
             Body::Stability { stability, .. } => Some(stability),
@@ -82,7 +82,7 @@ impl Report {
         }
     }
 
-    /// Of `cost` alone.
+    /// The result of `cost`; None for other verbs.
     pub fn cost(&self) -> Option<&Cost> {
         match &self.body {
             Body::Cost { cost, .. } => Some(cost),
@@ -91,61 +91,65 @@ impl Report {
     }
 }
 
-/// Whether a report has series, and whether they are at hand. In the JSON true or false.
+/// Whether a report has series, and the series where they are loaded. The JSON holds true or false.
 #[derive(Debug, Clone, Default)]
-pub enum Beside {
-    /// It has none, or nobody wants its figures.
+pub enum SeriesState {
+    /// The report has no series, or its figures are not wanted.
     #[default]
     Nothing,
-    /// It has some, and the file that holds them was not found.
+    /// The report has series, but the file that holds them was not found.
     Missing,
-    Here(Series),
+    Loaded(Series),
 }
 
-impl Serialize for Beside {
+impl Serialize for SeriesState {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_bool(!matches!(self, Self::Nothing))
     }
 }
 
-impl<'de> Deserialize<'de> for Beside {
+impl<'de> Deserialize<'de> for SeriesState {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let there = bool::deserialize(deserializer)?;
-        Ok(if there { Self::Missing } else { Self::Nothing })
+        let has_series = bool::deserialize(deserializer)?;
+        Ok(if has_series {
+            Self::Missing
+        } else {
+            Self::Nothing
+        })
     }
 }
 
-/// The series of one report.
+/// The series of one report, from which figures are drawn.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Series {
-    /// Of `run` and `compare`.
-    Curves(Figures),
-    /// Of `cost`, where steps were asked for by name.
+    /// The series of `run` and `compare`.
+    Curves(RunSeries),
+    /// The series of `cost`, where the steps were named.
     Panels(CostPanels),
 }
 
 impl Report {
-    /// The same report for those who draw nothing.
+    /// The same report without its series, for callers that draw nothing.
     #[must_use]
     pub fn without_series(self) -> Self {
         Self {
-            beside: Beside::Nothing,
+            series: SeriesState::Nothing,
             ..self
         }
     }
 
-    /// The series, where they are at hand.
+    /// The series; None where they are not loaded.
     pub fn series(&self) -> Option<&Series> {
-        match &self.beside {
-            Beside::Here(series) => Some(series),
-            Beside::Nothing | Beside::Missing => None,
+        match &self.series {
+            SeriesState::Loaded(series) => Some(series),
+            SeriesState::Nothing | SeriesState::Missing => None,
         }
     }
 
-    /// What the figures of `run` and `compare` are drawn from; empty where nothing is at hand.
-    pub fn figures(&self) -> &Figures {
-        static EMPTY: Figures = Figures {
+    /// The series of `run` and `compare`; empty where they are not loaded.
+    pub fn run_series(&self) -> &RunSeries {
+        static EMPTY: RunSeries = RunSeries {
             curves: Vec::new(),
             truth: None,
             plot: None,
@@ -153,12 +157,12 @@ impl Report {
             fixed: Vec::new(),
         };
         match self.series() {
-            Some(Series::Curves(figures)) => figures,
+            Some(Series::Curves(series)) => series,
             _ => &EMPTY,
         }
     }
 
-    /// The picture of a few steps side by side that `cost` draws.
+    /// The series of `cost`, which draws a few steps side by side; None where they are not loaded.
     pub fn panels(&self) -> Option<&CostPanels> {
         match self.series()? {
             Series::Panels(panels) => Some(panels),

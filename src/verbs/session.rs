@@ -1,21 +1,21 @@
-//! What the work of a verb needs from the outside, and what it is called there.
+//! The interface between a verb's work and its surroundings: files, progress, stored truths.
 
 use crate::trajectory::Observer;
 use crate::trajectory::SaveError;
 use crate::truth::{NoStore, Store};
 
-/// What a run needs from the outside: files to save to, somebody to show progress.
+/// The services a verb's work uses: files to save to, a progress display, a store of truths.
 pub trait Session: Sync {
-    /// Where every step of this case goes; None if nowhere.
+    /// The saver of this case's steps; None if they are not saved.
     ///
     /// # Errors
-    /// When the file cannot be made.
+    /// Fails when the file cannot be made.
     fn saver(&self, case: &Label) -> Result<Option<Box<dyn Saver>>, SaveError>;
 
-    /// So much more is done, in the units of the plan: steps, or nominal microseconds.
+    /// Reports further progress, in the units of the plan: steps, or nominal microseconds.
     fn progress(&self, steps: u64);
 
-    /// Where truths are kept from one run to the next.
+    /// The store that keeps truths from one run to the next.
     fn store(&self) -> &dyn Store {
         &NoStore
     }
@@ -26,7 +26,7 @@ pub trait Saver: Observer {
     /// Completes the file.
     ///
     /// # Errors
-    /// The first failure, whenever it happened.
+    /// Returns the first failure, whenever it happened.
     fn finish(self: Box<Self>) -> Result<(), SaveError>;
 }
 
@@ -42,7 +42,7 @@ impl Session for Quiet {
     fn progress(&self, _steps: u64) {}
 }
 
-/// Which run something belongs to.
+/// Identifies the run that something belongs to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
     pub engine: String,
@@ -53,15 +53,15 @@ pub struct Label {
 }
 
 impl Label {
-    /// When the run ends, s.
+    /// The time at which the run ends, s.
     pub fn end(&self) -> f64 {
         self.steps as f64 * self.timestep
     }
 }
 
-/// Expected wall time of one case.
+/// Expected wall time of one case, s.
 #[derive(Debug, Clone)]
-pub struct Estimate {
+pub struct TimeEstimate {
     pub label: Label,
     pub seconds: f64,
 }

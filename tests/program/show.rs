@@ -10,7 +10,7 @@ use springcheck::verbs::run::{Choice, Plan};
 use springcheck::verbs::series;
 use springcheck::verbs::session::Quiet;
 use springcheck::verbs::stability::StabilityPlan;
-use springcheck::verbs::{Beside, Report};
+use springcheck::verbs::{Report, SeriesState};
 use std::path::{Path, PathBuf};
 
 const CIRCLE: &str = "scenes/oscillator/circle.yml";
@@ -263,7 +263,7 @@ fn reads_back(report: &Report) {
     if let Some(bytes) = series::pack(reports) {
         read = series::unpack(read, &bytes);
     }
-    assert!(!matches!(read[0].beside, Beside::Missing));
+    assert!(!matches!(read[0].series, SeriesState::Missing));
     for format in FORMATS {
         let [one, other] = [reports, &read].map(|reports| (format.render)(&tool, reports));
         assert!(one == other, "{}: {}", report.header.scene.file, format.id);

@@ -1,24 +1,24 @@
-//! Where truths are kept between runs.
+//! The cache that keeps truths between runs.
 
 use super::output::temporary;
 use crate::truth::Store;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Names the folder; empty means that nothing is kept.
+/// The environment variable that names the folder; if it is empty, nothing is kept.
 const VARIABLE: &str = "SPRINGCHECK_CACHE";
-/// The oldest entries go when there are more than this many bytes.
-const LARGEST: u64 = 512 << 20;
+/// The size of the cache, bytes, beyond which its oldest entries are removed.
+const MAX_BYTES: u64 = 512 << 20;
 
-/// A folder of files named by their keys. A file appears whole or not at all; whoever comes second
-/// overwrites with the same bytes.
+/// A folder of files named by their keys. A file appears whole or not at all; a second writer overwrites it
+/// with the same bytes.
 #[derive(Debug)]
 pub struct Cache {
     folder: Option<PathBuf>,
 }
 
 impl Cache {
-    /// The folder `SPRINGCHECK_CACHE` names, else `springcheck` in the user's cache folder.
+    /// The folder that `SPRINGCHECK_CACHE` names, else `springcheck` in the user's cache folder.
     pub fn new() -> Self {
         Self { folder: folder() }
     }
@@ -43,7 +43,7 @@ impl Store for Cache {
     }
 
     fn save(&self, key: &str, bytes: &[u8]) {
-        // A cache that cannot be written is an empty one.
+        // Failures are ignored: without the entry, the truth is computed again.
         if let Some(folder) = &self.folder {
             let _ = put(folder, key, bytes);
             let _ = prune(folder);
@@ -65,7 +65,7 @@ fn prune(folder: &Path) -> std::io::Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let entry = entry?;
         let facts = entry.metadata()?;
-        // Only what this program wrote: keys are hexadecimal.
+        // Only files that this program wrote are removed: their names are hexadecimal keys.
         let name = entry.file_name();
         let key = name.to_str().is_some_and(is_key);
         if facts.is_file() && key {
@@ -75,7 +75,7 @@ fn prune(folder: &Path) -> std::io::Result<()> {
     entries.sort();
     let mut total: u64 = entries.iter().map(|(_, bytes, _)| bytes).sum();
     for (_, bytes, path) in entries {
-        if total <= LARGEST {
+        if total <= MAX_BYTES {
             break;
         }
         std::fs::remove_file(path)?;

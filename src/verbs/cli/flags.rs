@@ -1,4 +1,4 @@
-//! What flags of several verbs mean: the scene with its duration, `--truth`, lengths of time.
+//! Flags that several verbs have: the scene with its duration, `--truth`, lengths of time.
 
 use crate::scene::{self, Scene};
 use crate::truth::Demand;
@@ -11,15 +11,15 @@ use std::time::Duration;
 /// The scene of a file, with another duration, s, where a flag states one.
 ///
 /// # Errors
-/// Where the file is no scene. Whether the duration fits a timestep is
-/// [`check_times`](scene::check_times)'s to say.
+/// Fails where the file is no scene. Whether the duration fits a timestep,
+/// [`check_times`](scene::check_times) checks.
 pub fn scene(path: &Path, duration: Option<f64>) -> anyhow::Result<Scene> {
     let mut scene = scene::read(path, verbs::names())?;
     scene.duration = duration.unwrap_or(scene.duration);
     Ok(scene)
 }
 
-/// What `--truth` takes.
+/// The parser of the values of `--truth`.
 pub fn demand() -> impl TypedValueParser<Value = Demand> {
     PossibleValuesParser::new(["auto", "closed", "none"]).map(|kind| match kind.as_str() {
         "closed" => Demand::Closed,
@@ -46,7 +46,7 @@ impl FromStr for Time {
             _ => return Err(wrong()),
         };
         let seconds = digits.parse::<f64>().map_err(|_| wrong())? * unit;
-        // Ten years are as good as for ever, and clocks can count to them.
+        // Clocks can represent ten years, and no run takes longer.
         if !(seconds > 0.0 && seconds < 3e8) {
             return Err(wrong());
         }

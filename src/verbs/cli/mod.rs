@@ -1,4 +1,4 @@
-//! What the command lines of all verbs share: the only place that touches files, the terminal and programs.
+//! The parts that the command lines of all verbs have in common. Only this folder touches files, the terminal and programs.
 
 mod cache;
 pub mod external;

@@ -1,5 +1,5 @@
-//! What verbs print and where they write: `--format` and `--output`, the report's place, the last lines, and how
-//! files get there whole.
+//! The output of verbs: `--format` and `--output`, the report's folder, the last lines printed, and files that are written
+//! whole.
 
 use crate::report::json::Tool;
 use crate::verbs::{Report, formats, series};
@@ -8,7 +8,7 @@ use clap::builder::PossibleValuesParser;
 use std::io::{ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 
-/// The format whose texts are tables for people, with files beside them.
+/// The format of tables for people, with files beside them.
 const HUMAN: &str = "human";
 
 #[derive(Debug, clap::Args)]
@@ -27,7 +27,7 @@ fn format_ids() -> PossibleValuesParser {
 }
 
 impl Output {
-    /// Whether people read stdout.
+    /// Whether stdout has the format for people.
     pub fn is_human(&self) -> bool {
         self.format == HUMAN
     }
@@ -37,26 +37,26 @@ impl Output {
         self.output.is_some() || self.format == "markdown"
     }
 
-    /// The place of what is about this file, where a folder is asked for.
-    pub fn asked_place(&self, file: &Path) -> Option<Place> {
+    /// The folder of this file's report, where `--output` is stated.
+    pub fn stated_place(&self, file: &Path) -> Option<Place> {
         let output = self.output.as_ref()?;
         Some(Place::new(output, file))
     }
 
-    /// The same, or where people look at the table a place in `reports`.
+    /// The same; without `--output` a folder in `reports`, where the format is for people.
     pub fn place(&self, scene: &Path) -> Option<Place> {
-        let usual = || Place::new("reports".as_ref(), scene);
-        self.asked_place(scene)
-            .or_else(|| self.is_human().then(usual))
+        let default = || Place::new("reports".as_ref(), scene);
+        self.stated_place(scene)
+            .or_else(|| self.is_human().then(default))
     }
 
-    /// The reports on stdout.
+    /// Prints the reports to stdout.
     pub fn print(&self, tool: &Tool, reports: &[Report]) -> anyhow::Result<()> {
         let format = formats::format(&self.format).context("a format without a row")?;
         print(&(format.render)(tool, reports))
     }
 
-    /// One report on stdout; for people as [`human`] has it.
+    /// Prints one report to stdout; for people, the text of [`human`].
     pub fn print_one(
         &self,
         report: &Report,
@@ -72,7 +72,7 @@ impl Output {
     }
 }
 
-/// Writes to stdout. A reader that has gone away (`| head`) is not an error.
+/// Writes to stdout. A reader that has closed the pipe (`| head`) is not an error.
 pub fn print(text: &str) -> anyhow::Result<()> {
     let mut out = anstream::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -117,18 +117,18 @@ impl Place {
         &self.folder
     }
 
-    /// The file to open first.
+    /// The report's page, which a reader opens first.
     pub fn report(&self, report: &Report) -> PathBuf {
         self.folder.join(format!("{}.md", report.stem()))
     }
 
-    /// Makes the folder where it is not there.
+    /// Makes the folder if it does not exist.
     pub fn create(&self) -> anyhow::Result<()> {
         std::fs::create_dir_all(&self.folder)
             .with_context(|| format!("cannot make {}", self.folder.display()))
     }
 
-    /// Writes the report in every file format, its figures, and what these are drawn from. `tool` made it.
+    /// Writes the report in every file format, its figures, and their series. `tool` is the program that made it.
     pub fn write(&self, tool: &Tool, report: &Report) -> anyhow::Result<()> {
         let reports = std::slice::from_ref(report);
         let stem = report.stem();
@@ -146,7 +146,7 @@ impl Place {
         Ok(())
     }
 
-    /// A whole file or none: written beside its place, then renamed.
+    /// Writes a file whole or not at all: it is written under a temporary name, then renamed.
     fn put(&self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
         let path = self.folder.join(name);
         let write = || -> std::io::Result<()> {
@@ -159,7 +159,7 @@ impl Place {
     }
 }
 
-/// A temporary file in the folder of its final place, readable as any other file will be.
+/// A temporary file in the folder of the final one, with the permissions of any other file.
 pub fn temporary(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
@@ -171,8 +171,8 @@ pub fn temporary(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     builder.prefix(".springcheck-").tempfile_in(folder)
 }
 
-/// The report after it is written to its place. Without one there are no figures, so nothing links to
-/// them.
+/// Writes the report to its folder and returns it. Without a folder there are no figures, so the report loses its
+/// series and nothing links to them.
 pub fn written(report: Report, place: Option<&Place>) -> anyhow::Result<Report> {
     let Some(place) = place else {
         return Ok(report.without_series());
@@ -182,7 +182,7 @@ pub fn written(report: Report, place: Option<&Place>) -> anyhow::Result<Report> 
     Ok(report)
 }
 
-/// The table and its verdict, then the report's path if there is one.
+/// The table and its verdict, then the report's path if it has a folder.
 pub fn table(report: &Report, place: Option<&Place>) -> String {
     let table = crate::report::terminal::render(report.view());
     let written = place.map_or_else(String::new, |place| {
@@ -192,8 +192,7 @@ pub fn table(report: &Report, place: Option<&Place>) -> String {
     format!("{table}{written}")
 }
 
-/// The same and, as the last line, a command to try next: this one, or where it is too long or cannot
-/// be written down, `otherwise`.
+/// The same with a command to try next as the last line: `next`, or `otherwise` where that is missing or too long.
 pub fn human(
     report: &Report,
     place: Option<&Place>,
@@ -206,7 +205,7 @@ pub fn human(
     format!("{}next: {next}\n", table(report, place))
 }
 
-/// The path as a POSIX shell takes it for one word; None with what a terminal cannot show.
+/// The path quoted as one word for a POSIX shell; None where a terminal cannot show it.
 pub fn quoted(path: &Path) -> Option<String> {
     let text = path
         .to_str()
@@ -224,7 +223,7 @@ pub fn quoted(path: &Path) -> Option<String> {
     }
 }
 
-/// Three digits are enough for a suggestion.
+/// The value with three digits, which are enough for a suggestion.
 pub fn rounded(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }

@@ -1,4 +1,4 @@
-//! `--save`: every step of every engine, in files beside the report.
+//! `--save` writes every step of every engine to files beside the report.
 
 use super::output::temporary;
 use crate::physics::State;
@@ -15,17 +15,17 @@ pub enum FileKind {
     Npz,
 }
 
-/// Makes one file a case.
+/// Settings of the files, one for each case.
 #[derive(Debug)]
 pub struct Files {
     pub kind: FileKind,
     pub folder: PathBuf,
-    /// Steps from one row to the next.
+    /// The number of steps from one row to the next.
     pub every: u64,
 }
 
 impl Files {
-    /// A writer into a temporary file that takes its name, `<engine>@<timestep>.csv`, at the end.
+    /// A writer to a temporary file, which takes its name, `<engine>@<timestep>.csv`, when it is complete.
     pub fn saver(&self, case: &Label) -> Result<Box<dyn Saver>, SaveError> {
         let Label {
             engine,
@@ -56,7 +56,7 @@ impl Files {
     }
 }
 
-/// A file on its way: its writer, what completes it, and the name it takes then.
+/// A file that is being written: its writer, the function that completes it, and its final path.
 struct Saving<W, F> {
     writer: W,
     complete: F,

@@ -6,12 +6,12 @@ use crate::solvers::{self, Solver, SolverKind, rapier};
 use anyhow::{Context, bail};
 use std::str::FromStr;
 
-/// The solvers of one command, in the order of its report: the named integrators, or the `usual` ones without
-/// names; then the engines, likewise; after them the rapier rows with settings of the user's own, the same
-/// settings once.
+/// The solvers of one command, in the order of its report: the named integrators, or the `usual` ones where none is
+/// named; then the engines, likewise; then the rapier rows with the user's settings, each only
+/// once.
 ///
-/// `all` integrators are those of the registry, the scene's own first. Adaptive pairs are taken where there
-/// are usual ones, and `all` takes these in.
+/// `all` means the integrators of the registry, the scene's own first. Adaptive pairs are allowed where `usual` has
+/// any, and `all` then includes those.
 pub fn chosen(
     integrators: &[String],
     engines: &[String],
@@ -29,7 +29,7 @@ pub fn chosen(
     chosen.extend(match engines {
         [] => of_kind(usual, SolverKind::Rapier),
         [none] if none == "none" => Vec::new(),
-        ids => each(ids, find, known)?,
+        ids => look_up(ids, find, known)?,
     });
     for custom in custom.iter().map(Custom::solver) {
         if !chosen.iter().any(|known| known.id == custom.id) {
@@ -47,20 +47,20 @@ fn methods(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Ve
             integrators::ids(fixed).join(", ")
         )
     };
-    let find = |id: &str| among(fixed, id);
+    let find = |id: &str| find_in(fixed, id);
     match ids {
         [] => Ok(of_kind(usual, SolverKind::Integrator)),
         [all] if all == "all" => Ok(solvers::methods(&scene.solver.method)),
-        ids => each(ids, find, known),
+        ids => look_up(ids, find, known),
     }
 }
 
-/// Methods first, then pairs.
+/// The methods and the adaptive pairs, in this order.
 fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
-    let find = |id: &str| among(integrators::pairs(), id);
+    let find = |id: &str| find_in(integrators::pairs(), id);
     let (pairs, others): (Vec<String>, Vec<String>) =
         ids.iter().cloned().partition(|id| find(id).is_some());
-    let pairs = each(&pairs, find, String::new)?;
+    let pairs = look_up(&pairs, find, String::new)?;
     if others.is_empty() && !pairs.is_empty() {
         return Ok(pairs);
     }
@@ -82,7 +82,7 @@ fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result
     Ok(chosen)
 }
 
-fn among(methods: &'static [Method], id: &str) -> Option<Solver> {
+fn find_in(methods: &'static [Method], id: &str) -> Option<Solver> {
     let found = methods.iter().find(|method| method.id == id);
     found.map(Solver::method)
 }
@@ -92,7 +92,7 @@ fn of_kind(solvers: &[Solver], kind: SolverKind) -> Vec<Solver> {
     solvers.iter().filter(of).cloned().collect()
 }
 
-/// Refuses a timestep of its own where steps are what is looked for.
+/// Refuses `dt` for a verb that varies or searches the step itself.
 pub fn without_timestep(rapier: &[Custom], what: &str) -> anyhow::Result<()> {
     if rapier.iter().any(|custom| custom.timestep.is_some()) {
         bail!("--rapier dt=...: here the step is what is {what}");
@@ -100,8 +100,8 @@ pub fn without_timestep(rapier: &[Custom], what: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Looks each id up, once; an unknown one is an error that lists what there is.
-fn each(
+/// Looks up each id once. An unknown one is an error that lists the known ones.
+fn look_up(
     ids: &[String],
     find: impl Fn(&str) -> Option<Solver>,
     known: impl Fn() -> String,
@@ -116,16 +116,16 @@ fn each(
     Ok(rows)
 }
 
-/// rapier's settings as the flag states them; what it leaves out keeps rapier's default.
+/// rapier's settings as the flag states them; settings that it omits keep rapier's defaults.
 #[derive(Debug, Clone)]
 pub struct Custom {
-    /// Seconds; None takes everybody's.
+    /// The timestep, s; None for that of the command.
     pub timestep: Option<f64>,
     settings: rapier::RapierSettings,
 }
 
-/// More iterations or sweeps than this are a typing error.
-const MOST: u32 = 1_000_000;
+/// The largest number of iterations or sweeps; more is a typing error.
+const MAX_COUNT: u32 = 1_000_000;
 
 impl FromStr for Custom {
     type Err = String;
@@ -140,9 +140,9 @@ impl FromStr for Custom {
                 .split_once('=')
                 .ok_or_else(|| format!("expected key=value, found `{pair}`"))?;
             let count = |least: u32| match value.parse::<u32>() {
-                Ok(count) if (least..=MOST).contains(&count) => Ok(count),
+                Ok(count) if (least..=MAX_COUNT).contains(&count) => Ok(count),
                 _ => Err(format!(
-                    "{key}: expected a whole number from {least} to {MOST}, found `{value}`"
+                    "{key}: expected a whole number from {least} to {MAX_COUNT}, found `{value}`"
                 )),
             };
             let positive = |unit: &str| {
@@ -169,7 +169,7 @@ impl FromStr for Custom {
 }
 
 impl Custom {
-    /// The engine, named after its settings. Others are not compared with it.
+    /// The engine, named after its settings. It is no reference for deviations.
     pub fn solver(&self) -> Solver {
         let mut solver = Solver::rapier(self.settings);
         solver.reference = false;

@@ -1,17 +1,17 @@
-//! What a verb's work needs of the outside: somebody to show progress, files to save to, a place for truths.
+//! The session of a command line: a progress bar, files to save to, a cache of truths, and the announcement of long work.
 
 use super::cache::Cache;
 use super::save::Files;
 use crate::trajectory::SaveError;
 use crate::truth::Store;
-use crate::verbs::session::{Estimate, Label, Saver, Session};
+use crate::verbs::session::{Label, Saver, Session, TimeEstimate};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 use std::io::{IsTerminal, Write};
 
-/// Work expected to take longer than this is announced, seconds.
-const ANNOUNCED: f64 = 10.0;
-/// Shorter work shows no progress, seconds.
-const LONG: f64 = 1.0;
+/// The expected time beyond which work is announced, s.
+const MIN_ANNOUNCED: f64 = 10.0;
+/// The expected time beyond which work shows its progress, s.
+const MIN_SHOWN: f64 = 1.0;
 
 /// A progress bar on stderr, files beside the report, truths in the user's cache.
 pub struct Terminal {
@@ -21,10 +21,10 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// For `units` of work, `expected` seconds in all. The bar is shown only on a terminal and on long work,
-    /// and goes when this does.
+    /// A session for `units` of work that are `expected` to take so many seconds in all. The bar is shown only on a
+    /// terminal and for long work, and is cleared on drop.
     pub fn new(units: u64, expected: f64, quiet: bool) -> Self {
-        let shown = !quiet && expected > LONG && std::io::stderr().is_terminal();
+        let shown = !quiet && expected > MIN_SHOWN && std::io::stderr().is_terminal();
         let target = if shown {
             ProgressDrawTarget::stderr()
         } else {
@@ -42,7 +42,7 @@ impl Terminal {
         }
     }
 
-    /// The same, saving every run's steps to files.
+    /// The same session, which saves every run's steps to files.
     #[must_use]
     pub fn saving(self, files: Option<Files>) -> Self {
         Self { files, ..self }
@@ -64,22 +64,22 @@ impl Session for Terminal {
     }
 }
 
-/// Wall seconds all cases will take together: no less than the longest, no less than a fair share.
-pub fn expected(estimates: &[Estimate]) -> f64 {
+/// The wall time all cases will take together, s: at least that of the longest, and at least the sum over the threads.
+pub fn expected(estimates: &[TimeEstimate]) -> f64 {
     let sum: f64 = estimates.iter().map(|e| e.seconds).sum();
     let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let longest = estimates.iter().fold(0.0, |m: f64, e| m.max(e.seconds));
     longest.max(sum / threads as f64)
 }
 
-/// Says before long work how long it will take, engine by engine, and which flags make it shorter.
-pub fn announce(estimates: &[Estimate], expected: f64, shorter: &str, quiet: bool) {
-    if quiet || expected <= ANNOUNCED {
+/// Prints before long work how long it will take, engine by engine, and which flags make it shorter.
+pub fn announce(estimates: &[TimeEstimate], expected: f64, shorter: &str, quiet: bool) {
+    if quiet || expected <= MIN_ANNOUNCED {
         return;
     }
     let mut err = anstream::stderr().lock();
     let _ = writeln!(err, "about {expected:.0} s expected:");
-    for Estimate { label, seconds } in estimates {
+    for TimeEstimate { label, seconds } in estimates {
         let (engine, steps) = (&label.engine, label.steps);
         let _ = writeln!(err, "  {engine:<30} {seconds:>8.1} s  ({steps} steps)");
     }

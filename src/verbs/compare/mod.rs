@@ -1,5 +1,5 @@
-//! `springcheck compare FILE --scene SCENE`: one trajectory that somebody else computed. Is it right, and which
-//! scheme is it really?
+//! `springcheck compare FILE --scene SCENE` checks one trajectory that another program computed: its errors, and the
+//! scheme that it follows.
 
 use crate::measure::identify::Undecided;
 use crate::report::json::Tool;
@@ -44,7 +44,7 @@ pub struct Args {
     output: Output,
 }
 
-/// No scheme, or more than one, explains the file.
+/// The exit code where no scheme, or more than one, explains the file.
 const UNDECIDED: u8 = 3;
 
 /// Runs the verb.
@@ -58,7 +58,7 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let bytes = read(&args.file).with_context(|| format!("cannot read {name}"))?;
     let rows = trajectory::read(&bytes, &name, None, &Expected::new(&scene, timestep))?;
     drop(bytes);
-    // The file says how long it is.
+    // The file determines the duration.
     scene.duration = rows
         .steps
         .last()
@@ -68,7 +68,7 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let steps = rows.steps.last().copied().unwrap_or(0);
     let terminal = Terminal::new(steps, 0.0, quiet);
     let report = report(&scene, &Arc::new(rows), &name, args.truth, &terminal)?;
-    let place = args.output.asked_place(&args.file);
+    let place = args.output.stated_place(&args.file);
     let report = output::written(report, place.as_ref())?;
     if args.output.is_human() {
         output::print(&output::table(&report, place.as_ref()))?;
@@ -79,7 +79,7 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(code(&report)))
 }
 
-/// The file, no further than the reader would look at it.
+/// Reads the file, up to one byte more than the parser accepts.
 fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let limit = limits::FILE_BYTES as u64 + 1;
@@ -87,7 +87,7 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// 0: it follows a scheme throughout; 1: it has a fault; 3: which scheme it follows is open.
+/// The exit code. 0: it follows a scheme throughout; 1: it has a fault; 3: its scheme is undecided.
 fn code(report: &Report) -> u8 {
     if let Body::Compare { fault: Some(_), .. } = report.body {
         return 1;
@@ -97,13 +97,13 @@ fn code(report: &Report) -> u8 {
         .first()
         .and_then(|o| o.identified.as_ref());
     match found.map(|found| found.undecided) {
-        // Which of several names one map has is no question the data could answer.
+        // Schemes that are the same map here cannot be told apart by any data.
         Some(None | Some(Undecided::SameMap)) => 0,
         _ => UNDECIDED,
     }
 }
 
-/// Rows that are there already.
+/// A program whose rows are known already.
 struct Recorded(Arc<Rows>);
 
 impl Program for Recorded {
@@ -115,8 +115,8 @@ impl Program for Recorded {
     }
 }
 
-/// Errors, energy, identity over every step, and the first fault: a report with one outcome of this name. The
-/// scene's duration is that of the rows.
+/// The report, with one outcome of this name: errors, energy, identity over every step, and the first fault. The
+/// scene's duration must be that of the rows.
 fn report(
     scene: &Scene,
     rows: &Arc<Rows>,
@@ -129,7 +129,7 @@ fn report(
         timesteps: vec![rows.timestep],
         truth,
         order: Orders::Never,
-        // Every step of the rows is replayed below, not some of those recorded.
+        // All steps of the rows are replayed below, instead of some of those recorded.
         identify: false,
         prove: false,
         expectations: Expectations::Ignored,

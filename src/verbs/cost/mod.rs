@@ -30,8 +30,8 @@ use crate::scene::Scene;
 use crate::solvers::rapier::RapierSettings;
 use crate::solvers::{self, Setting, Solver};
 use crate::truth::{self, Demand};
-use crate::verbs::session::{Estimate, Label, Session};
-use crate::verbs::{Beside, Body, Report, Series, facts};
+use crate::verbs::session::{Label, Session, TimeEstimate};
+use crate::verbs::{Body, Report, Series, SeriesState, facts};
 use rayon::prelude::*;
 use runs::{Curve, Setup};
 use settings::Sweep;
@@ -113,8 +113,8 @@ impl<'a> CostPlan<'a> {
     }
 
     /// How long each engine will take, from its nominal work.
-    pub fn estimate(&self) -> Vec<Estimate> {
-        let estimate = |sweep: &Sweep| Estimate {
+    pub fn estimate(&self) -> Vec<TimeEstimate> {
+        let estimate = |sweep: &Sweep| TimeEstimate {
             label: Label {
                 engine: sweep.solver.id.to_string(),
                 timestep: sweep.settings.last().map_or(0.0, Setting::timestep),
@@ -152,8 +152,8 @@ impl<'a> CostPlan<'a> {
                 checks: facts::no_scale(scale).into_iter().collect(),
             },
             body: Body::Cost { outcomes: [], cost },
-            beside: panels.map_or(Beside::Nothing, |panels| {
-                Beside::Here(Series::Panels(panels))
+            series: panels.map_or(SeriesState::Nothing, |panels| {
+                SeriesState::Loaded(Series::Panels(panels))
             }),
         }
     }

@@ -96,7 +96,7 @@ fn of_integrators() -> Table {
     )
 }
 
-/// Pairs that choose their own steps, which only costs are measured of.
+/// The adaptive pairs, which choose their own steps; only `cost` runs them.
 fn of_pairs() -> Table {
     table(
         &[
@@ -125,7 +125,7 @@ fn of_pairs() -> Table {
     )
 }
 
-/// The method a mistake is a wrong form of.
+/// The method that a mistake is a wrong form of.
 fn meant(mistake: &Mistake) -> &'static str {
     match mistake.wrong {
         Wrong::Step { meant, .. } => meant,
@@ -133,7 +133,7 @@ fn meant(mistake: &Mistake) -> &'static str {
     }
 }
 
-/// Where each method is from and what it is not.
+/// The source of each method, and what it must not be confused with.
 fn sources() -> Table {
     let methods = integrators::REGISTRY.iter();
     table(
@@ -175,7 +175,7 @@ fn table(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {
     for row in rows {
         table.add_row(row);
     }
-    // Ids stay whole, to be copied.
+    // Ids are not wrapped, so that they can be copied.
     if let Some(ids) = table.column_mut(0) {
         ids.set_constraint(ColumnConstraint::ContentWidth);
     }

@@ -79,12 +79,12 @@ pub struct Args {
     every: u64,
 }
 
-/// What shortens this verb.
+/// The flags that shorten this verb, for the announcement.
 const SHORTER: &str = "--duration, a larger --timestep, --integrators A,B, --engines none";
 
 /// Runs the verb.
 pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
-    // All scenes are read before any runs: a typo in the last one costs nothing.
+    // All scenes are read before any of them runs: a typo in the last one costs no time.
     let read = |path: &PathBuf| read(args, path);
     let scenes = args.scenes.iter().map(read);
     let scenes = scenes.collect::<anyhow::Result<Vec<_>>>()?;
@@ -161,7 +161,7 @@ fn one(
     output::written(plan.execute(&terminal)?, place.as_ref())
 }
 
-/// What becomes of the scene's expectations: flags may have changed what they are about.
+/// Whether the scene's expectations are judged: flags may have changed the run they are stated for.
 fn expectations(args: &Args, scene: &Scene, stated: f64) -> Expectations {
     if scene.duration != stated {
         Expectations::Skipped(format!("they are about {stated:?} s"))
@@ -173,7 +173,7 @@ fn expectations(args: &Args, scene: &Scene, stated: f64) -> Expectations {
     }
 }
 
-/// Two scenes must not write into one folder.
+/// Refuses two scenes that would write into one folder.
 fn distinct(args: &Args) -> anyhow::Result<()> {
     let folder = |path: &PathBuf| Some(args.output.place(path)?.folder().to_owned());
     for (at, path) in args.scenes.iter().enumerate() {
@@ -189,8 +189,8 @@ fn distinct(args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A command worth trying next: other steps, or other integrators; None where the path cannot be
-/// written down.
+/// A command to try next, with other steps or other integrators; None where the path cannot be
+/// written in a shell command.
 fn next(args: &Args, path: &Path, report: &Report) -> Option<String> {
     let path = output::quoted(path)?;
     if args.timestep.len() > 1 {

@@ -10,8 +10,8 @@ use crate::solvers::SolverKind;
 use crate::truth::Truth;
 use rayon::prelude::*;
 
-/// That rapier's world and ours are the same scene, by a few steps of it; nothing unless it is asked for, and
-/// where nothing is computed here.
+/// The twin proof: rapier's world and the hand-written one are the same scene, by a few steps of it. Empty where
+/// the choice does not want it, and where only external programs run.
 pub fn proofs(plan: &Plan) -> Vec<Check> {
     let computed = |case: &Case| case.solver.kind != SolverKind::External;
     if !plan.choice.prove || !plan.cases.iter().any(computed) {
@@ -20,15 +20,15 @@ pub fn proofs(plan: &Plan) -> Vec<Check> {
     twin::prove(plan.scene, plan.scene.solver.timestep)
 }
 
-/// Steps times coordinates of the scene's own run up to which orders are measured unasked: measuring
+/// Steps times coordinates of the scene's own run up to which orders are measured by default. Measuring
 /// costs about two such runs.
-const UNASKED: u64 = 500_000;
+const MAX_DEFAULT_COST: u64 = 500_000;
 /// The budget of one method, in runs of the scene.
-const RUNS: u64 = 4;
-/// The budget of one method is not below this, in steps times coordinates.
-const LEAST: u64 = 1_000_000;
+const BUDGET_RUNS: u64 = 4;
+/// The least budget of one method, in steps times coordinates.
+const MIN_BUDGET: u64 = 1_000_000;
 
-/// A check for each integrator; one that says why there are none; nothing without a truth.
+/// A check of the observed order for each integrator, or one check that says why none was made. Empty without a truth.
 pub fn orders(plan: &Plan, truth: &Truth) -> Vec<Check> {
     let (Some(motion), scene) = (truth.motion(), plan.scene) else {
         return Vec::new();
@@ -44,11 +44,11 @@ pub fn orders(plan: &Plan, truth: &Truth) -> Vec<Check> {
     if methods.is_empty() || plan.choice.order == Orders::Never {
         return Vec::new();
     }
-    if cost > UNASKED && plan.choice.order != Orders::Always {
+    if cost > MAX_DEFAULT_COST && plan.choice.order != Orders::Always {
         return vec![skipped()];
     }
     let until = truth.horizon.min(scene.duration);
-    let budget = RUNS.saturating_mul(cost).max(LEAST);
+    let budget = BUDGET_RUNS.saturating_mul(cost).max(MIN_BUDGET);
     let study = Study::of_scene(scene, &plan.system, motion, until).budget(budget);
     let measure = |method: &&Method| check(method.id, &study.method(method));
     methods.par_iter().map(measure).collect()

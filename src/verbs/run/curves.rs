@@ -1,4 +1,4 @@
-//! The curves behind the plots.
+//! The series from which figures are drawn.
 
 use super::plan::Plan;
 use super::record::Record;
@@ -6,18 +6,18 @@ use super::truths::Truths;
 use crate::measure::{EnergySeries, TrueStates};
 use crate::scene::Scene;
 use crate::solvers::Status;
-use crate::verbs::run::{Curves, Figures, PlotAxis, TruthCurves};
+use crate::verbs::run::{Curves, PlotAxis, RunSeries, TruthCurves};
 
-/// At most so many particles' paths are drawn.
-const PATHS: usize = 8;
+/// The number of particles whose paths are drawn, at most.
+const MAX_PATHS: usize = 8;
 
-pub fn figures(
+pub fn series(
     plan: &Plan,
     records: &[Record],
     energies: &[Option<EnergySeries>],
     truths: &Truths,
     scale: Option<f64>,
-) -> Figures {
+) -> RunSeries {
     let scene = plan.scene;
     let plane = plane(scene, records);
     let drawn = drawn(scene);
@@ -28,7 +28,7 @@ pub fn figures(
         };
         let instants = match energy {
             Some(energy) => &energy.instants,
-            // Without velocities there is motion all the same.
+            // Without velocities there is no energy, but still motion to draw.
             None if !trajectory.has_velocities() => &(0..trajectory.len()).collect(),
             None => continue,
         };
@@ -44,7 +44,7 @@ pub fn figures(
     }
     let timesteps = plan.cases.iter().map(|case| case.label.timestep);
     let finest = timesteps.fold(f64::INFINITY, f64::min);
-    Figures {
+    RunSeries {
         curves,
         truth: truths
             .at(finest)
@@ -103,11 +103,11 @@ fn paths<'a, I: Iterator<Item = &'a [f64]>>(
     particles.iter().map(path).collect()
 }
 
-/// Beside motion this much wider, an axis shows nothing.
+/// The motion along an axis is invisible if its extent is below this fraction of the others'.
 const FLAT: f64 = 0.02;
 
-/// The two coordinates that show the motion: `up` vertically where anything happens along it, and
-/// the wider of the other two; without `up`, those two.
+/// The two coordinates that show the motion. `up` is vertical where the motion has an extent along it, and
+/// the wider of the other two is horizontal; else they are those two.
 fn plane(scene: &Scene, records: &[Record]) -> [usize; 2] {
     let extents = [0, 1, 2].map(|axis| extent(scene, records, axis));
     let up = scene.up.index();
@@ -125,13 +125,13 @@ fn plane(scene: &Scene, records: &[Record]) -> [usize; 2] {
     }
 }
 
-/// How wide the scene's start and the first completed run are along an axis, m.
+/// The extent of the scene's start and the first completed run along an axis, m.
 fn extent(scene: &Scene, records: &[Record], axis: usize) -> f64 {
     let completed = |record: &&Record| record.status == Status::Completed;
-    let calm = records.iter().find(completed);
-    let calm = calm.and_then(|record| record.trajectory.as_ref());
+    let first = records.iter().find(completed);
+    let first = first.and_then(|record| record.trajectory.as_ref());
     let start = scene.particles.iter().map(|p| p.position[axis]);
-    let moved = calm.into_iter().flat_map(|run| {
+    let moved = first.into_iter().flat_map(|run| {
         (0..run.len()).flat_map(move |k| run.x(k)[axis..].iter().step_by(3).copied())
     });
     let (lo, hi) = start
@@ -142,11 +142,11 @@ fn extent(scene: &Scene, records: &[Record], axis: usize) -> f64 {
     hi - lo
 }
 
-/// Free particles, evenly chosen when there are many.
+/// The particles whose paths are drawn: the free ones, evenly chosen when there are many.
 fn drawn(scene: &Scene) -> Vec<usize> {
     let free: Vec<usize> = (0..scene.particles.len())
         .filter(|&i| !scene.particles[i].fixed)
         .collect();
-    let count = free.len().min(PATHS);
+    let count = free.len().min(MAX_PATHS);
     (0..count).map(|k| free[k * free.len() / count]).collect()
 }

@@ -10,8 +10,8 @@ use crate::verbs::session::{Label, Session};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// All engines in parallel and, beside them, the programs one after the other: they may print and
-/// use as many threads as they like.
+/// Runs all engines in parallel and, at the same time, the external programs one after the other: these may
+/// print and use as many threads as they like.
 pub fn all(plan: &Plan, limits: &Limits, session: &dyn Session) -> Result<Vec<Record>, SaveError> {
     let engine = |case: &Case| match case.solver.as_program() {
         None => one(plan, case, limits, session).map(Some),
@@ -21,13 +21,13 @@ pub fn all(plan: &Plan, limits: &Limits, session: &dyn Session) -> Result<Vec<Re
         let program = case.solver.as_program()?;
         Some(program::one(plan, case, program, limits, session))
     };
-    let (ours, theirs) = rayon::join(
+    let (engines, programs) = rayon::join(
         || plan.cases.par_iter().map(engine).collect::<Result<_, _>>(),
         || plan.cases.iter().map(program).collect::<Vec<_>>(),
     );
-    let ours: Vec<Option<Record>> = ours?;
-    let either = ours.into_iter().zip(theirs).filter_map(|(a, b)| a.or(b));
-    Ok(either.collect())
+    let engines: Vec<Option<Record>> = engines?;
+    let records = engines.into_iter().zip(programs);
+    Ok(records.filter_map(|(a, b)| a.or(b)).collect())
 }
 
 fn one(
@@ -55,20 +55,20 @@ fn one(
     if ended != Ended::Completed
         && let Ok(again) = case.start(plan)
     {
-        // It ended about here; the same bits once more, looked at in every step, say where.
+        // The coarse limits saw only about where it ended. The same run again, checked in every step, finds the step.
         run = again;
         recorder = Recorder::new(steps, dim, timestep);
         ended = run.finish(limits, &mut recorder, &|_| {});
     }
     if let Some(mut saver) = session.saver(&case.label)? {
-        // The same run once more, to the file: bits are the same, and the timed run writes nothing.
+        // The same run again writes the file: the bits are the same, and the timed run writes nothing.
         if let Ok(mut again) = case.start(plan) {
             again.finish(limits, saver.as_mut(), &|_| {});
         }
         saver.finish()?;
     }
     let (status, reason, taken) = match ended {
-        // No pair runs here, so none is exhausted.
+        // Only adaptive pairs exhaust their budget, and none runs here.
         Ended::Completed | Ended::Exhausted => (Status::Completed, None, steps),
         Ended::Diverged { step, reason } => {
             let reason = format!("in step {}: {reason}", step - 1);
@@ -91,12 +91,12 @@ fn one(
     })
 }
 
-/// Repeated at most this often, within this many seconds in all.
-const REPEATS: usize = 5;
-const PATIENCE: f64 = 0.02;
+/// The number of repeated runs of one case, at most, and the time budget for them, s.
+const MAX_REPEATS: usize = 5;
+const TIME_BUDGET: f64 = 0.02;
 
-/// Times the cases again that take less than the patience, one after the other, when nothing else runs;
-/// the run that was recorded, beside others, was their warm-up. A longer one keeps the time of that run.
+/// Times the cases that fit the budget again, one after the other, while nothing else runs. Their recorded run,
+/// which ran beside others, was the warm-up. A longer case keeps the time of its recorded run.
 pub fn time_again(plan: &Plan, records: &mut [Record], limits: &Limits) {
     let coarse = limits.coarse();
     for (case, record) in plan.cases.iter().zip(records) {
@@ -104,7 +104,7 @@ pub fn time_again(plan: &Plan, records: &mut [Record], limits: &Limits) {
             continue;
         };
         let mut times = Vec::new();
-        while times.len() < REPEATS && times.iter().sum::<f64>() + wall.min < PATIENCE {
+        while times.len() < MAX_REPEATS && times.iter().sum::<f64>() + wall.min < TIME_BUDGET {
             let Ok(mut run) = case.start(plan) else {
                 break;
             };

@@ -1,5 +1,5 @@
-//! What runs did: the curve the scene asks for and the energy over time, and the paths of a few
-//! particles. One panel a timestep, so that lines of one colour never mix.
+//! The figures of runs: the scene's `plot` and the energy over time, and the paths of a few particles. Each
+//! timestep has its own panel, so that lines of one colour never mix.
 
 use crate::measure::EnergyClass;
 use crate::report::svg::Figure;
@@ -15,12 +15,12 @@ use crate::verbs::run::text::{engine, several_timesteps};
 use crate::verbs::run::{Curves, Outcome, TruthCurves};
 use std::collections::BTreeSet;
 
-/// More panels than this are not drawn; the table has them all.
-const PANELS: usize = 6;
-/// A linear axis of energies serves until the amplitudes differ by more than this.
-const RATIO: f64 = 50.0;
+/// The number of panels, at most; the table has every timestep.
+const MAX_PANELS: usize = 6;
+/// The largest ratio of two energy amplitudes that a linear axis shows.
+const MAX_RATIO: f64 = 50.0;
 
-/// What is drawn of one run.
+/// The lines drawn for one run, as points.
 type Paths = Vec<Vec<[f64; 2]>>;
 
 /// The runs one panel shows.
@@ -31,15 +31,15 @@ struct Runs<'a> {
     runs: Vec<(&'a Outcome, Paths)>,
 }
 
-/// The recorded runs by timestep, in the order they first occur. A run at a timestep no
-/// hand-written integrator has joins the first panel. Nothing where no run has anything to draw.
+/// The recorded runs by timestep, in the order they first occur. A rapier run at a timestep of its own
+/// joins the first panel. None where no run has anything to draw.
 fn by_timestep(
     report: &Report,
     truth: impl Fn(&TruthCurves) -> Paths,
     paths: impl Fn(&Curves) -> Paths,
 ) -> Option<Vec<Runs<'_>>> {
-    let figures = report.figures();
-    let runs = figures.curves.iter();
+    let series = report.run_series();
+    let runs = series.curves.iter();
     let runs = runs.filter_map(|c| Some((report.outcomes().get(c.outcome)?, paths(c))));
     let runs: Vec<(&Outcome, Paths)> = runs.collect();
     let mut drawn = runs.iter().flat_map(|(_, paths)| paths);
@@ -53,14 +53,14 @@ fn by_timestep(
         }
     }
     let titled = several_timesteps(report);
-    let shown = timesteps.iter().take(PANELS).enumerate();
+    let shown = timesteps.iter().take(MAX_PANELS).enumerate();
     let panels = shown.map(|(at, &h)| {
         let here = |o: &Outcome| o.timestep == h || (at == 0 && !timesteps.contains(&o.timestep));
         let runs = runs.iter().filter(|(o, _)| here(o)).cloned();
         let title = titled.then(|| format!("h = {} s", words::short(h)));
         Runs {
             title: title.unwrap_or_default(),
-            truth: figures.truth.as_ref().map(&truth).unwrap_or_default(),
+            truth: series.truth.as_ref().map(&truth).unwrap_or_default(),
             runs: runs.collect(),
         }
     });
@@ -68,8 +68,8 @@ fn by_timestep(
 }
 
 impl Runs<'_> {
-    /// The truth's lines, which have no outcome, and every run's in the order they are painted; a run
-    /// that ended early has a cross at its end.
+    /// The lines of the truth, which have no outcome, then those of every run in the order they are painted. A
+    /// run that ended early has a cross at its end.
     fn lines(&self, report: &Report) -> Vec<(Option<&Outcome>, Line)> {
         let truth = self.truth.iter().cloned();
         let truth = truth.map(|path| (None, Line::new(path, palette::TRUTH)));
@@ -88,7 +88,7 @@ impl Runs<'_> {
         truth.chain(runs).collect()
     }
 
-    /// What the values of each run span along one axis.
+    /// The range of each run's values along one axis.
     fn spans(&self, axis: usize) -> impl Iterator<Item = (&Outcome, [f64; 2])> {
         let runs = self.runs.iter();
         runs.filter_map(move |(outcome, paths)| {
@@ -97,13 +97,14 @@ impl Runs<'_> {
         })
     }
 
-    /// What the calm runs span along one axis, with what is `fixed`, and a little of the wild runs.
+    /// The range shown along one axis: that of the calm runs and of the `fixed` particles, and a little of the wild
+    /// runs.
     fn shown(&self, axis: usize, fixed: Option<[f64; 2]>) -> [f64; 2] {
         let spans: Vec<_> = self
             .spans(axis)
             .map(|(o, span)| (is_wild(o), span))
             .collect();
-        // Beside wild runs alone, what is fixed is not the measure of calm.
+        // Where all runs are wild, the fixed particles do not count as calm.
         let calm = fixed.filter(|_| spans.iter().any(|(is_wild, _)| !is_wild));
         let calm = calm.map(|span| (false, span));
         let shown = [tamed(spans.into_iter().chain(calm)), fixed];
@@ -143,16 +144,16 @@ fn curves(
     }
 }
 
-/// The curve the scene asks for, over the range the scene states, else what the calm runs span.
+/// The scene's `plot`, over the range the scene states, else over that of the calm runs.
 fn plot(report: &Report) -> Option<Chart> {
-    let asked = report.figures().plot.as_ref()?;
+    let stated = report.run_series().plot.as_ref()?;
     let truth = |truth: &TruthCurves| over_time(&truth.t, &truth.plot);
     let panels = by_timestep(report, truth, |run| over_time(&run.t, &run.plot))?;
-    let label = shortened(&asked.label, 40);
+    let label = shortened(&stated.label, 40);
     let titles = [&format!("{label} over time"), label.as_str()];
     Some(curves(report, titles, panels, |panel| {
-        let stated = asked.y_range.filter(|[lo, hi]| lo < hi);
-        Axis::linear(stated.unwrap_or_else(|| padded(panel.shown(1, None), 0.05)))
+        let y_range = stated.y_range.filter(|[lo, hi]| lo < hi);
+        Axis::linear(y_range.unwrap_or_else(|| padded(panel.shown(1, None), 0.05)))
     }))
 }
 
@@ -171,7 +172,7 @@ fn energy(report: &Report) -> Option<Chart> {
     Some(curves(report, titles, panels, energy_axis))
 }
 
-/// Symmetric-logarithmic where a small bounded oscillation shares the panel with a large growth.
+/// A symmetric-logarithmic axis where the panel shows a small bounded oscillation beside a large growth.
 fn energy_axis(panel: &Runs) -> Axis {
     let size = |[lo, hi]: [f64; 2]| f64::max(-lo, hi);
     let finished = panel
@@ -199,7 +200,8 @@ fn energy_axis(panel: &Runs) -> Axis {
     }
 }
 
-/// The power of ten below the smallest amplitude worth telling from zero, if the largest dwarfs it.
+/// The power of ten below the smallest visible amplitude, if the largest exceeds it by more than the ratio a
+/// linear axis shows.
 fn linear_part(sizes: &[f64]) -> Option<f64> {
     let largest = sizes.iter().copied().fold(0.0, f64::max);
     let smallest = if largest > 1.0 {
@@ -210,17 +212,17 @@ fn linear_part(sizes: &[f64]) -> Option<f64> {
         let smallest = sizes.iter().copied().filter(counts).fold(largest, f64::min);
         smallest.max(1e-3 * largest)
     };
-    let spans = smallest > 1e-290 && largest > RATIO * smallest;
+    let spans = smallest > 1e-290 && largest > MAX_RATIO * smallest;
     spans.then(|| 10_f64.powi(smallest.log10().floor() as i32))
 }
 
-/// Paths of a few particles, projected on the plane that shows most of them: where they start and end,
-/// and the particles that never move.
+/// The paths of a few particles, projected on the plane that shows most of the motion, with their starts and
+/// ends and the particles that never move.
 fn trajectories(report: &Report) -> Option<Chart> {
     let panels = by_timestep(report, |truth| truth.paths.clone(), |run| run.paths.clone())?;
-    let figures = report.figures();
+    let series = report.run_series();
     let height = if panels.len() > 1 { 320.0 } else { 460.0 };
-    let titles = figures
+    let titles = series
         .plane
         .map(|axis| ["x (m)", "y (m)", "z (m)"][axis.min(2)]);
     let start = Symbol::new(Shape::Disc, WHITE, INK);
@@ -228,7 +230,7 @@ fn trajectories(report: &Report) -> Option<Chart> {
     let still = Symbol::new(Shape::Square, INK, INK);
     let panel = |panel: &Runs| {
         let axes = [0, 1].map(|axis| {
-            let fixed = range(figures.fixed.iter().map(|p| p[axis]));
+            let fixed = range(series.fixed.iter().map(|p| p[axis]));
             Axis::linear(padded(panel.shown(axis, fixed), 0.06))
         });
         let lines = panel.lines(report).into_iter().map(|(outcome, mut line)| {
@@ -238,11 +240,11 @@ fn trajectories(report: &Report) -> Option<Chart> {
         });
         let first = panel.runs.first().into_iter().flat_map(|(_, paths)| paths);
         let starts = first.filter_map(|path| path.first().copied()).collect();
-        let marks = [(start, starts), (still, figures.fixed.clone())];
+        let marks = [(start, starts), (still, series.fixed.clone())];
         let marks = marks.map(|(symbol, points)| Mark::Symbols(symbol, points));
 
         let look = |o: &Outcome| Look::Line(stroke(report, o));
-        let truth = figures.truth.as_ref();
+        let truth = series.truth.as_ref();
         let truth = truth.map(|_| Key::new(TRUTH_NAME, Look::Line(palette::TRUTH)));
         let runs = panel.runs.iter().map(|(o, _)| Key::new(name(o), look(o)));
         let mut ends = panel.runs.iter().map(|(o, _)| o.status);
@@ -250,7 +252,7 @@ fn trajectories(report: &Report) -> Option<Chart> {
         let symbols = [
             (true, "start", start),
             (true, "end", end(FAINT)),
-            (!figures.fixed.is_empty(), "fixed", still),
+            (!series.fixed.is_empty(), "fixed", still),
             (early, "ended early", Symbol::cross(FAINT)),
         ];
         let symbols = symbols.into_iter().filter(|(shown, ..)| *shown);
@@ -270,7 +272,7 @@ fn trajectories(report: &Report) -> Option<Chart> {
     })
 }
 
-/// The engine as labels call it, with the time it got to if it ended early.
+/// The engine's name in labels, with the time it reached if it ended early.
 fn name(outcome: &Outcome) -> String {
     let name = svg::engine(&engine(outcome));
     match outcome.stopped_at_s {
@@ -288,14 +290,14 @@ fn stroke(report: &Report, outcome: &Outcome) -> Stroke {
     look(outcome.kind, before.len(), own)
 }
 
-/// Runs that may leave the picture: unfinished ones and those that gain energy.
+/// Whether a run may leave the picture: it is unfinished or gains energy.
 fn is_wild(outcome: &Outcome) -> bool {
     let class = outcome.energy.as_ref().and_then(|e| e.class);
     outcome.status != Status::Completed || class == Some(EnergyClass::Growing)
 }
 
-/// Painted first to last: wild runs below, then the integrators with the scene's own on top, then
-/// rapier's dashes, which let what they cover show through.
+/// The layer a run is painted in, lowest first: wild runs, other integrators, the scene's own, rapier, whose
+/// dashes let the lines below show through.
 fn layer(report: &Report, outcome: &Outcome) -> u8 {
     match outcome.kind {
         SolverKind::Rapier => 3,

@@ -1,4 +1,4 @@
-//! Which scheme each trajectory follows.
+//! The identity of each trajectory: the scheme it follows.
 
 use super::plan::{Case, Plan};
 use super::program::begin_with;
@@ -9,10 +9,11 @@ use crate::solvers::SolverKind;
 use crate::trajectory::{Rows, Trajectory};
 use std::borrow::Cow;
 
-/// Steps replayed of a run: enough to name it, few enough to be quick. A file is replayed whole.
+/// The number of a run's steps that are replayed: enough to identify it, few enough to be quick. A file is
+/// replayed whole.
 const TRANSITIONS: usize = 16;
 
-/// The scheme of a run, by some of its steps.
+/// Identifies the scheme of a run by replaying some of its steps.
 pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Option<Identified> {
     let question = Question {
         transitions: Some(TRANSITIONS),
@@ -22,7 +23,7 @@ pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Option<Identified> 
     identify(&question)?.report()
 }
 
-/// What a run should turn out to be.
+/// The scheme and number of substeps that a run is expected to follow.
 fn expected(plan: &Plan, case: &Case) -> Option<(&'static str, u32)> {
     let joints = case.solver.kind == SolverKind::Rapier && plan.scene.springs.len() > 1;
     let rapier = joints.then_some(("linearized_implicit_material", case.solver.substeps));
@@ -32,11 +33,11 @@ fn expected(plan: &Plan, case: &Case) -> Option<(&'static str, u32)> {
         .or(rapier)
 }
 
-/// The scheme of rows, by all of their steps, and the first of these that leaves it.
+/// Identifies the scheme of rows by replaying all their steps, and finds the first step that deviates from it.
 pub fn of_rows(plan: &Plan, rows: &Rows) -> (Option<Identified>, Option<Fault>) {
     let rows = &from_the_start(plan, rows);
     let question = question(plan, rows);
-    // Whatever scheme it is, what is fixed must not move.
+    // A fixed particle must not move under any scheme.
     let moved = moved_anchor(plan.scene, rows);
     let Some(identity) = identify(&question) else {
         return (None, moved);
@@ -45,7 +46,7 @@ pub fn of_rows(plan: &Plan, rows: &Rows) -> (Option<Identified>, Option<Fault>) 
     (identity.report(), fault)
 }
 
-/// With the scene's start in front where rows begin a few steps later: those steps count, too.
+/// The rows, preceded by the scene's start where they begin a few steps later: those steps are replayed, too.
 fn from_the_start<'a>(plan: &Plan, rows: &'a Rows) -> Cow<'a, Rows> {
     let longest = rows.steps.windows(2).map(|pair| pair[1] - pair[0]).max();
     let first = rows.steps.first().copied().unwrap_or(0);

@@ -1,7 +1,7 @@
-//! The main job: every chosen engine on one scene, side by side, and what came of it.
+//! The verb `run`: every chosen engine on one scene, side by side, and their outcomes.
 //!
-//! [`Plan`] says what will run, and [`Plan::execute`] runs it in parallel, measures it, and says whether
-//! that is what the scene expects ([`Expectations`]). Results do not depend on the number of threads;
+//! [`Plan`] says what will run, and [`Plan::execute`] runs it in parallel, measures the outcomes, and
+//! checks whether they are as the scene expects ([`Expectations`]). Results do not depend on the number of threads;
 //! only wall times do.
 
 mod args;
@@ -24,7 +24,7 @@ pub use args::{Args, run};
 pub use expect::names;
 pub(super) use figures::FIGURES;
 pub use plan::{Choice, Expectations, Orders, Plan};
-pub use result::{Curves, Figures, Outcome, PlotAxis, TruthCurves, Work};
+pub use result::{Curves, Outcome, PlotAxis, RunSeries, TruthCurves, WorkSummary};
 pub(super) use text::{page, view};
 
 use crate::report::Header;
@@ -32,14 +32,14 @@ use crate::solvers::SolverKind;
 use crate::trajectory::SaveError;
 use crate::truth;
 use crate::verbs::session::Session;
-use crate::verbs::{Beside, Body, Report, Series, facts};
+use crate::verbs::{Body, Report, Series, SeriesState, facts};
 use truths::Truths;
 
 impl Plan<'_> {
-    /// Runs every case, the truth and the twin proof, and measures what they left.
+    /// Runs every case, the truth and the twin proof, and measures the records.
     ///
     /// # Errors
-    /// Only when a trajectory file could not be written; whatever an engine does is an outcome.
+    /// Fails only when a trajectory file could not be written; whatever an engine does is an outcome.
     pub fn execute(&self, session: &dyn Session) -> Result<Report, SaveError> {
         let (scene, system) = (self.scene, &self.system);
         let limits = facts::limits(scene, system);
@@ -57,7 +57,7 @@ impl Plan<'_> {
         let orders = checks::orders(self, &truth);
         execute::time_again(self, &mut records, &limits);
         let scale = facts::energy_scale(scene, system, &truth);
-        let (outcomes, series) = outcomes::all(self, &records, &truths, scale);
+        let (outcomes, energies) = outcomes::all(self, &records, &truths, scale);
         let mut evaluations = [0, 0];
         for (case, record) in self.cases.iter().zip(&records) {
             if case.solver.kind == SolverKind::Integrator {
@@ -74,11 +74,11 @@ impl Plan<'_> {
                 .chain(facts::no_scale(scale))
                 .collect(),
         };
-        let figures = curves::figures(self, &records, &series, &truths, scale);
+        let series = curves::series(self, &records, &energies, &truths, scale);
         let mut report = Report {
             header,
             body: Body::Run { outcomes },
-            beside: Beside::Here(Series::Curves(figures)),
+            series: SeriesState::Loaded(Series::Curves(series)),
         };
         let expected = self.choice.expectations.checks(scene, &report);
         report.header.checks.extend(expected);

@@ -1,4 +1,4 @@
-//! From what a case left to its outcome.
+//! Measures the record of each case and makes its outcome.
 
 use super::plan::Plan;
 use super::record::Record;
@@ -7,11 +7,11 @@ use super::{identity, remarks};
 use crate::measure::{self, Deviation, EnergySeries, TOLERANCE};
 use crate::solvers::Status;
 use crate::trajectory::Trajectory;
-use crate::verbs::run::{Outcome, Work};
+use crate::verbs::run::{Outcome, WorkSummary};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// One outcome a case, and the energies the figures draw.
+/// One outcome for each case, and its energies over time for the figures.
 pub fn all(
     plan: &Plan,
     records: &[Record],
@@ -41,7 +41,7 @@ pub fn all(
             deviation_m: deviations(plan, records, index),
             energy: series.as_ref().map(judged),
             momentum: trajectory.and_then(|run| measure::momentum(plan.scene, &plan.system, run)),
-            work: Work {
+            work: WorkSummary {
                 steps: record.steps,
                 force_evaluations: record.counts.all_force_passes(),
                 linear_solves: record.counts.linear_solves,
@@ -59,7 +59,7 @@ pub fn all(
     (0..records.len()).into_par_iter().map(one).unzip()
 }
 
-/// Distances from every other reference engine that ran at the same timestep.
+/// The deviations from every other reference engine that ran at the same timestep.
 fn deviations(plan: &Plan, records: &[Record], index: usize) -> BTreeMap<String, Deviation> {
     let timestep = plan.cases[index].label.timestep;
     let from = |at: usize, ours: &Trajectory| {
@@ -67,7 +67,7 @@ fn deviations(plan: &Plan, records: &[Record], index: usize) -> BTreeMap<String,
         if at == index || !case.solver.reference || case.label.timestep != timestep {
             return None;
         }
-        // A lone particle has no size but the way it goes.
+        // A lone particle has no size; its reach stands in.
         let size = Some(plan.scene.size()).filter(|size| *size > 0.0);
         let size = size.unwrap_or_else(|| measure::reach(reference));
         let deviation = measure::deviation(ours, reference, TOLERANCE * size)?;

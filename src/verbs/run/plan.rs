@@ -1,21 +1,21 @@
-//! What will run: each chosen solver at each timestep.
+//! The plan of a run: each chosen solver at each timestep.
 
 use crate::integrators;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::{self, Run, Setting, Solver, SolverKind, Unsupported};
 use crate::truth::Demand;
-use crate::verbs::session::{Estimate, Label};
+use crate::verbs::session::{Label, TimeEstimate};
 use std::time::{Duration, Instant};
 
-/// What the caller wants run; [`Choice::default_for`] is what a run without flags does.
+/// The caller's choice of solvers and measures. [`Choice::default_for`] is that of a run without flags.
 #[derive(Debug, Clone)]
 pub struct Choice {
-    /// In the order outcomes are listed. Not adaptive pairs, which take steps of their own.
+    /// The solvers, in the order outcomes are listed. Adaptive pairs, which choose their steps, are not among them.
     pub solvers: Vec<Solver>,
-    /// Seconds; every solver without a timestep of its own runs at each.
+    /// Timesteps, s; every solver without a timestep of its own runs at each.
     pub timesteps: Vec<f64>,
-    /// What errors are measured against.
+    /// The kind of truth that errors are measured against.
     pub truth: Demand,
     /// Whether every method's order is measured.
     pub order: Orders,
@@ -23,23 +23,23 @@ pub struct Choice {
     pub identify: bool,
     /// Whether the twin proof is made.
     pub prove: bool,
-    /// What becomes of the scene's `expect`.
+    /// Whether the scene's `expect` is judged.
     pub expectations: Expectations,
 }
 
-/// What becomes of what a scene expects of its engines.
+/// Whether a scene's expectations of its engines are judged.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum Expectations {
-    /// They are not asked for: no check.
+    /// Not judged, and no check says so.
     #[default]
     Ignored,
-    /// A check for each, as [`expect::check`](super::expect::check) makes them.
+    /// Judged: a check for each, as [`expect::check`](super::expect::check) makes it.
     Judged,
-    /// One check that is skipped, and why: the caller changed what they are about.
+    /// Not judged, because the caller changed the run they are stated for: one skipped check gives this reason.
     Skipped(String),
 }
 
-/// When orders are measured, which costs about two more runs of each method.
+/// When orders are measured. Measuring costs about two more runs of each method.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Orders {
     Never,
@@ -50,7 +50,7 @@ pub enum Orders {
     Always,
 }
 
-/// Beside the scene's own integrator.
+/// The integrators that run by default beside the scene's own.
 const DEFAULT_METHODS: &[&str] = &[
     "explicit_euler",
     "symplectic_euler",
@@ -60,11 +60,11 @@ const DEFAULT_METHODS: &[&str] = &[
     "implicit_euler",
 ];
 
-/// Reference engines beside the integrators.
+/// The reference engines that run by default.
 const DEFAULT_ENGINES: &[&str] = &["rapier", "rapier-forces"];
 
 impl Choice {
-    /// The scene's own integrator, the usual ones, and the default engines, at the scene's timestep.
+    /// The scene's own integrator, the default ones, and the default engines, at the scene's timestep.
     pub fn default_for(scene: &Scene) -> Self {
         let usual = DEFAULT_METHODS
             .iter()
@@ -82,7 +82,7 @@ impl Choice {
         }
     }
 
-    /// One more solver, after the others of its kind, such as an integrator of the caller's own.
+    /// Adds a solver after the others of its kind, such as an integrator of the caller's own.
     #[must_use]
     pub fn with(mut self, solver: Solver) -> Self {
         let last = self.solvers.iter().rposition(|s| s.kind == solver.kind);
@@ -107,7 +107,7 @@ impl Case {
     /// A fresh run from the plan's start.
     ///
     /// # Errors
-    /// [`Unsupported`] as [`Solver::start`] has it.
+    /// Returns [`Unsupported`] where [`Solver::start`] does.
     pub fn start(&self, plan: &Plan) -> Result<Run, Unsupported> {
         let Label {
             timestep, steps, ..
@@ -122,7 +122,7 @@ pub struct Plan<'a> {
     pub scene: &'a Scene,
     pub system: ParticleSystem,
     pub cases: Vec<Case>,
-    /// What it is made from.
+    /// The choice the plan is made from.
     pub choice: Choice,
 }
 
@@ -151,21 +151,21 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// How long each case will take, from its first few steps. Nobody knows it of a program.
-    pub fn estimate(&self) -> Vec<Estimate> {
-        // One after the other: neighbours on the machine would make every case look slow.
+    /// Estimates the wall time of each case from its first few steps. External programs have no estimate.
+    pub fn estimate(&self) -> Vec<TimeEstimate> {
+        // One after the other: cases that run at the same time would slow each other down.
         let estimate = |case| estimate(self, case);
         self.cases.iter().filter_map(estimate).collect()
     }
 }
 
-/// A sample is longer than the clock's grain and too short to be noticed.
+/// The duration of one timing sample: longer than the clock's resolution and too short to be noticed.
 const SAMPLE: Duration = Duration::from_millis(1);
 const SAMPLES: usize = 2;
 
-fn estimate(plan: &Plan, case: &Case) -> Option<Estimate> {
+fn estimate(plan: &Plan, case: &Case) -> Option<TimeEstimate> {
     let mut run = case.start(plan).ok()?;
-    // The first step allocates and orders matrices; it stands for no other.
+    // The first step also allocates and orders matrices, so it is not timed.
     run.advance(1).ok()?;
     let mut sample = || {
         let start = Instant::now();
@@ -178,9 +178,9 @@ fn estimate(plan: &Plan, case: &Case) -> Option<Estimate> {
         }
         start.elapsed().as_secs_f64() / f64::max(1.0, steps as f64)
     };
-    // The least: what disturbs a sample only ever lengthens it.
+    // The least, since a disturbance can only lengthen a sample.
     let each = (0..SAMPLES).map(|_| sample()).fold(f64::INFINITY, f64::min);
-    Some(Estimate {
+    Some(TimeEstimate {
         label: case.label.clone(),
         seconds: each * case.label.steps as f64,
     })

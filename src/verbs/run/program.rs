@@ -1,4 +1,4 @@
-//! Runs other people's programs and makes of their rows what measures read.
+//! Runs external programs and converts their rows to records, which the measures read.
 
 use super::plan::{Case, Plan};
 use super::record::Record;
@@ -9,7 +9,7 @@ use crate::trajectory::{Precision, Rows, Trajectory};
 use crate::verbs::clock::spread;
 use crate::verbs::session::Session;
 
-/// One case of a program, from its start to what came of it.
+/// Runs one case of a program and returns its record.
 pub fn one(
     plan: &Plan,
     case: &Case,
@@ -26,13 +26,13 @@ pub fn one(
     let answer = program.record(&task);
     session.progress(case.label.steps);
     match answer {
-        Ok(recording) => made_of(recording, &task, limits),
+        Ok(recording) => record_of(recording, &task, limits),
         Err(failure) => Record::none(Status::Failed, failure.to_string()),
     }
 }
 
-/// The run behind a recording.
-fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
+/// Converts a recording to the record of a run.
+fn record_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
     let Recording { mut rows, seconds } = recording;
     let start = ParticleSystem::initial_state(task.scene);
     if let Some(wrong) = misfit(&rows, &start, task.timestep) {
@@ -57,7 +57,7 @@ fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
     for k in 0..rows.len() {
         replay.advance(k, &mut state);
         let finite = state.is_finite();
-        // An engine's bad position is in its next velocity; rows need not hang together.
+        // In an engine a bad position also spoils the next velocity; rows of a program need not be consistent.
         let lost = || (!finite).then(|| "a position is no longer finite".to_owned());
         if let Some(reason) = limits.exceeded(&state).or_else(lost) {
             diverged = finite;
@@ -91,7 +91,8 @@ fn made_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
     }
 }
 
-/// Why rows are not states of this scene, for a program that did not read them from a file.
+/// The reason why rows are not states of this scene; None if they are. The reader of files has checked this; other
+/// programs have not.
 fn misfit(rows: &Rows, start: &State, timestep: f64) -> Option<String> {
     let numbers = rows.len() * start.x.len();
     let whole = rows.dim == start.x.len()
@@ -111,7 +112,7 @@ fn misfit(rows: &Rows, start: &State, timestep: f64) -> Option<String> {
     Some(message.to_owned())
 }
 
-/// Says so where the first row is not how the scene starts, beyond the rounding it is written with.
+/// The remark that the first row differs from the scene's start by more than its rounding; None if it does not.
 fn other_start(rows: &Rows, start: &State) -> Option<String> {
     if rows.steps.first() != Some(&0) {
         return Some(format!(
@@ -120,7 +121,7 @@ fn other_start(rows: &Rows, start: &State) -> Option<String> {
         ));
     }
     let first = |given: &[f64], known: &[f64], precision: Precision| {
-        // Twice: the scene's own number is rounded too. NaN is off.
+        // Twice, since the scene's own number is rounded too. NaN is not near.
         let near = |(g, k): (&f64, &f64)| (g - k).abs() <= 2.0 * precision.half_unit(*k);
         given.iter().zip(known).position(|pair| !near(pair))
     };
@@ -133,7 +134,7 @@ fn other_start(rows: &Rows, start: &State) -> Option<String> {
     ))
 }
 
-/// The scene's start in front where rows begin later, and nothing after the last step.
+/// Puts the scene's start in front of rows that begin later, and drops rows after the last step.
 fn complete(rows: &mut Rows, start: &State, last: u64) {
     let kept = rows.steps.partition_point(|step| *step <= last);
     rows.steps.truncate(kept);
@@ -146,7 +147,7 @@ fn complete(rows: &mut Rows, start: &State, last: u64) {
     }
 }
 
-/// The scene's start as step 0 in front of rows that begin later.
+/// Puts the scene's start as step 0 in front of rows that begin later.
 pub fn begin_with(rows: &mut Rows, start: &State) {
     rows.steps.insert(0, 0);
     rows.x.splice(0..0, start.x.iter().copied());
@@ -155,7 +156,7 @@ pub fn begin_with(rows: &mut Rows, start: &State) {
     }
 }
 
-/// Where a run ended that ended too early, and where it should have.
+/// The reason for a run that ended too early: where it ended, and where it should have ended.
 fn early(rows: &Rows, task: &Task) -> String {
     let last = rows.len().saturating_sub(1);
     let end = task.steps as f64 * task.timestep;
@@ -175,7 +176,7 @@ fn early(rows: &Rows, task: &Task) -> String {
     reason
 }
 
-/// Goes through rows as through a run, with the work done on the way.
+/// Passes through rows as through a run, and integrates the work.
 struct Replay<'a> {
     rows: &'a Rows,
     start: &'a State,
@@ -183,9 +184,9 @@ struct Replay<'a> {
 }
 
 impl Replay<'_> {
-    /// From the state of the row before `k` (anything for row 0) to that of row `k`. Work is taken
-    /// by the trapezoidal rule from row to row, of second order in their distance; without
-    /// velocities there is none.
+    /// Advances the state from the row before `k` (anything for row 0) to row `k`. The work follows by the
+    /// trapezoidal rule from row to row, of second order in their distance; without velocities it is not
+    /// integrated.
     fn advance(&self, k: usize, state: &mut State) {
         let known = self.rows.v.is_some() && k > 0;
         let before = known.then(|| self.power(state));
@@ -211,8 +212,8 @@ impl Replay<'_> {
         }
     }
 
-    /// Velocities from positions: the scene's at the start, then central differences of the rows on
-    /// both sides, backwards at the end. Good enough to see a divergence.
+    /// Velocities from positions, m/s: the scene's at the start, then central differences of the rows on both sides,
+    /// and backward differences at the end. They are accurate enough to detect a divergence.
     fn differences(&self, k: usize, v: &mut [f64]) {
         if k == 0 {
             v.copy_from_slice(&self.start.v);

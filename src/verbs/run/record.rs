@@ -1,27 +1,27 @@
-//! What one case left: raw, before anything is measured.
+//! The raw record of one case.
 
 use crate::solvers::{Counts, Status};
 use crate::trajectory::Trajectory;
 use crate::verbs::clock::WallTime;
 
-/// What one case left: raw, before anything is measured.
+/// The raw record of one case, before anything is measured.
 pub struct Record {
     pub status: Status,
     /// Why it did not run to its end.
     pub reason: Option<String>,
     /// Steps taken.
     pub steps: u64,
-    /// None where nothing is known of it but the reason.
+    /// None where only the reason is known.
     pub trajectory: Option<Trajectory>,
     pub counts: Counts,
-    /// None of a file, and where nothing ran.
+    /// None for a file, and where nothing ran.
     pub wall: Option<WallTime>,
-    /// What else is to be said of it.
+    /// Further remarks for its outcome.
     pub remarks: Vec<String>,
 }
 
 impl Record {
-    /// Of a case that did not run.
+    /// The record of a case that did not run.
     pub fn none(status: Status, reason: String) -> Self {
         Self {
             status,

@@ -1,4 +1,4 @@
-//! One plain sentence for each row that needs one.
+//! The remarks of an outcome: plain sentences for the rows that need them.
 
 use super::plan::{Case, Plan};
 use crate::integrators::{EnergyLaw, Method, PerStep, Settings, Stable};
@@ -8,7 +8,7 @@ use crate::physics::{ParticleSystem, System};
 use crate::solvers::Status;
 use crate::verbs::run::Outcome;
 
-/// `linearised` is the scene's, as [`linearised`] has it.
+/// The remarks of one outcome. `linearised` is the result of [`linearised`] for the scene.
 pub fn remarks(
     plan: &Plan,
     case: &Case,
@@ -26,7 +26,7 @@ pub fn remarks(
             let cause = outcome.reason.as_deref().unwrap_or_default();
             let time = outcome.stopped_at_s.unwrap_or(0.0);
             let damped = plan.system.kinds().depends_on_velocity();
-            // The limit of this very scene says it better than a method's facts.
+            // The limit on this scene says more than the method's general facts.
             let why = match (&warning, case.solver.as_method()) {
                 (None, Some(method)) => why_unstable(method, damped),
                 _ => String::new(),
@@ -43,7 +43,7 @@ pub fn remarks(
     remarks
 }
 
-/// Where the scene asks its implicit steps to be solved to less than the default.
+/// The remark that the scene's solver tolerance is looser than the default, for methods that iterate.
 fn loosely_solved(plan: &Plan, case: &Case) -> Option<String> {
     let stated = plan.scene.solver.tolerance?;
     let method = case.solver.as_method()?;
@@ -56,7 +56,7 @@ fn loosely_solved(plan: &Plan, case: &Case) -> Option<String> {
     })
 }
 
-/// What the method's own facts say of a divergence.
+/// The cause of a divergence, from the method's facts.
 fn why_unstable(method: &Method, damped: bool) -> String {
     if damped && method.oscillator.stable != Stable::Always {
         return "; stiff springs and strong dampers each limit the step: take a smaller one"
@@ -80,8 +80,8 @@ fn why_unstable(method: &Method, damped: bool) -> String {
     }
 }
 
-/// Why a completed run's energy did what it did, where that is not simply right; `lost`
-/// if less of it is left than there was.
+/// Explains the energy class of a completed run, where it is not bounded; `lost` if the energy is below its
+/// initial value.
 fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<String> {
     if class == EnergyClass::Bounded {
         return None;
@@ -102,7 +102,7 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<S
     }
 }
 
-fn moves(class: EnergyClass) -> &'static str {
+fn energy_change(class: EnergyClass) -> &'static str {
     match class {
         EnergyClass::Growing => "energy grows",
         EnergyClass::Dissipating => "energy falls",
@@ -110,23 +110,24 @@ fn moves(class: EnergyClass) -> &'static str {
     }
 }
 
-/// No oscillator, no law of one: under a constant acceleration a the error is that of the drift.
+/// Without an oscillator no law of one applies: under a constant acceleration the error is that of the position
+/// update.
 fn under_constant_force(method: &Method, class: EnergyClass) -> Option<String> {
     (method.order == 1).then(|| {
         format!(
             "{}: under a constant acceleration a its position is off by a h t/2, which grows for \
              as long as the fall lasts",
-            moves(class)
+            energy_change(class)
         )
     })
 }
 
-/// What the method does to an oscillator, where that is the cause.
+/// The explanation by the method's energy law on an oscillator, where that is the cause.
 fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
-    let moves = moves(class);
+    let change = energy_change(class);
     match (method.oscillator.energy, method.oscillator.stable) {
         (EnergyLaw::Factor { factor, formula }, _) => {
-            // At small steps: there the formula's sign is its leading term's.
+            // A small step: there the leading term decides the formula's sign.
             let law = factor(0.1) - 1.0;
             let agrees = match class {
                 EnergyClass::Growing => law > 0.0,
@@ -136,21 +137,21 @@ fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
             let undamped = if damped { "undamped " } else { "" };
             agrees.then(|| {
                 format!(
-                    "{moves} as its law says: by {formula} a step, z = hω, on an \
+                    "{change} as its law says: by {formula} a step, z = hω, on an \
                      {undamped}oscillator"
                 )
             })
         }
         (_, Stable::Below(limit)) if !damped => Some(format!(
-            "{moves}: on an oscillator it is bounded for good while h ω < {limit:.4}; a step at that \
+            "{change}: on an oscillator it is bounded for good while h ω < {limit:.4}; a step at that \
              limit, a force that jumps, or less than a period of its swing all look like a trend"
         )),
         _ => None,
     }
 }
 
-/// Where the balance does not close. It may grow while the energy falls: more is booked to dampers
-/// than they took.
+/// The explanation by a balance that does not close. It may grow while the energy falls: the work counted for
+/// dampers exceeds what they took.
 fn by_balance(method: &Method, class: EnergyClass, lost: bool) -> String {
     let does = match class {
         EnergyClass::Growing if lost => "grows, though E itself falls",
@@ -165,7 +166,7 @@ fn by_balance(method: &Method, class: EnergyClass, lost: bool) -> String {
     )
 }
 
-/// The scene linearised about its start, if anybody here has a step limit.
+/// The scene linearised about its start, if the plan has a method, whose step is limited.
 pub fn linearised(plan: &Plan) -> Option<Linearised> {
     let method = |case: &Case| case.solver.as_method().is_some();
     plan.cases.iter().any(method).then(|| {
@@ -174,19 +175,19 @@ pub fn linearised(plan: &Plan) -> Option<Linearised> {
     })
 }
 
-/// Amplitudes that grow by less than this part over a whole run are seen in no plot.
+/// A relative growth of amplitudes over a whole run below this is invisible in a plot.
 const VISIBLE: f64 = 0.01;
 
-/// What there is to say of a timestep beyond what its method is stable at, here; None where it is stable
-/// or nobody knows.
+/// The warning that a timestep exceeds the stability limit of its method on this scene; None where it is stable
+/// or the limit is unknown.
 fn step_warning(linearised: &Linearised, case: &Case) -> Option<String> {
     let h = case.label.timestep;
     let prediction = linearised.predict(case.solver.as_method()?, h);
     match prediction.limit {
-        // Exactly at the limit nothing grows; a timestep stated in a few digits may be meant to be.
+        // Exactly at the limit nothing grows, and a timestep rounded to a few digits may be meant to lie there.
         Limit::At(limit) if h > limit * (1.0 + 1e-9) => Some(beyond(h, limit, &prediction)),
         Limit::Never => never(h, case.label.end(), &prediction),
-        // One growing mode of a scene too large to know all of.
+        // The scene is too large to know all its modes, but one that grows is enough.
         Limit::Unknown(_) => {
             let growth = prediction.growth_per_s.filter(|rate| *rate > 0.0)?;
             Some(format!(
@@ -227,7 +228,7 @@ fn bracketed(prediction: &Prediction) -> String {
     reason.map_or_else(String::new, |reason| format!(" ({reason})"))
 }
 
-/// Four digits, as short as they go.
+/// A number with four digits, without trailing zeros.
 fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
     if rounded != 0.0 && !(1e-4..1e5).contains(&rounded.abs()) {
@@ -237,8 +238,8 @@ fn short(value: f64) -> String {
     }
 }
 
-/// The largest round number, in steps of a half or more of its leading digit, that is not above 95 %
-/// of a limit: past it by a little is past it.
+/// The largest number with a round leading digit (halves below 3) that is at most 95 % of a limit: a little
+/// beyond the limit is already unstable.
 fn round_below(limit: f64) -> Option<String> {
     let safe = 0.95 * limit;
     let power = safe.log10().floor();

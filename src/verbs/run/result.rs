@@ -1,4 +1,5 @@
-//! What `run` and `compare` found, as data: one [`Outcome`] an engine and timestep, and the series its figures are drawn from.
+//! The results of `run` and `compare` as data: an [`Outcome`] for each engine and timestep, and the series its figures are
+//! drawn from.
 
 use crate::measure::identify::Identified;
 use crate::measure::{Deviation, Energy, ErrorSummary, Momentum};
@@ -7,52 +8,53 @@ use crate::verbs::clock::WallTime;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// One engine at one timestep.
+/// The outcome of one engine at one timestep.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Outcome {
     pub engine: String,
     pub kind: SolverKind,
     /// Seconds between recorded steps of this engine.
     pub timestep: f64,
-    /// The step the scheme really takes: rapier's dt / iterations, else the timestep.
+    /// The step that the scheme takes, s: rapier's dt / iterations, else the timestep.
     pub substep: f64,
     pub status: Status,
-    /// Null unless the run ended early.
+    /// The time at which the run ended early, s; null if it did not.
     pub stopped_at_s: Option<f64>,
-    /// Why it ended early or is unsupported.
+    /// The reason why it ended early or is unsupported.
     pub reason: Option<String>,
-    /// Against the truth; null where there is none.
+    /// The error against the truth; null where there is none.
     pub position_error_m: Option<ErrorSummary>,
     pub velocity_error_m_s: Option<ErrorSummary>,
-    /// Against each reference engine that ran at this timestep.
+    /// The deviation from each reference engine that ran at this timestep.
     pub deviation_m: BTreeMap<String, Deviation>,
     /// Null when nothing was recorded (unsupported) or no velocities are known.
     pub energy: Option<Energy>,
     pub momentum: Option<Momentum>,
-    pub work: Work,
-    /// Null where there is nothing to replay.
+    pub work: WorkSummary,
+    /// The scheme it follows by replay; null where there is nothing to replay.
     pub identified: Option<Identified>,
     /// Plain sentences for the table's foot.
     pub remarks: Vec<String>,
 }
 
+/// The cost of one run: counts and wall time. It is not the work done by forces, [`physics::Work`](crate::physics::Work).
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Work {
+pub struct WorkSummary {
     pub steps: u64,
-    /// Evaluations of all forces; null where the engine does not tell (rapier's joints).
+    /// Evaluations of all forces; null where the engine does not report them (rapier's joints).
     pub force_evaluations: Option<u64>,
     pub linear_solves: Option<u64>,
     pub wall_s: Option<WallTime>,
 }
 
-/// What the figures are drawn from.
+/// The series that the figures of `run` and `compare` are drawn from.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Figures {
-    /// One per outcome that recorded anything, in the outcomes' order.
+pub struct RunSeries {
+    /// The curves of each outcome that recorded anything, in the outcomes' order.
     pub curves: Vec<Curves>,
-    /// What really happens, up to the truth's horizon.
+    /// The truth, up to its horizon.
     pub truth: Option<TruthCurves>,
-    /// The curve the scene asks for: its axis label and range.
+    /// The axis of the scene's `plot`: its label and range.
     pub plot: Option<PlotAxis>,
     /// The two coordinates (0, 1, 2) trajectories are projected on: the widest, `up` vertical.
     pub plane: [usize; 2],
@@ -76,13 +78,13 @@ pub struct Curves {
     pub t: Vec<f64>,
     /// (B - B(0)) / S, or joules where the scene has no scale; empty where no velocities are known.
     pub energy: Vec<f64>,
-    /// The coordinate `plot` names; empty without one.
+    /// The coordinate that `plot` names, m; empty without one.
     pub plot: Vec<f64>,
-    /// A few particles' paths projected on `Figures::plane`: one polyline each.
+    /// A few particles' paths projected on [`RunSeries::plane`]: one polyline each.
     pub paths: Vec<Vec<[f64; 2]>>,
 }
 
-/// The truth over some instants; all finite, equally long.
+/// Series of the truth over some instants; all finite, equally long.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TruthCurves {
     /// Seconds.

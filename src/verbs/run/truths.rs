@@ -7,9 +7,9 @@ use crate::trajectory::Trajectory;
 use crate::truth::Truth;
 use rayon::prelude::*;
 
-/// One truth, sampled once for all the runs of a timestep.
+/// One truth, sampled once for all runs of a timestep.
 pub struct Truths {
-    /// By timestep.
+    /// The samples by timestep, s.
     known: Vec<(f64, TrueStates)>,
 }
 
@@ -21,26 +21,26 @@ impl Truths {
                 timesteps.push(case.label.timestep);
             }
         }
-        let known = |h| (h, known(plan, records, truth, h));
+        let sample = |h| (h, sample(plan, records, truth, h));
         Self {
-            known: timesteps.into_par_iter().map(known).collect(),
+            known: timesteps.into_par_iter().map(sample).collect(),
         }
     }
 
-    /// How far a run at this timestep is from the truth.
+    /// The errors of a run at this timestep against the truth.
     pub fn errors(&self, timestep: f64, run: &Trajectory) -> Option<Errors> {
         measure::errors(run, self.at(timestep)?)
     }
 
-    /// What is known at the instants of this timestep; None where nothing is.
+    /// The truth at the instants of this timestep; None where it is unknown.
     pub fn at(&self, timestep: f64) -> Option<&TrueStates> {
         let (_, known) = self.known.iter().find(|(h, _)| *h == timestep)?;
         (!known.steps.is_empty()).then_some(known)
     }
 }
 
-/// The truth at every instant up to the horizon that any run of this timestep recorded.
-fn known(plan: &Plan, records: &[Record], truth: &Truth, timestep: f64) -> TrueStates {
+/// Samples the truth at every instant up to the horizon that any run of this timestep recorded.
+fn sample(plan: &Plan, records: &[Record], truth: &Truth, timestep: f64) -> TrueStates {
     let Some(motion) = truth.motion() else {
         return TrueStates::default();
     };
@@ -55,7 +55,7 @@ fn known(plan: &Plan, records: &[Record], truth: &Truth, timestep: f64) -> TrueS
         }
     }
     let time = |step: &u64| *step as f64 * timestep;
-    // A run ends at n h, which may round to just past where the truth was asked for.
+    // A run ends at n h, which may round to just past the truth's horizon.
     let last = truth.horizon * (1.0 + 4.0 * f64::EPSILON);
     steps.retain(|step| time(step) <= last);
     let times: Vec<f64> = steps.iter().map(|s| time(s).min(truth.horizon)).collect();

@@ -2,7 +2,7 @@
 
 use crate::report::json::{self, Tool};
 use crate::verbs::cli::output::{self, Output, Place};
-use crate::verbs::{Beside, Body, Report, series};
+use crate::verbs::{Body, Report, SeriesState, series};
 
 use anyhow::{Context, bail};
 use std::fs::File;
@@ -21,8 +21,8 @@ pub struct Args {
     output: Output,
 }
 
-/// More than this is no report.
-const BYTES: u64 = 1 << 28;
+/// The largest size of a report's file, bytes.
+const MAX_BYTES: u64 = 1 << 28;
 
 /// Runs the verb.
 pub fn show(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
@@ -40,7 +40,7 @@ pub fn show(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     } else {
         args.output.print(&tool, &reports)?;
     }
-    let missing = |report: &Report| matches!(report.beside, Beside::Missing);
+    let missing = |report: &Report| matches!(report.series, SeriesState::Missing);
     if args.output.draws() && !quiet && reports.iter().any(missing) {
         let _ = writeln!(
             anstream::stderr(),
@@ -51,14 +51,14 @@ pub fn show(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The reports of a file, and their series where these lie beside it.
+/// The reports of a file, with their series where the file of these lies beside it.
 fn stored(file: &Path) -> anyhow::Result<(Tool, Vec<Report>)> {
     let name = || file.display().to_string();
-    let text = read(file, BYTES).with_context(|| format!("cannot read {}", name()))?;
+    let text = read(file, MAX_BYTES).with_context(|| format!("cannot read {}", name()))?;
     let (tool, reports) = json::read(&text).with_context(name)?;
     drop(text);
     let beside = file.with_extension(series::EXTENSION);
-    let reports = match read(&beside, BYTES) {
+    let reports = match read(&beside, MAX_BYTES) {
         Ok(bytes) => series::unpack(reports, &bytes),
         Err(error) if error.kind() == ErrorKind::NotFound => reports,
         Err(error) => {
@@ -78,16 +78,16 @@ fn read(file: &Path, most: u64) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Where each report goes: by its scene, as the verb that made it had it; a comparison by its file's name.
+/// The folder of each report: that of its scene, as for the verb that made it; for a comparison, that of its file.
 fn places(args: &Args, reports: &[Report]) -> anyhow::Result<Vec<Option<Place>>> {
     let mut places: Vec<Option<Place>> = Vec::new();
     for report in reports {
-        let about = match &report.body {
+        let named = match &report.body {
             Body::Compare { outcomes, .. } => outcomes.first().map(|o| &o.engine),
             _ => None,
         };
-        let about = about.unwrap_or(&report.header.scene.file);
-        let place = args.output.asked_place(about.as_ref());
+        let named = named.unwrap_or(&report.header.scene.file);
+        let place = args.output.stated_place(named.as_ref());
         if let Some(place) = &place {
             let file = place.report(report);
             let mut others = reports.iter().zip(places.iter().flatten());

@@ -8,7 +8,7 @@ use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::solvers::{Custom, chosen, without_timestep};
 use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::run::{Choice, Plan};
-use crate::verbs::session::Estimate;
+use crate::verbs::session::TimeEstimate;
 use crate::verbs::stability::{MapPlan, Range, StabilityPlan, StabilityRow, Vary};
 use anyhow::{Context, bail};
 use std::path::PathBuf;
@@ -155,7 +155,7 @@ fn count(text: &str) -> Result<u64, String> {
 }
 
 /// How long each engine will take, from its first few steps of the scene.
-fn estimates(plan: &StabilityPlan) -> anyhow::Result<Vec<Estimate>> {
+fn estimates(plan: &StabilityPlan) -> anyhow::Result<Vec<TimeEstimate>> {
     let by_row = plan.steps_by_row();
     let rows = by_row.len().max(1) as u64;
     let of_map = plan.steps()?.saturating_sub(by_row.iter().sum()) / rows;

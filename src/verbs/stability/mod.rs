@@ -27,7 +27,7 @@ use crate::scene::Scene;
 use crate::solvers::{Solver, Tally};
 use crate::truth::Truth;
 use crate::verbs::session::Session;
-use crate::verbs::{Beside, Body, Report, facts};
+use crate::verbs::{Body, Report, SeriesState, facts};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -115,7 +115,7 @@ impl StabilityPlan<'_> {
                 outcomes: [],
                 stability,
             },
-            beside: Beside::Nothing,
+            series: SeriesState::Nothing,
         })
     }
 

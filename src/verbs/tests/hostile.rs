@@ -25,7 +25,7 @@ pub fn hostile() -> Report {
     report.header.truth.error_bound_m = Some(1e-15);
     report.outcomes_mut()[1].remarks = (0..40).map(|i| format!("{i} {long}")).collect();
     report.outcomes_mut()[2].deviation_m.clear();
-    report.outcomes_mut()[3].work = Work {
+    report.outcomes_mut()[3].work = WorkSummary {
         steps: u64::MAX,
         force_evaluations: Some(u64::MAX),
         linear_solves: None,
@@ -48,7 +48,7 @@ pub fn hostile() -> Report {
             .outcomes_mut()
             .push(outcome(&format!("odd{i}"), SolverKind::External, 0.01));
         let outcome = report.outcomes().len() - 1;
-        report.figures_mut().curves.push(Curves {
+        report.series_mut().curves.push(Curves {
             outcome,
             t: vec![0.0, f64::MAX],
             energy: values.into(),
@@ -56,15 +56,15 @@ pub fn hostile() -> Report {
             paths: vec![vec![values, values], vec![values], vec![]],
         });
     }
-    report.figures_mut().curves.push(Curves {
+    report.series_mut().curves.push(Curves {
         outcome: 9_999,
         t: vec![],
         energy: vec![],
         plot: vec![],
         paths: vec![],
     });
-    report.figures_mut().plane = [7, 2];
-    report.figures_mut().plot = Some(PlotAxis {
+    report.series_mut().plane = [7, 2];
+    report.series_mut().plot = Some(PlotAxis {
         label: long.clone(),
         y_range: Some([1.0, 1.0]),
     });

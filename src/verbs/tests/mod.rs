@@ -110,7 +110,7 @@ fn figures_are_well_formed_and_small() {
 #[test]
 fn long_series_stay_small_and_keep_their_peak() {
     let mut report = oscillator(&[0.01], 5.0, 8);
-    for curves in &mut report.figures_mut().curves {
+    for curves in &mut report.series_mut().curves {
         curves.t = (0..2_000).map(|i| f64::from(i) / 400.0).collect();
         curves.energy = curves.t.iter().map(|t| (9_973.0 * t).sin()).collect();
         curves.plot = curves.energy.clone();
@@ -122,7 +122,7 @@ fn long_series_stay_small_and_keep_their_peak() {
             .collect();
         curves.paths = vec![path; 12];
     }
-    report.figures_mut().plot.as_mut().unwrap().y_range = Some([-7.0, 7.0]);
+    report.series_mut().plot.as_mut().unwrap().y_range = Some([-7.0, 7.0]);
     for (file, svg) in report.svg() {
         assert!(svg.len() < 300_000, "{file}: {} bytes", svg.len());
         // The panel's upper edge, y = 40, is where 7 lies: the one sample there was not thinned out.
@@ -229,9 +229,9 @@ mod data {
         Cost, CostCurve, CostLine, CostPanel, CostPanels, CostPoint, CostRank, CostReached,
         CostTarget,
     };
-    pub use crate::verbs::run::{Curves, Figures, Outcome, PlotAxis, Work};
+    pub use crate::verbs::run::{Curves, Outcome, PlotAxis, RunSeries, WorkSummary};
     pub use crate::verbs::stability::{
         Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow,
     };
-    pub use crate::verbs::{Beside, Body, Report, Series};
+    pub use crate::verbs::{Body, Report, Series, SeriesState};
 }

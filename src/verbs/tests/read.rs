@@ -5,7 +5,7 @@ use crate::report::json::{self, ReadError, Tool};
 use crate::report::{terminal, verdict::verdict};
 use crate::verbs::formats::FORMATS;
 use crate::verbs::series;
-use crate::verbs::{Beside, Report};
+use crate::verbs::{Report, SeriesState};
 use serde_json::{Value, json};
 
 fn written(reports: &[Report]) -> String {
@@ -43,8 +43,8 @@ fn without_its_series_a_report_says_the_same() {
         let text = written(std::slice::from_ref(&report));
         let (_, read) = json::read::<Report>(text.as_bytes()).unwrap();
         assert_eq!(written(&read), text);
-        let had = matches!(report.beside, Beside::Here(_));
-        assert_eq!(matches!(read[0].beside, Beside::Missing), had);
+        let had = matches!(report.series, SeriesState::Loaded(_));
+        assert_eq!(matches!(read[0].series, SeriesState::Missing), had);
         let [one, other] = [&read[0], &report].map(|report| terminal::render(report.view()));
         assert_eq!(one, other);
         let drawn = read[0].svg().len();
@@ -59,7 +59,7 @@ fn series_of_other_reports_are_not_taken() {
     let (_, read) = json::read::<Report>(written(std::slice::from_ref(&one)).as_bytes()).unwrap();
     let missing = |file: &[u8]| {
         let whole = series::unpack(read.clone(), file);
-        matches!(whole[0].beside, Beside::Missing)
+        matches!(whole[0].series, SeriesState::Missing)
     };
     let own = series::pack(std::slice::from_ref(&one)).unwrap();
     assert!(!missing(&own));
@@ -194,7 +194,7 @@ fn no_report_is_too_odd() {
                 continue;
             };
             if let Ok(Some(series)) = serde_json::from_value(drawn) {
-                read.beside = Beside::Here(series);
+                read.series = SeriesState::Loaded(series);
             }
             terminal::render(read.view());
             read.markdown();

@@ -9,7 +9,7 @@ pub fn oscillator(timesteps: &[f64], duration: f64, engines: usize) -> Report {
     let mut report = empty("circle");
     report.header.scene.timestep = timesteps[0];
     report.header.scene.duration = duration;
-    report.figures_mut().plot = Some(PlotAxis {
+    report.series_mut().plot = Some(PlotAxis {
         label: "particle 1, x (m)".into(),
         y_range: None,
     });
@@ -35,7 +35,7 @@ pub fn oscillator(timesteps: &[f64], duration: f64, engines: usize) -> Report {
                     Some("kinetic and elastic energy passed 1e12 times the scale".into());
             }
             let at = report.outcomes().len();
-            report.figures_mut().curves.push(Curves {
+            report.series_mut().curves.push(Curves {
                 outcome: at,
                 plot: run.path.iter().map(|p| p[0]).collect(),
                 t: run.t,
@@ -100,12 +100,12 @@ fn deviation(a: &Run, b: &Run) -> Deviation {
 /// Motion along a vertical line, a range for the plot, and no particle that never moves.
 pub fn upright() -> Report {
     let mut report = oscillator(&[0.02], 5.0, 8);
-    for curves in &mut report.figures_mut().curves {
+    for curves in &mut report.series_mut().curves {
         let path = curves.plot.iter().map(|x| [0.0, 2.0 + x]).collect();
         curves.paths = vec![path];
     }
-    report.figures_mut().fixed.clear();
-    report.figures_mut().plot.as_mut().unwrap().y_range = Some([-0.3, 0.6]);
+    report.series_mut().fixed.clear();
+    report.series_mut().plot.as_mut().unwrap().y_range = Some([-0.3, 0.6]);
     report
 }
 
@@ -116,7 +116,7 @@ pub fn crowd() -> Report {
         for i in 0..8 {
             let mut outcome = report.outcomes()[i].clone();
             outcome.engine += &format!("_{round}");
-            let mut curves = report.figures().curves[i].clone();
+            let mut curves = report.run_series().curves[i].clone();
             curves.outcome = report.outcomes().len();
             let shift = 1.2 * f64::from(round);
             let moved = |[x, z]: &[f64; 2]| [x + shift, *z];
@@ -124,7 +124,7 @@ pub fn crowd() -> Report {
                 .paths
                 .push(curves.paths[0].iter().map(moved).collect());
             report.outcomes_mut().push(outcome);
-            report.figures_mut().curves.push(curves);
+            report.series_mut().curves.push(curves);
         }
     }
     report
@@ -145,7 +145,7 @@ pub fn outcome(engine: &str, kind: SolverKind, timestep: f64) -> Outcome {
         deviation_m: BTreeMap::new(),
         energy: None,
         momentum: None,
-        work: Work {
+        work: WorkSummary {
             steps: 100,
             force_evaluations: Some(100),
             linear_solves: Some(0),
@@ -198,10 +198,10 @@ pub fn empty(name: &str) -> Report {
         body: Body::Run {
             outcomes: Vec::new(),
         },
-        beside: Beside::Here(Series::Curves(Figures {
+        series: SeriesState::Loaded(Series::Curves(RunSeries {
             plane: [0, 2],
             fixed: vec![[0.0, 0.0]],
-            ..Figures::default()
+            ..RunSeries::default()
         })),
     }
 }
@@ -211,7 +211,7 @@ pub trait Reach {
     fn outcomes_mut(&mut self) -> &mut Vec<Outcome>;
     fn stability_mut(&mut self) -> &mut Stability;
     fn cost_mut(&mut self) -> &mut Cost;
-    fn figures_mut(&mut self) -> &mut Figures;
+    fn series_mut(&mut self) -> &mut RunSeries;
     fn panels_mut(&mut self) -> &mut CostPanels;
 }
 
@@ -237,16 +237,16 @@ impl Reach for Report {
         }
     }
 
-    fn figures_mut(&mut self) -> &mut Figures {
-        match &mut self.beside {
-            Beside::Here(Series::Curves(figures)) => figures,
+    fn series_mut(&mut self) -> &mut RunSeries {
+        match &mut self.series {
+            SeriesState::Loaded(Series::Curves(figures)) => figures,
             _ => panic!("no figures"),
         }
     }
 
     fn panels_mut(&mut self) -> &mut CostPanels {
-        match &mut self.beside {
-            Beside::Here(Series::Panels(panels)) => panels,
+        match &mut self.series {
+            SeriesState::Loaded(Series::Panels(panels)) => panels,
             _ => panic!("no panels"),
         }
     }

@@ -58,7 +58,7 @@ pub fn limits() -> Report {
         outcomes: [],
         stability,
     };
-    report.beside = Beside::Nothing;
+    report.series = SeriesState::Nothing;
     report
 }
 

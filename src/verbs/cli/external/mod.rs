@@ -1,4 +1,4 @@
-//! `--external NAME='COMMAND ...'`: one more row, computed by another program.
+//! `--external NAME='COMMAND ...'` adds a row that another program computes.
 
 mod process;
 
@@ -18,15 +18,15 @@ use std::str::FromStr;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The flag's value: what reports call the program, and how it is started.
+/// The flag's value: the program's name in reports, and its command.
 #[derive(Debug, Clone)]
 pub struct External {
     name: String,
     command: Command,
 }
 
-/// Longer names would push numbers out of the table.
-const NAME: usize = 32;
+/// The longest name, in characters; longer ones would push numbers out of the table.
+const MAX_NAME: usize = 32;
 
 impl FromStr for External {
     type Err = String;
@@ -35,12 +35,12 @@ impl FromStr for External {
         let (name, command) = text
             .split_once('=')
             .ok_or_else(|| format!("expected NAME=COMMAND, found `{text}`"))?;
-        // It is a part of tables, figures and of the report's keys.
+        // The name appears in tables, figures and the report's keys.
         let plain = |c: char| c.is_alphanumeric() || "_.+-".contains(c);
         let starts = name.starts_with(char::is_alphanumeric);
-        if !starts || !name.chars().all(plain) || name.chars().count() > NAME {
+        if !starts || !name.chars().all(plain) || name.chars().count() > MAX_NAME {
             return Err(format!(
-                "expected a name of 1 to {NAME} letters, digits, `_`, `.`, `+` and `-`, beginning \
+                "expected a name of 1 to {MAX_NAME} letters, digits, `_`, `.`, `+` and `-`, beginning \
                  with a letter or digit, found `{name}`"
             ));
         }
@@ -51,11 +51,11 @@ impl FromStr for External {
     }
 }
 
-/// Refuses names that mean something else already. Before any work.
+/// Refuses names that are taken or repeated, before any work is done.
 pub fn distinct(externals: &[External]) -> anyhow::Result<()> {
     let taken = [&integrators::ids(integrators::fixed())[..], &rapier::IDS].concat();
     for (at, External { name, .. }) in externals.iter().enumerate() {
-        // As file systems do that ignore case.
+        // Some file systems ignore case, and names are part of file names.
         let same = |other: &str| other.eq_ignore_ascii_case(name);
         if taken.iter().any(|id| same(id)) {
             bail!("--external {name}: an integrator or engine has this name, choose another");
@@ -70,7 +70,7 @@ pub fn distinct(externals: &[External]) -> anyhow::Result<()> {
 /// The programs, ready to run on this scene.
 pub fn chosen(externals: &[External], scene: &Path, timeout: Time) -> Vec<Solver> {
     let ready = |external: &External| {
-        let program = Started {
+        let program = CommandProgram {
             command: external.command.clone(),
             scene: std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned()),
             timeout: timeout.0,
@@ -80,20 +80,20 @@ pub fn chosen(externals: &[External], scene: &Path, timeout: Time) -> Vec<Solver
     externals.iter().map(ready).collect()
 }
 
-/// More than this is not taken from a program, bytes.
-const LIMIT: usize = 1 << 30;
+/// The largest output taken from a program, bytes.
+const MAX_BYTES: usize = 1 << 30;
 
-/// A command that is started anew for each task.
-struct Started {
+/// A program that is a command, started anew for each task.
+struct CommandProgram {
     command: Command,
     /// The scene file, absolute.
     scene: PathBuf,
     timeout: Duration,
 }
 
-impl Program for Started {
+impl Program for CommandProgram {
     fn record(&self, task: &Task) -> Result<Recording, Failure> {
-        // Removed with everything in it when it goes out of scope.
+        // The folder is removed with its contents when it goes out of scope.
         let folder = tempfile::Builder::new()
             .prefix("springcheck-")
             .tempdir()
@@ -111,7 +111,7 @@ impl Program for Started {
             Placeholder::Duration => OsString::from(format!("{:?}", task.scene.duration)),
             Placeholder::Output => output.clone().into_os_string(),
         });
-        let ended = process::run(&words, self.timeout, LIMIT)?;
+        let ended = process::run(&words, self.timeout, MAX_BYTES)?;
         let expected = Expected::new(task.scene, task.timestep);
         let rows = if self.command.uses(Placeholder::Output) {
             let bytes = read(&output)?;
@@ -142,9 +142,9 @@ fn read(path: &Path) -> Result<Vec<u8>, Failure> {
         Err(error) => return Err(doing(error)),
     };
     let mut bytes = Vec::new();
-    let wanted = file.take(LIMIT as u64 + 1).read_to_end(&mut bytes);
-    if wanted.map_err(doing)? > LIMIT {
-        return Err(Failure::TooMuch { limit: LIMIT });
+    let wanted = file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes);
+    if wanted.map_err(doing)? > MAX_BYTES {
+        return Err(Failure::TooMuch { limit: MAX_BYTES });
     }
     Ok(bytes)
 }

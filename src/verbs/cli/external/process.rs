@@ -1,4 +1,4 @@
-//! Starts a program, takes what it prints, and stops it when it takes too long.
+//! Starts a program, reads its output, and stops it when it takes too long.
 
 use crate::solvers::external::Failure;
 use std::ffi::OsString;
@@ -7,30 +7,29 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// A program that ended well.
+/// The output of a program that ended with exit code 0.
 #[derive(Debug)]
-pub struct Ended {
+pub struct Finished {
     pub stdout: Vec<u8>,
-    /// From its start to its end, s.
+    /// The wall time from its start to its end, s.
     pub seconds: f64,
 }
 
-/// What the two readers report.
+/// An event that one of the two reader threads reports.
 enum Event {
-    /// All of stdout, or one byte more than is taken.
+    /// The whole of stdout, or one byte more than the limit.
     Stdout(std::io::Result<Vec<u8>>),
     /// stderr is closed.
     Stderr,
 }
 
 /// Runs the words as program and arguments, in the working directory, without a shell and without
-/// input. What it writes to stderr goes to stderr as it comes; of stdout up to `limit` bytes are
-/// taken.
+/// input. Its stderr is passed on as it comes; its stdout is read up to `limit` bytes.
 ///
 /// # Errors
-/// [`Failure`] unless it ends with exit code 0 in time. Then nothing it started is left running,
-/// as far as can be found out.
-pub fn run(words: &[OsString], timeout: Duration, limit: usize) -> Result<Ended, Failure> {
+/// Fails unless the program ends with exit code 0 in time. After a failure none of its descendants is left running,
+/// as far as they can be found.
+pub fn run(words: &[OsString], timeout: Duration, limit: usize) -> Result<Finished, Failure> {
     let (program, arguments) = words.split_first().ok_or(Failure::Silent)?;
     let start = Instant::now();
     let mut child = Command::new(program)
@@ -45,7 +44,7 @@ pub fn run(words: &[OsString], timeout: Duration, limit: usize) -> Result<Ended,
     let seconds = start.elapsed().as_secs_f64();
     let (stdout, status) = watched.inspect_err(|_| kill(&mut child))?;
     judged(status)?;
-    Ok(Ended { stdout, seconds })
+    Ok(Finished { stdout, seconds })
 }
 
 fn not_started(program: &OsString, cause: std::io::Error) -> Failure {
@@ -76,12 +75,12 @@ fn watch(
                 stdout = Some(bytes);
             }
             Ok(Event::Stderr) => errors_open = false,
-            // Too late: asking for what is left says so.
+            // The time is up; `left` returns the error.
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break,
         }
     }
-    // Closed streams mostly mean that it ends about now.
+    // A program that has closed its streams usually ends at once.
     let mut pause = Duration::from_micros(50);
     loop {
         let status = child.try_wait();
@@ -93,7 +92,7 @@ fn watch(
     }
 }
 
-/// A thread for each stream. They are not waited for: something the program left behind may keep
+/// Starts a reader thread for each stream. The threads are not joined: a descendant of the program may keep
 /// a stream open.
 fn listen(child: &mut Child, limit: usize) -> Receiver<Event> {
     let (sender, events) = channel();
@@ -102,7 +101,7 @@ fn listen(child: &mut Child, limit: usize) -> Receiver<Event> {
         std::thread::spawn(move || {
             let mut bytes = Vec::new();
             let read = stdout.take(limit as u64 + 1).read_to_end(&mut bytes);
-            // Nobody listens any more: it was too late.
+            // Sending fails where the time was up and the receiver is gone.
             let _ = sender.send(Event::Stdout(read.map(|_| bytes)));
         });
     }
@@ -112,7 +111,8 @@ fn listen(child: &mut Child, limit: usize) -> Receiver<Event> {
     events
 }
 
-/// To our stderr, and to nowhere once that is closed, so that the program is never held up.
+/// Passes the stream on to this program's stderr. It is still read after that is closed, so that the program is
+/// never blocked.
 fn pass_on(mut stderr: impl Read, sender: &Sender<Event>) {
     let mut buffer = [0; 4096];
     loop {
@@ -134,11 +134,11 @@ struct Deadline {
 }
 
 impl Deadline {
-    /// Time left, more than 0.
+    /// The time left, more than 0.
     ///
     /// # Errors
-    /// When there is none. If the program itself has ended badly and only a stream was kept open,
-    /// that is the error.
+    /// Fails when no time is left. If the program itself has failed and only a stream was kept open, its failure is the
+    /// error.
     fn left(&self, child: &mut Child) -> Result<Duration, Failure> {
         match self.timeout.checked_sub(self.start.elapsed()) {
             Some(left) if !left.is_zero() => Ok(left),
@@ -169,12 +169,12 @@ fn judged(status: ExitStatus) -> Result<(), Failure> {
 
 /// Kills the child and its descendants, and waits for the child.
 ///
-/// Not a process group of its own: Ctrl-C on the terminal would then pass the program by. So the
-/// descendants are looked up, by `ps`, and killed by `kill`, both of which POSIX has. Without them,
+/// The child has no process group of its own, since Ctrl-C on the terminal would then not reach it. So the
+/// descendants are looked up by `ps` and killed by `kill`, which POSIX both has. Without them,
 /// or on other systems, only the child is killed.
 fn kill(child: &mut Child) {
     let found = descendants(child.id());
-    // An error means that it has ended already.
+    // An error means that the child has ended already.
     let _ = child.kill();
     let _ = child.wait();
     if !found.is_empty() {
@@ -191,7 +191,7 @@ fn quiet(program: &str) -> Command {
     command
 }
 
-/// Children, their children, and so on, as far as their parents are alive.
+/// The children of a process, their children, and so on, as far as their parents are alive.
 fn descendants(root: u32) -> Vec<u32> {
     if !cfg!(unix) {
         return Vec::new();
@@ -217,7 +217,7 @@ fn descendants(root: u32) -> Vec<u32> {
     found
 }
 
-/// A line of `ps`: process and parent.
+/// Parses a line of `ps`: process and parent.
 fn pair(line: &str) -> Option<(u32, u32)> {
     let (pid, parent) = line.trim().split_once(char::is_whitespace)?;
     Some((pid.parse().ok()?, parent.trim().parse().ok()?))

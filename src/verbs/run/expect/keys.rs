@@ -1,4 +1,4 @@
-//! What a scene may expect something of: the keys of an outcome, a table.
+//! The table of outcome keys that a scene's `expect` may name.
 
 use crate::integrators;
 use crate::measure::identify::{MISTAKES, Wrong};
@@ -6,7 +6,7 @@ use crate::scene::{KeyKind, Names, OutcomeKey};
 use crate::solvers::rapier;
 use std::sync::LazyLock;
 
-/// Every word a scene file may use that is not its own: for [`scene::parse`](crate::scene::parse)
+/// All names that a scene file may refer to: methods, engines and keys. For [`scene::parse`](crate::scene::parse)
 /// and [`scene::read`](crate::scene::read).
 pub fn names() -> &'static Names {
     static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
@@ -19,8 +19,8 @@ pub fn names() -> &'static Names {
 
 /// Dotted paths into an outcome; `*` stands for each reference engine.
 ///
-/// Left out is what the expectation states itself (`engine`, `kind`, `timestep`, `substep`), what
-/// varies from run to run (`work.wall_s`), lists, and what the energy at the end is made of.
+/// The table leaves out keys that the expectation itself states (`engine`, `kind`, `timestep`, `substep`), keys that
+/// vary from run to run (`work.wall_s`), lists, and the parts of the final energy.
 fn keys() -> Vec<OutcomeKey> {
     let word = |words: &[&'static str]| KeyKind::Word(words.to_vec());
     let rows = [
@@ -66,7 +66,7 @@ fn keys() -> Vec<OutcomeKey> {
     ];
     let mut keys = Vec::new();
     for (path, kind) in rows {
-        // Without a `*` there is nothing to replace, and the key is there once.
+        // A path without `*` has nothing to replace and gives one key.
         let engines = if path.contains('*') {
             &rapier::IDS[..]
         } else {
@@ -80,7 +80,7 @@ fn keys() -> Vec<OutcomeKey> {
     keys
 }
 
-/// The ids of methods and of mistakes in one.
+/// The ids of methods and of wrong steps.
 fn schemes() -> Vec<&'static str> {
     let steps = MISTAKES
         .iter()

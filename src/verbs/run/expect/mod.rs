@@ -1,4 +1,4 @@
-//! Whether a scene's engines did what its `expect` says.
+//! Checks whether a scene's engines did what its `expect` says.
 
 mod keys;
 
@@ -13,11 +13,12 @@ use crate::verbs::Report;
 use crate::verbs::run::Outcome;
 use serde_json::Value;
 
-/// The id of these checks.
+/// The id of the checks of expectations.
 pub const ID: &str = "expect";
 
-/// What the truth moves: errors, and what is in units of the energy scale, which takes its peak in.
-const OF_THE_TRUTH: &[&str] = &[
+/// The keys that depend on the truth: errors, and values in units of the energy scale, which takes in the truth's peak
+/// kinetic energy.
+const TRUTH_KEYS: &[&str] = &[
     "position_error_m.",
     "velocity_error_m_s.",
     "energy.relative_error_max",
@@ -25,11 +26,11 @@ const OF_THE_TRUTH: &[&str] = &[
     "energy.fluctuation",
 ];
 
-/// One check for each key expected of an engine, on its outcome at the scene's own timestep; one
-/// that is skipped for each engine that did not run there, or one in all where none did.
+/// One check for each expected key of an engine, on its outcome at the scene's own timestep. An engine that did not run
+/// there gives one skipped check; where none ran, there is one skipped check in all.
 ///
-/// `scene` is the scene as its file states it: runs of another duration are not judged. Where a key has
-/// no value, the expectation fails.
+/// `scene` is the scene as its file states it; runs of another duration are not judged. An expectation of a key
+/// without a value fails.
 pub fn check(scene: &Scene, report: &Report) -> Vec<Check> {
     if scene.expect.is_empty() {
         return Vec::new();
@@ -64,7 +65,7 @@ pub fn check(scene: &Scene, report: &Report) -> Vec<Check> {
             checks.push(skipped(&subject.id, why.to_owned()));
             continue;
         };
-        // Whatever an outcome holds has a JSON form.
+        // Every outcome has a JSON form.
         let value = serde_json::to_value(outcome).unwrap_or_default();
         let expected = expected_of(scene, &subject).into_iter();
         checks.extend(expected.map(|e| judge(e, outcome, &value, report)));
@@ -73,7 +74,7 @@ pub fn check(scene: &Scene, report: &Report) -> Vec<Check> {
 }
 
 impl Expectations {
-    /// The checks that say what came of them.
+    /// The checks for the report, or the one that says why none was judged.
     pub fn checks(&self, scene: &Scene, report: &Report) -> Vec<Check> {
         match self {
             Self::Judged => check(scene, report),
@@ -83,7 +84,7 @@ impl Expectations {
     }
 }
 
-/// The one check that says why nothing was judged.
+/// The one check that says why no expectation was judged.
 fn not_judged(why: &str) -> Check {
     skipped("scene", format!("expectations are not judged: {why}"))
 }
@@ -100,20 +101,20 @@ fn skipped(subject: &str, message: String) -> Check {
     }
 }
 
-/// The solvers of fixed steps, in the catalogue's order.
+/// The solvers with fixed steps, in the catalogue's order.
 fn fixed() -> impl Iterator<Item = Solver> {
     catalogue().filter(|solver| solver.as_pair().is_none())
 }
 
-/// What is expected of a solver.
+/// The expectations of a solver.
 fn expected_of<'a>(scene: &'a Scene, solver: &Solver) -> Vec<&'a Expectation> {
     scene.expected_of(&solver.id, solver.kind == SolverKind::Integrator)
 }
 
 impl Choice {
-    /// Exactly what the scene expects something of, at its own timestep, and the engines those
-    /// expectations name as references. What no expectation can depend on is not computed: orders, the
-    /// twin proof, and, unless a key needs them, the truth and the identities.
+    /// The choice that judges a scene's expectations: exactly the solvers they are about, at the scene's timestep, and
+    /// the engines they name as references. Nothing else is computed: no orders, no twin proof, and no truth or identities
+    /// unless a key needs them.
     pub fn expected(scene: &Scene) -> Self {
         let mentions = |prefixes: &[&str]| {
             let about = |key: &str| prefixes.iter().any(|prefix| key.starts_with(prefix));
@@ -128,7 +129,7 @@ impl Choice {
                 .filter(|solver| !expected_of(scene, solver).is_empty() || referred(solver))
                 .collect(),
             timesteps: vec![scene.solver.timestep],
-            truth: if mentions(OF_THE_TRUTH) {
+            truth: if mentions(TRUTH_KEYS) {
                 Demand::Auto
             } else {
                 Demand::None
@@ -141,7 +142,7 @@ impl Choice {
     }
 }
 
-/// One expectation held against one outcome; `value` is the outcome as JSON.
+/// Judges one expectation on one outcome; `value` is the outcome as JSON.
 fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, report: &Report) -> Check {
     let Expectation { scope, key, wanted } = expectation;
     let engine = &outcome.engine;
@@ -173,7 +174,7 @@ fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, report: &R
         CheckStatus::Fail
     };
     let said = match found {
-        Some(found) => said(key, found, outcome),
+        Some(found) => found_text(key, found, outcome),
         None => format!("no value ({})", missing(key, outcome, report)),
     };
     let verb = if met { "is to be" } else { "should be" };
@@ -182,14 +183,14 @@ fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, report: &R
     check(status, measured, bound, message)
 }
 
-/// The engine a deviation is from, if it did not run: nobody's fault.
+/// The engine a deviation is measured from, if it did not run; the expectation is then skipped.
 fn absent_reference<'a>(key: &'a str, outcome: &Outcome, outcomes: &[Outcome]) -> Option<&'a str> {
     let reference = key.strip_prefix("deviation_m.")?.split('.').next()?;
     let ran = |o: &Outcome| o.engine == reference && o.timestep == outcome.timestep;
     (!outcomes.iter().any(ran)).then_some(reference)
 }
 
-/// A word or a truth value as the file writes it.
+/// A word or a boolean as the file writes it.
 fn word(value: &Value) -> String {
     match value {
         Value::String(word) => word.clone(),
@@ -197,8 +198,8 @@ fn word(value: &Value) -> String {
     }
 }
 
-/// Whether the number lies strictly within its bounds, and the bound that decides: the one it
-/// breaks, else the upper one.
+/// Whether the number lies strictly within its bounds, and the bound that decides: the one it violates, else the
+/// upper one.
 fn within(measured: Option<f64>, above: Option<f64>, below: Option<f64>) -> (bool, Option<f64>) {
     let Some(x) = measured else {
         return (false, below.or(above));
@@ -209,10 +210,10 @@ fn within(measured: Option<f64>, above: Option<f64>, below: Option<f64>) -> (boo
     (low && high, bound)
 }
 
-/// What was found; a status with what led to it.
-fn said(key: &str, found: &Value, outcome: &Outcome) -> String {
+/// The value found, as text; a status has its reason.
+fn found_text(key: &str, found: &Value, outcome: &Outcome) -> String {
     let text = match found.as_f64() {
-        // Counts as they are, anything else to four digits.
+        // Counts are exact; other numbers have four digits.
         Some(_) if found.is_u64() => found.to_string(),
         Some(x) => format!("{x:.3e}"),
         None => word(found),
@@ -223,7 +224,7 @@ fn said(key: &str, found: &Value, outcome: &Outcome) -> String {
     }
 }
 
-/// Why a key has no value.
+/// The reason why a key has no value.
 fn missing(key: &str, outcome: &Outcome, report: &Report) -> String {
     let error = key.starts_with("position_error_m") || key.starts_with("velocity_error_m_s");
     match (&outcome.reason, &report.header.truth.reason) {

@@ -1,4 +1,4 @@
-//! Which scheme a trajectory follows, and where it stops following it, in words.
+//! Words for a trajectory's identity and its first deviating step.
 
 use crate::integrators;
 use crate::measure::identify::{Fault, Identified, Quantity, Undecided};
@@ -7,10 +7,10 @@ use crate::solvers::SolverKind;
 use crate::verbs::run::Outcome;
 use crate::verbs::{Body, Report};
 
-/// At most so many equivalent schemes are named.
-const NAMED: usize = 6;
+/// The number of equivalent schemes named, at most.
+const MAX_NAMED: usize = 6;
 
-/// What replay found of an outcome; None where it found nothing, or only what the row says anyway.
+/// The identity that replay found for an outcome; None where it found none, or the one that the row states anyway.
 pub fn sentence(outcome: &Outcome) -> Option<String> {
     let found = outcome.identified.as_ref()?;
     let itself = outcome.kind == SolverKind::Integrator
@@ -54,7 +54,7 @@ fn scheme(found: &Identified, timestep: f64) -> String {
 }
 
 fn equivalent(found: &Identified) -> String {
-    let names = found.equivalent.iter().take(NAMED);
+    let names = found.equivalent.iter().take(MAX_NAMED);
     let mut names: Vec<String> = names.map(|name| words::one_line(name)).collect();
     let more = found.equivalent.len() - names.len();
     if more > 0 {
@@ -63,7 +63,7 @@ fn equivalent(found: &Identified) -> String {
     listed(&names)
 }
 
-/// Where a trajectory leaves its scheme, a line each; empty where it does not.
+/// The first deviating step of a trajectory, in lines; empty where there is none.
 pub fn fault(report: &Report) -> Vec<String> {
     let Body::Compare {
         fault: Some(fault), ..
@@ -87,7 +87,7 @@ pub fn fault(report: &Report) -> Vec<String> {
     ]
 }
 
-/// Enough digits to see a difference of rounding.
+/// A vector with enough digits to show a difference of rounding.
 fn vector(value: [Option<f64>; 3]) -> String {
     let [x, y, z] = value.map(|c| c.map_or_else(|| "?".into(), |c| format!("{c:?}")));
     format!("({x}, {y}, {z})")
@@ -119,7 +119,7 @@ pub fn verdict(report: &Report) -> Option<String> {
     Some(match found.undecided {
         Some(Undecided::NothingFits) => format!("{name}, step {step}: {says}"),
         _ if known => format!("{name} is {scheme} but for step {step}: {says}"),
-        // What remembers a step shows in the second.
+        // A scheme that remembers the previous step deviates first in the second.
         _ if step < 2 => format!("{name} is {scheme}: {says}"),
         _ => format!("{name} is {scheme} from step {step} on: {says}"),
     })

@@ -1,4 +1,4 @@
-//! The two ledgers: where the energy ended up, and which effects ran.
+//! Two tables: the energy at the end, and the effects that ran.
 
 use crate::measure::Energy;
 use crate::report::EffectUse;
@@ -8,7 +8,7 @@ use crate::report::words::{self, escape};
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
 
-/// Where the energy is at the end, by effect, what left and entered, and the momenta.
+/// The table of the final energy by effect, the dissipated and injected energy, and the momentum errors.
 pub fn energies(report: &Report) -> String {
     let rows: Vec<(&Outcome, &Energy)> = report
         .outcomes()
@@ -22,7 +22,7 @@ pub fn energies(report: &Report) -> String {
     let mut table = Table::new(&rows);
     table.engines(|(o, _)| (super::engine(o), header.mark(&o.engine)));
     table.markdown("kinetic", |(_, energy)| number(energy.kinetic_final_j));
-    // Effects without potential energy would have columns of zeros.
+    // An effect without potential energy would only add a column of zeros.
     for (id, _) in first
         .potential_final_j
         .iter()
@@ -55,7 +55,7 @@ fn number(value: Option<f64>) -> Option<String> {
     value.map(words::short)
 }
 
-/// The effects that ran: how often, at what cost.
+/// The table of the effects that ran: evaluations and time.
 pub fn effects(effects: &[EffectUse]) -> String {
     if effects.is_empty() {
         return String::new();
@@ -64,11 +64,11 @@ pub fn effects(effects: &[EffectUse]) -> String {
     table.markdown("effect", |effect| escape(&effect.id));
     table.markdown("acts on", |effect| effect.members.to_string());
     table.markdown("evaluations", |effect| words::count(effect.evaluations));
-    table.markdown("time each", each);
+    table.markdown("time each", time_each);
     table.in_markdown()
 }
 
-/// The same for the terminal, one line an effect.
+/// The effects for the terminal, one line each.
 pub fn lines(effects: &[EffectUse]) -> Vec<String> {
     let ids = effects.iter().map(|effect| words::one_line(&effect.id));
     let ids: Vec<String> = ids.collect();
@@ -82,13 +82,13 @@ pub fn lines(effects: &[EffectUse]) -> Vec<String> {
             let id = pad(&clip(&id, longest), longest);
             let on = format!("on {}", words::count(effect.members as u64));
             let evaluations = words::count(effect.evaluations);
-            let cost = each(effect).map_or(String::new(), |time| format!(", {time} each"));
+            let cost = time_each(effect).map_or(String::new(), |time| format!(", {time} each"));
             format!("{label:<7}  {id}  {on:<8}  {evaluations} evaluations{cost}")
         });
     lines.collect()
 }
 
-/// The time of one evaluation.
-fn each(effect: &EffectUse) -> Option<String> {
+/// The wall time of one evaluation.
+fn time_each(effect: &EffectUse) -> Option<String> {
     effect.wall_ns.map(|ns| words::seconds(ns * 1e-9))
 }

@@ -1,5 +1,5 @@
-//! What `run` and `compare` found, for people: one row an engine and timestep, and, of a comparison, the
-//! first step that leaves its scheme.
+//! The text of `run` and `compare`: one row for each engine and timestep, and the first deviating step of a
+//! comparison.
 
 mod identity;
 mod ledger;
@@ -31,10 +31,10 @@ const LEGEND: &str = "\
 - Times vary from run to run; everything else is reproducible.
 ";
 
-/// What the terminal and the page say.
+/// The parts that the terminal and the page show.
 pub fn view<'a>(report: &'a Report, outcomes: &[Outcome]) -> View<'a> {
     let mut lines = Vec::new();
-    // Of a comparison only what judging it evaluated would be counted.
+    // A comparison would count only the evaluations made to judge it.
     if let Body::Run { .. } = report.body {
         lines.extend(ledger::lines(&report.header.scene.effects));
     }
@@ -56,7 +56,7 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome]) -> View<'a> {
     }
 }
 
-/// The page.
+/// The Markdown page.
 pub fn page(report: &Report, view: &View) -> String {
     let scene = &report.header.scene;
     let scale = scene.energy_scale_j;
@@ -82,7 +82,7 @@ pub fn page(report: &Report, view: &View) -> String {
     .concat()
 }
 
-/// The outcome's remarks, led by its reason for ending early where no remark repeats it.
+/// The outcome's remarks. The reason for ending early comes first where no remark repeats it.
 pub fn sentences(outcome: &Outcome) -> Vec<String> {
     let remarks: Vec<String> = outcome.remarks.iter().map(|r| words::one_line(r)).collect();
     let reason = outcome.reason.as_deref().map(words::one_line);
@@ -109,12 +109,12 @@ fn ending(outcome: &Outcome, reason: Option<String>) -> String {
     text
 }
 
-/// The engines of `chosen`, at most `limit` by name, each with its timesteps unless they are all
-/// this report has of it: `midpoint, rk4 at h = 0.05 and 2 more`.
+/// Names the engines of `chosen`, at most `limit` of them. Each has its timesteps, unless these are all that the
+/// report has of the engine: `midpoint, rk4 at h = 0.05 and 2 more`.
 pub fn subjects(report: &Report, chosen: &[&Outcome], limit: usize) -> String {
     let engines = grouped(chosen.iter().map(|o| (words::short(o.timestep), &o.engine)));
     let hidden = engines.len().saturating_sub(limit);
-    // "and 1 more" is no shorter than the name.
+    // "and 1 more" would be no shorter than the name.
     let hidden = if hidden == 1 { 0 } else { hidden };
     let named = engines.iter().take(engines.len() - hidden);
     let named = named.map(|(engine, timesteps)| {

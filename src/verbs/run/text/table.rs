@@ -23,7 +23,7 @@ pub fn markdown(report: &Report) -> String {
     table(report, ' ').in_markdown()
 }
 
-/// `fold` stands between the parts of a header that may go on two lines.
+/// The table of outcomes. `fold` separates the parts of a header that may take two lines.
 fn table(report: &Report, fold: char) -> Table<'_, Outcome> {
     let outcomes = report.outcomes();
     let mut table = Table::new(outcomes);
@@ -53,7 +53,7 @@ fn table(report: &Report, fold: char) -> Table<'_, Outcome> {
     table.right("force\nevals", "force evaluations", 2, |o| {
         o.work.force_evaluations.map(words::count)
     });
-    // A trajectory from a file has neither.
+    // A trajectory from a file has neither evaluations nor a time.
     table.right("time", "time", 0, wall_time);
     table
 }
@@ -67,7 +67,7 @@ fn status(outcome: &Outcome) -> (String, Option<Tone>) {
     (words::id(outcome.status), tone)
 }
 
-/// Columns of the longest class word, so that the numbers line up.
+/// The width of the longest class word, so that the numbers line up.
 fn class_width(outcomes: &[Outcome]) -> usize {
     let classes = outcomes.iter().filter_map(|o| o.energy.as_ref()?.class);
     classes.map(|c| words::id(c).len()).max().unwrap_or(0)
@@ -115,7 +115,7 @@ fn legend(report: &Report) -> String {
     text
 }
 
-/// Whether outcomes differ in their timestep, so that a table has to say it.
+/// Whether the outcomes have different timesteps, so that the table states them.
 pub fn several_timesteps(report: &Report) -> bool {
     let mut timesteps = report.outcomes().iter().map(|o| o.timestep);
     let first = timesteps.next();
@@ -136,8 +136,8 @@ fn references(report: &Report) -> Vec<&str> {
     found
 }
 
-/// Median time, with its spread where that exceeds a tenth: `12.3 ms ±14%`. A run that did not
-/// finish has no speed.
+/// The median time, with its spread where that exceeds a tenth: `12.3 ms ±14%`. A run that did not
+/// finish has no time to compare.
 fn wall_time(outcome: &Outcome) -> Option<String> {
     let wall = outcome.work.wall_s.as_ref();
     let wall = wall.filter(|_| outcome.status == Status::Completed)?;
@@ -150,7 +150,7 @@ fn wall_time(outcome: &Outcome) -> Option<String> {
     Some(text)
 }
 
-/// The engine, with rapier's substeps where it takes any: `rapier, dt/4`.
+/// The engine's name, with rapier's substeps where it takes any: `rapier, dt/4`.
 pub fn engine(outcome: &Outcome) -> String {
     let ratio = outcome.timestep / outcome.substep;
     if ratio.is_finite() && ratio > 1.5 && ratio < 1e6 {

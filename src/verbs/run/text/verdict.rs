@@ -1,4 +1,4 @@
-//! The verdict of `run` and `compare`: who does what.
+//! The verdict of `run` and `compare`: how each engine behaved.
 
 use super::{identity, subjects};
 use crate::measure::{Check, CheckStatus, EnergyClass};
@@ -8,11 +8,11 @@ use crate::solvers::Status;
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
 
-/// Engines named in one group before "and n more".
-const NAMED: usize = 4;
+/// The number of engines named in one group before "and n more".
+const MAX_NAMED: usize = 4;
 
-/// The comparison, then the scene's own integrator, then who diverged, grew, dissipated, then the proof
-/// that the harness is unbiased.
+/// The clauses in order: the comparison, the scene's own integrator, the engines that diverged, grew or dissipated, and
+/// the proof that the harness is unbiased.
 pub fn clauses(report: &Report) -> Vec<Clause> {
     let whole = [identity::verdict(report), own(report)];
     let mut clauses: Vec<Clause> = whole.into_iter().flatten().map(|text| vec![text]).collect();
@@ -21,7 +21,7 @@ pub fn clauses(report: &Report) -> Vec<Clause> {
     clauses
 }
 
-/// What the scene's own integrator does; at several timesteps the groups say it.
+/// The clause on the scene's own integrator; None at several timesteps, where the groups name it.
 fn own(report: &Report) -> Option<String> {
     let header = &report.header;
     let mut own = report
@@ -78,32 +78,32 @@ fn groups(report: &Report) -> Vec<Clause> {
 
 /// The group by up to four names, by two, by number, not at all.
 fn group(report: &Report, label: &str, belongs: impl Fn(&Outcome) -> bool) -> Option<Clause> {
-    let chosen = unsaid(report, belongs);
+    let chosen = remaining(report, belongs);
     let named = |names| format!("{label}: {}", subjects(report, &chosen, names));
     let counted = format!("{} {label}", chosen.len());
-    (!chosen.is_empty()).then(|| vec![named(NAMED), named(2), counted, String::new()])
+    (!chosen.is_empty()).then(|| vec![named(MAX_NAMED), named(2), counted, String::new()])
 }
 
-/// The quiet ones are counted, not named.
+/// The bounded runs, which are counted and not named.
 fn bounded(report: &Report, belongs: impl Fn(&Outcome) -> bool) -> Option<Clause> {
     let noun = match own(report) {
         Some(_) => "other",
         None => "run",
     };
-    let bounded = unsaid(report, belongs).len() as u64;
+    let bounded = remaining(report, belongs).len() as u64;
     let text = format!("{} bounded", words::plural(bounded, noun));
     (bounded > 0).then(|| vec![text, String::new()])
 }
 
-/// The outcomes that belong, but for the scene's own integrator where it has its clause.
-fn unsaid(report: &Report, belongs: impl Fn(&Outcome) -> bool) -> Vec<&Outcome> {
-    let own_said = own(report).is_some();
-    let is_said = |o: &Outcome| own_said && report.header.is_own(&o.engine);
+/// The outcomes of a group, without the scene's own integrator where that has a clause.
+fn remaining(report: &Report, belongs: impl Fn(&Outcome) -> bool) -> Vec<&Outcome> {
+    let own_has_clause = own(report).is_some();
+    let has_clause = |o: &Outcome| own_has_clause && report.header.is_own(&o.engine);
     let outcomes = report.outcomes().iter();
-    outcomes.filter(|o| belongs(o) && !is_said(o)).collect()
+    outcomes.filter(|o| belongs(o) && !has_clause(o)).collect()
 }
 
-/// `twin proof holds (2 of 2)`; silent where it failed, for that is said first.
+/// `twin proof holds (2 of 2)`; None where it failed, since the verdict begins with that.
 fn twin_proof(checks: &[Check]) -> Option<Clause> {
     let count = |status| {
         let twins = checks.iter().filter(|c| is_twin(c));

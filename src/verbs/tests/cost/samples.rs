@@ -277,7 +277,7 @@ fn report(name: &str, curves: Vec<CostCurve>, targets: &[f64]) -> Report {
         curves,
     };
     report.body = Body::Cost { outcomes: [], cost };
-    report.beside = Beside::Nothing;
+    report.series = SeriesState::Nothing;
     report
 }
 
@@ -307,7 +307,7 @@ pub fn full() -> Report {
     curves.push(rapier("rapier(dt=0.001,iterations=8,pgs=4)", 1e-5));
     curves.push(rapier("rapier(iterations=16)", 2e-6));
     let mut report = report("circle", curves, &[1e-3, 1e-6, 1e-9]);
-    report.beside = Beside::Here(Series::Panels(panels(&report).unwrap()));
+    report.series = SeriesState::Loaded(Series::Panels(panels(&report).unwrap()));
     report
 }
 
@@ -352,7 +352,7 @@ pub fn untrue() -> Report {
 /// The oscillator at three steps under three methods.
 pub fn classic() -> Report {
     let mut report = priced();
-    report.beside = Beside::Here(Series::Panels(panels(&report).unwrap()));
+    report.series = SeriesState::Loaded(Series::Panels(panels(&report).unwrap()));
     report
 }
 
