@@ -77,7 +77,7 @@ pub enum ReadError {
     },
 }
 
-/// What [`render`] wrote. Of reports with series, those are [`SeriesState::Missing`](crate::verbs::Beside):
+/// What [`render`] wrote. Of reports with series, those are [`SeriesState::Missing`](crate::verbs::SeriesState):
 /// [`series::unpack`](crate::verbs::series::unpack) brings both together.
 ///
 /// # Errors

@@ -5,7 +5,7 @@ use crate::report::json::{self, Tool};
 use crate::report::svg::{Chart, Figure};
 use crate::report::{View, terminal};
 
-/// One way to write reports down.
+/// One format of reports.
 pub struct Format {
     /// The name that `--format` takes.
     pub id: &'static str,

@@ -29,7 +29,7 @@ pub fn pack(reports: &[Report]) -> Option<Vec<u8>> {
     series.iter().any(Option::is_some).then(|| {
         let reports = digest(reports);
         let mut gzip = GzEncoder::new(Vec::new(), Compression::fast());
-        // All numbers can be written, and so can memory.
+        // Writing numbers to memory cannot fail.
         let _ = serde_json::to_writer(&mut gzip, &File { reports, series });
         gzip.finish().unwrap_or_default()
     })

@@ -45,8 +45,9 @@ impl Session for Quiet {
 /// Identifies the run that something belongs to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
+    /// The engine's id.
     pub engine: String,
-    /// Seconds.
+    /// The timestep, s.
     pub timestep: f64,
     pub steps: u64,
     pub particles: usize,

@@ -1,4 +1,4 @@
-//! The parts that the command lines of all verbs have in common. Only this folder touches files, the terminal and programs.
+//! The common parts of the verbs' command lines. Only this folder touches files, the terminal and programs.
 
 mod cache;
 pub mod external;

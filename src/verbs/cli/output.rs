@@ -1,5 +1,5 @@
-//! The output of verbs: `--format` and `--output`, the report's folder, the last lines printed, and files that are written
-//! whole.
+//! The output of verbs: `--format` and `--output`, the report's folder, the last lines printed, and files that are
+//! written whole.
 
 use crate::report::json::Tool;
 use crate::verbs::{Report, formats, series};

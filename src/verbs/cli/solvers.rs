@@ -7,8 +7,7 @@ use anyhow::{Context, bail};
 use std::str::FromStr;
 
 /// The solvers of one command, in the order of its report: the named integrators, or the `usual` ones where none is
-/// named; then the engines, likewise; then the rapier rows with the user's settings, each only
-/// once.
+/// named; then the engines, likewise; then the rapier rows with the user's settings, each only once.
 ///
 /// `all` means the integrators of the registry, the scene's own first. Adaptive pairs are allowed where `usual` has
 /// any, and `all` then includes those.

@@ -1,4 +1,4 @@
-//! The session of a command line: a progress bar, files to save to, a cache of truths, and the announcement of long work.
+//! The session of a command line: a progress bar, files, a cache of truths, and the announcement of long work.
 
 use super::cache::Cache;
 use super::save::Files;
@@ -64,7 +64,8 @@ impl Session for Terminal {
     }
 }
 
-/// The wall time all cases will take together, s: at least that of the longest, and at least the sum over the threads.
+/// The wall time all cases will take together, s: at least that of the longest, and at least the sum
+/// divided by the number of threads.
 pub fn expected(estimates: &[TimeEstimate]) -> f64 {
     let sum: f64 = estimates.iter().map(|e| e.seconds).sum();
     let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);

@@ -94,10 +94,10 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     for ((scene, stated), path) in scenes.iter().zip(&args.scenes) {
         let report = one(args, quiet, scene, *stated, path)?;
         if args.output.is_human() {
-            let several = if reports.is_empty() { "" } else { "\n" };
+            let separator = if reports.is_empty() { "" } else { "\n" };
             let (place, next) = (args.output.place(path), next(args, path, &report));
             let text = output::human(&report, place.as_ref(), next, "springcheck run --help");
-            output::print(&format!("{several}{text}"))?;
+            output::print(&format!("{separator}{text}"))?;
         }
         reports.push(report);
     }

@@ -82,7 +82,7 @@ fn truth(
     }
 }
 
-/// The coordinate the scene asks for; empty if it asks for none.
+/// The coordinate that the scene's `plot` names, m; empty without one.
 fn plotted<'a, I: Iterator<Item = &'a [f64]>>(scene: &Scene, states: impl Fn() -> I) -> Vec<f64> {
     scene.plot.as_ref().map_or_else(Vec::new, |plot| {
         let at = 3 * plot.particle + plot.dof;

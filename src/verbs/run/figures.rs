@@ -31,8 +31,8 @@ struct Runs<'a> {
     runs: Vec<(&'a Outcome, Paths)>,
 }
 
-/// The recorded runs by timestep, in the order they first occur. A rapier run at a timestep of its own
-/// joins the first panel. None where no run has anything to draw.
+/// The recorded runs by timestep, in the order they first occur. Beside other solvers, a rapier run at a
+/// timestep of its own joins the first panel. None where no run has anything to draw.
 fn by_timestep(
     report: &Report,
     truth: impl Fn(&TruthCurves) -> Paths,

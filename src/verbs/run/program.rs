@@ -74,7 +74,7 @@ fn record_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
             Some(format!("by step {step}: {reason}")),
             step,
         ),
-        None if last < task.steps => (Status::Failed, Some(early(&rows, task)), last),
+        None if last < task.steps => (Status::Failed, Some(ended_early(&rows, task)), last),
         None => (Status::Completed, None, last),
     };
     if status == Status::Completed && seconds.is_some() {
@@ -125,9 +125,9 @@ fn other_start(rows: &Rows, start: &State) -> Option<String> {
         let near = |(g, k): (&f64, &f64)| (g - k).abs() <= 2.0 * precision.half_unit(*k);
         given.iter().zip(known).position(|pair| !near(pair))
     };
-    let moved = first(rows.x(0), &start.x, rows.precision).map(|at| (at, "position"));
-    let thrown = || first(rows.v(0)?, &start.v, rows.precision_v).map(|at| (at, "velocity"));
-    let (at, what) = moved.or_else(thrown)?;
+    let position = first(rows.x(0), &start.x, rows.precision).map(|at| (at, "position"));
+    let velocity = || first(rows.v(0)?, &start.v, rows.precision_v).map(|at| (at, "velocity"));
+    let (at, what) = position.or_else(velocity)?;
     Some(format!(
         "does not start as the scene does: the {what} of particle {} differs",
         at / 3
@@ -157,7 +157,7 @@ pub fn begin_with(rows: &mut Rows, start: &State) {
 }
 
 /// The reason for a run that ended too early: where it ended, and where it should have ended.
-fn early(rows: &Rows, task: &Task) -> String {
+fn ended_early(rows: &Rows, task: &Task) -> String {
     let last = rows.len().saturating_sub(1);
     let end = task.steps as f64 * task.timestep;
     let mut reason = format!(

@@ -166,7 +166,7 @@ fn by_balance(method: &Method, class: EnergyClass, lost: bool) -> String {
     )
 }
 
-/// The scene linearised about its start, if the plan has a method, whose step is limited.
+/// The scene linearised about its start, if the plan has a method: only methods have a predicted limit.
 pub fn linearised(plan: &Plan) -> Option<Linearised> {
     let method = |case: &Case| case.solver.as_method().is_some();
     plan.cases.iter().any(method).then(|| {

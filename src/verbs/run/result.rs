@@ -1,5 +1,5 @@
-//! The results of `run` and `compare` as data: an [`Outcome`] for each engine and timestep, and the series its figures are
-//! drawn from.
+//! The results of `run` and `compare` as data: an [`Outcome`] for each engine and timestep, and the series its
+//! figures are drawn from.
 
 use crate::measure::identify::Identified;
 use crate::measure::{Deviation, Energy, ErrorSummary, Momentum};
@@ -37,7 +37,8 @@ pub struct Outcome {
     pub remarks: Vec<String>,
 }
 
-/// The cost of one run: counts and wall time. It is not the work done by forces, [`physics::Work`](crate::physics::Work).
+/// The computational work of one run: counts and wall time. It is not the work done by forces, which is
+/// [`physics::Work`](crate::physics::Work).
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct WorkSummary {
     pub steps: u64,
@@ -89,8 +90,8 @@ pub struct Curves {
 pub struct TruthCurves {
     /// Seconds.
     pub t: Vec<f64>,
-    /// As in [`Curves`].
+    /// The coordinate that `plot` names, m, as in [`Curves`].
     pub plot: Vec<f64>,
-    /// As in [`Curves`].
+    /// The paths of the same particles as in [`Curves`].
     pub paths: Vec<Vec<[f64; 2]>>,
 }

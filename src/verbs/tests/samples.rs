@@ -239,7 +239,7 @@ impl Reach for Report {
 
     fn series_mut(&mut self) -> &mut RunSeries {
         match &mut self.series {
-            SeriesState::Loaded(Series::Curves(figures)) => figures,
+            SeriesState::Loaded(Series::Curves(series)) => series,
             _ => panic!("no figures"),
         }
     }

@@ -112,9 +112,9 @@ fn expected_of<'a>(scene: &'a Scene, solver: &Solver) -> Vec<&'a Expectation> {
 }
 
 impl Choice {
-    /// The choice that judges a scene's expectations: exactly the solvers they are about, at the scene's timestep, and
-    /// the engines they name as references. Nothing else is computed: no orders, no twin proof, and no truth or identities
-    /// unless a key needs them.
+    /// The choice that judges a scene's expectations: exactly the solvers they are about, at the scene's timestep,
+    /// and the engines they name as references. Nothing else is computed: no orders, no twin proof, and no truth or
+    /// identities unless a key needs them.
     pub fn expected(scene: &Scene) -> Self {
         let mentions = |prefixes: &[&str]| {
             let about = |key: &str| prefixes.iter().any(|prefix| key.starts_with(prefix));

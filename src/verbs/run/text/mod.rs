@@ -40,7 +40,7 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome]) -> View<'a> {
     }
     lines.push(String::new());
     lines.extend(table::lines(report));
-    let said = outcomes.iter().flat_map(|outcome| {
+    let remarks = outcomes.iter().flat_map(|outcome| {
         let sentences = sentences(outcome).into_iter();
         sentences.map(move |sentence| (outcome, sentence))
     });
@@ -51,7 +51,7 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome]) -> View<'a> {
         clauses: verdict::clauses(report),
         facts: vec![("truth", words::truth(&report.header.truth))],
         lines,
-        notes: Note::of(said, |outcomes| subjects(report, outcomes, usize::MAX)),
+        notes: Note::of(remarks, |outcomes| subjects(report, outcomes, usize::MAX)),
         last: labels.zip(identity::fault(report)).collect(),
     }
 }

@@ -11,8 +11,8 @@ use crate::verbs::run::Outcome;
 /// The number of engines named in one group before "and n more".
 const MAX_NAMED: usize = 4;
 
-/// The clauses in order: the comparison, the scene's own integrator, the engines that diverged, grew or dissipated, and
-/// the proof that the harness is unbiased.
+/// The clauses in order: the comparison, the scene's own integrator, the engines that diverged, grew or dissipated,
+/// and the proof that the harness is unbiased.
 pub fn clauses(report: &Report) -> Vec<Clause> {
     let whole = [identity::verdict(report), own(report)];
     let mut clauses: Vec<Clause> = whole.into_iter().flatten().map(|text| vec![text]).collect();
@@ -44,15 +44,15 @@ fn own(report: &Report) -> Option<String> {
     };
     let error = energy.relative_error_max;
     let error = error.map_or(String::new(), |e| format!(" ({})", words::sci(e)));
-    let off = first.position_error_m.as_ref();
-    let off = off.map(|e| words::truth_error(e.max, &header.truth));
-    let off = match off.as_deref() {
+    let distance = first.position_error_m.as_ref();
+    let distance = distance.map(|e| words::truth_error(e.max, &header.truth));
+    let distance = match distance.as_deref() {
         None => String::new(),
         Some("floor") => ", on the truth".to_owned(),
         Some(error) => format!(", {error} m from the truth"),
     };
     let name = words::one_line(&first.engine);
-    Some(format!("{name} {does}{error}{off}"))
+    Some(format!("{name} {does}{error}{distance}"))
 }
 
 fn groups(report: &Report) -> Vec<Clause> {
@@ -76,7 +76,7 @@ fn groups(report: &Report) -> Vec<Clause> {
     .collect()
 }
 
-/// The group by up to four names, by two, by number, not at all.
+/// The clause of a group, in its forms from long to short: up to four names, two names, a count, nothing.
 fn group(report: &Report, label: &str, belongs: impl Fn(&Outcome) -> bool) -> Option<Clause> {
     let chosen = remaining(report, belongs);
     let named = |names| format!("{label}: {}", subjects(report, &chosen, names));
