@@ -29,8 +29,8 @@ enum What {
 pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
     let text = match args.what {
         What::Integrators => {
-            let (fixed, adaptive, from) = (of_integrators(), of_pairs(), sources());
-            format!("{fixed}\n\nadaptive (cost only)\n{adaptive}\n\n{from}")
+            let (fixed, adaptive, sources) = (integrator_table(), pair_table(), source_table());
+            format!("{fixed}\n\nadaptive (cost only)\n{adaptive}\n\n{sources}")
         }
         What::Effects => {
             let rows = effects::REGISTRY.iter();
@@ -61,7 +61,7 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn of_integrators() -> Table {
+fn integrator_table() -> Table {
     table(
         &[
             "integrator",
@@ -97,7 +97,7 @@ fn of_integrators() -> Table {
 }
 
 /// The adaptive pairs, which choose their own steps; only `cost` runs them.
-fn of_pairs() -> Table {
+fn pair_table() -> Table {
     table(
         &[
             "pair",
@@ -134,7 +134,7 @@ fn meant(mistake: &Mistake) -> &'static str {
 }
 
 /// The source of each method, and what it must not be confused with.
-fn sources() -> Table {
+fn source_table() -> Table {
     let methods = integrators::REGISTRY.iter();
     table(
         &["integrator", "from", "not to be confused with"],

@@ -20,7 +20,7 @@ pub fn series(
 ) -> RunSeries {
     let scene = plan.scene;
     let plane = plane(scene, records);
-    let drawn = drawn(scene);
+    let drawn = drawn_particles(scene);
     let mut curves = Vec::new();
     for (outcome, (record, energy)) in records.iter().zip(energies).enumerate() {
         let Some(trajectory) = &record.trajectory else {
@@ -143,7 +143,7 @@ fn extent(scene: &Scene, records: &[Record], axis: usize) -> f64 {
 }
 
 /// The particles whose paths are drawn: the free ones, evenly chosen when there are many.
-fn drawn(scene: &Scene) -> Vec<usize> {
+fn drawn_particles(scene: &Scene) -> Vec<usize> {
     let free: Vec<usize> = (0..scene.particles.len())
         .filter(|&i| !scene.particles[i].fixed)
         .collect();

@@ -185,8 +185,8 @@ fn step_warning(linearised: &Linearised, case: &Case) -> Option<String> {
     let prediction = linearised.predict(case.solver.as_method()?, h);
     match prediction.limit {
         // Exactly at the limit nothing grows, and a timestep rounded to a few digits may be meant to lie there.
-        Limit::At(limit) if h > limit * (1.0 + 1e-9) => Some(beyond(h, limit, &prediction)),
-        Limit::Never => never(h, case.label.end(), &prediction),
+        Limit::At(limit) if h > limit * (1.0 + 1e-9) => Some(beyond_limit(h, limit, &prediction)),
+        Limit::Never => never_stable(h, case.label.end(), &prediction),
         // The scene is too large to know all its modes, but one that grows is enough.
         Limit::Unknown(_) => {
             let growth = prediction.growth_per_s.filter(|rate| *rate > 0.0)?;
@@ -200,8 +200,8 @@ fn step_warning(linearised: &Linearised, case: &Case) -> Option<String> {
     }
 }
 
-fn beyond(h: f64, limit: f64, prediction: &Prediction) -> String {
-    let mode = bracketed(prediction);
+fn beyond_limit(h: f64, limit: f64, prediction: &Prediction) -> String {
+    let mode = reason_in_brackets(prediction);
     let advice = round_below(limit).map_or_else(String::new, |step| format!(": take {step} s"));
     format!(
         "h = {} s is beyond its stability limit {} s here{mode}{advice}",
@@ -210,20 +210,20 @@ fn beyond(h: f64, limit: f64, prediction: &Prediction) -> String {
     )
 }
 
-fn never(h: f64, duration: f64, prediction: &Prediction) -> Option<String> {
+fn never_stable(h: f64, duration: f64, prediction: &Prediction) -> Option<String> {
     let growth = prediction.growth_per_s?;
     (growth * duration > VISIBLE).then(|| {
         format!(
             "no step is stable here{}: at h = {} s motion grows by {} 1/s, and a smaller step only \
              slows that",
-            bracketed(prediction),
+            reason_in_brackets(prediction),
             short(h),
             short(growth)
         )
     })
 }
 
-fn bracketed(prediction: &Prediction) -> String {
+fn reason_in_brackets(prediction: &Prediction) -> String {
     let reason = prediction.reason.as_ref();
     reason.map_or_else(String::new, |reason| format!(" ({reason})"))
 }

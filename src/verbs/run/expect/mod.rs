@@ -173,13 +173,13 @@ fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, report: &R
     } else {
         CheckStatus::Fail
     };
-    let said = match found {
+    let value_text = match found {
         Some(found) => found_text(key, found, outcome),
         None => format!("no value ({})", missing(key, outcome, report)),
     };
     let verb = if met { "is to be" } else { "should be" };
     let at = outcome.timestep;
-    let message = format!("{engine}: {key} {verb} {wanted}, found {said}, at h = {at:?} s");
+    let message = format!("{engine}: {key} {verb} {wanted}, found {value_text}, at h = {at:?} s");
     check(status, measured, bound, message)
 }
 
