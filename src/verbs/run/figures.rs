@@ -5,8 +5,8 @@ use crate::measure::EnergyClass;
 use crate::report::svg::Figure;
 use crate::report::svg::palette::{self, look};
 use crate::report::svg::{
-    Axis, Chart, FAINT, HUGE, INK, Key, Line, Look, Mark, Panel, Scale, Shape, Stroke, Symbol,
-    TRUTH_NAME, WHITE, heading, padded, range, shortened, tamed,
+    Chart, ChartAxis, FAINT, HUGE, INK, LegendEntry, Look, Mark, Panel, Polyline, Scale, Stroke,
+    Symbol, SymbolShape, TRUTH_NAME, WHITE, heading, padded, range, shortened, tamed,
 };
 use crate::report::{svg, words};
 use crate::solvers::{SolverKind, Status};
@@ -70,16 +70,16 @@ fn by_timestep(
 impl Runs<'_> {
     /// The truth's lines, which have no outcome, and every run's in the order they are painted; a run
     /// that ended early has a cross at its end.
-    fn lines(&self, report: &Report) -> Vec<(Option<&Outcome>, Line)> {
+    fn lines(&self, report: &Report) -> Vec<(Option<&Outcome>, Polyline)> {
         let truth = self.truth.iter().cloned();
-        let truth = truth.map(|path| (None, Line::new(path, palette::TRUTH)));
+        let truth = truth.map(|path| (None, Polyline::new(path, palette::TRUTH)));
         let mut runs: Vec<&(&Outcome, Paths)> = self.runs.iter().collect();
         runs.sort_by_key(|(outcome, _)| layer(report, outcome));
         let runs = runs.into_iter().flat_map(|(outcome, paths)| {
             let stroke = stroke(report, outcome);
             let cross = Symbol::cross(stroke.colour);
             paths.iter().map(move |path| {
-                let mut line = Line::new(path.clone(), stroke);
+                let mut line = Polyline::new(path.clone(), stroke);
                 line.wild = is_wild(outcome);
                 line.end = (outcome.status != Status::Completed).then_some(cross);
                 (Some(*outcome), line)
@@ -122,17 +122,18 @@ fn curves(
     report: &Report,
     [title, y_title]: [&str; 2],
     panels: Vec<Runs>,
-    axis: impl Fn(&Runs) -> Axis,
+    axis: impl Fn(&Runs) -> ChartAxis,
 ) -> Chart {
     let height = if panels.len() > 1 { 230.0 } else { 340.0 };
     let panels = panels.iter().map(|panel| {
         let marks = panel.lines(report).into_iter().map(|(outcome, mut line)| {
             let text = outcome.map_or(TRUTH_NAME.to_owned(), name);
-            line.label = (!line.points.is_empty()).then(|| Key::new(text, Look::Line(line.stroke)));
+            line.label =
+                (!line.points.is_empty()).then(|| LegendEntry::new(text, Look::Line(line.stroke)));
             Mark::Line(line)
         });
         let times = range(panel.spans(0).flat_map(|(_, span)| span));
-        let axes = [Axis::linear(times.unwrap_or([0.0, 1.0])), axis(panel)];
+        let axes = [ChartAxis::linear(times.unwrap_or([0.0, 1.0])), axis(panel)];
         Panel::new(panel.title.clone(), height, axes, marks.collect())
     });
     Chart {
@@ -152,7 +153,7 @@ fn plot(report: &Report) -> Option<Chart> {
     let titles = [&format!("{label} over time"), label.as_str()];
     Some(curves(report, titles, panels, |panel| {
         let stated = asked.y_range.filter(|[lo, hi]| lo < hi);
-        Axis::linear(stated.unwrap_or_else(|| padded(panel.shown(1, None), 0.05)))
+        ChartAxis::linear(stated.unwrap_or_else(|| padded(panel.shown(1, None), 0.05)))
     }))
 }
 
@@ -172,7 +173,7 @@ fn energy(report: &Report) -> Option<Chart> {
 }
 
 /// Symmetric-logarithmic where a small bounded oscillation shares the panel with a large growth.
-fn energy_axis(panel: &Runs) -> Axis {
+fn energy_axis(panel: &Runs) -> ChartAxis {
     let size = |[lo, hi]: [f64; 2]| f64::max(-lo, hi);
     let finished = panel
         .spans(1)
@@ -189,11 +190,11 @@ fn energy_axis(panel: &Runs) -> Axis {
     let ends = spans.into_iter().flatten().chain([0.0]);
     let [lo, hi] = range(ends).unwrap_or_default();
     let Some(linear) = linear_part(&sizes) else {
-        return Axis::linear(padded([lo, hi], 0.06));
+        return ChartAxis::linear(padded([lo, hi], 0.06));
     };
     // Half a decade of room on each side.
     let beyond = |end: f64| 3.0 * end.abs().clamp(0.2 * linear, HUGE / 3.0);
-    Axis {
+    ChartAxis {
         scale: Scale::SymLog { linear },
         range: [-beyond(lo), beyond(hi)],
     }
@@ -223,13 +224,13 @@ fn trajectories(report: &Report) -> Option<Chart> {
     let titles = figures
         .plane
         .map(|axis| ["x (m)", "y (m)", "z (m)"][axis.min(2)]);
-    let start = Symbol::new(Shape::Disc, WHITE, INK);
-    let end = |colour| Symbol::new(Shape::Disc, colour, WHITE);
-    let still = Symbol::new(Shape::Square, INK, INK);
+    let start = Symbol::new(SymbolShape::Disc, WHITE, INK);
+    let end = |colour| Symbol::new(SymbolShape::Disc, colour, WHITE);
+    let still = Symbol::new(SymbolShape::Square, INK, INK);
     let panel = |panel: &Runs| {
         let axes = [0, 1].map(|axis| {
             let fixed = range(figures.fixed.iter().map(|p| p[axis]));
-            Axis::linear(padded(panel.shown(axis, fixed), 0.06))
+            ChartAxis::linear(padded(panel.shown(axis, fixed), 0.06))
         });
         let lines = panel.lines(report).into_iter().map(|(outcome, mut line)| {
             let arrived = outcome.map(|_| end(line.stroke.colour));
@@ -243,8 +244,11 @@ fn trajectories(report: &Report) -> Option<Chart> {
 
         let look = |o: &Outcome| Look::Line(stroke(report, o));
         let truth = figures.truth.as_ref();
-        let truth = truth.map(|_| Key::new(TRUTH_NAME, Look::Line(palette::TRUTH)));
-        let runs = panel.runs.iter().map(|(o, _)| Key::new(name(o), look(o)));
+        let truth = truth.map(|_| LegendEntry::new(TRUTH_NAME, Look::Line(palette::TRUTH)));
+        let runs = panel
+            .runs
+            .iter()
+            .map(|(o, _)| LegendEntry::new(name(o), look(o)));
         let mut ends = panel.runs.iter().map(|(o, _)| o.status);
         let early = ends.any(|status| status != Status::Completed);
         let symbols = [
@@ -254,7 +258,7 @@ fn trajectories(report: &Report) -> Option<Chart> {
             (early, "ended early", Symbol::cross(FAINT)),
         ];
         let symbols = symbols.into_iter().filter(|(shown, ..)| *shown);
-        let symbols = symbols.map(|(_, text, symbol)| Key::new(text, Look::Symbol(symbol)));
+        let symbols = symbols.map(|(_, text, symbol)| LegendEntry::new(text, Look::Symbol(symbol)));
         let marks = lines.chain(marks).collect();
         Panel {
             equal_scales: true,

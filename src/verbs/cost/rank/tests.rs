@@ -1,6 +1,6 @@
 //! Laws on made-up curves: their answers are known by construction.
 
-use super::{Misses, pareto, reach, slope, target};
+use super::{Unreached, pareto, reach, slope, target};
 use crate::solvers::{SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use crate::verbs::cost::{CostCurve, CostPoint};
@@ -70,13 +70,13 @@ fn a_lucky_zero_crossing_is_not_credited() {
 #[test]
 fn what_reaches_nothing_says_why() {
     let falling = points(&[Some(1e-1), Some(1e-2), Some(1e-3)]);
-    assert_eq!(reach(&falling, 1e-4), Err(Misses::Nearest(1e-3)));
+    assert_eq!(reach(&falling, 1e-4), Err(Unreached::Nearest(1e-3)));
     // Rounding grows again at the finest.
     let rising = points(&[Some(1e-1), Some(1e-5), Some(2e-4)]);
-    assert_eq!(reach(&rising, 1e-4), Err(Misses::Unsettled(2e-4)));
-    assert_eq!(reach(&[], 1.0), Err(Misses::Nothing));
+    assert_eq!(reach(&rising, 1e-4), Err(Unreached::Unsettled(2e-4)));
+    assert_eq!(reach(&[], 1.0), Err(Unreached::Nothing));
     let ended = points(&[Some(1e-3), None]);
-    assert_eq!(reach(&ended, 1.0), Err(Misses::Ended));
+    assert_eq!(reach(&ended, 1.0), Err(Unreached::Ended));
     let late = points(&[None, Some(1e-3)]);
     assert_eq!(reach(&late, 1.0), Ok(1), "coarse ones may diverge");
 }
