@@ -35,7 +35,7 @@ struct Envelope<'a, R> {
     reports: &'a [R],
 }
 
-/// Any number of reports as one object.
+/// Renders any number of reports as one object.
 pub fn render<R: Serialize + Debug>(tool: &Tool, reports: &[R]) -> String {
     debug_assert!(
         reports.iter().all(is_finite),

@@ -151,7 +151,7 @@ pub fn energy_error(energy: &Energy) -> Option<String> {
     Some(format!("{sign}{}", sci(error)))
 }
 
-/// An error against the truth; `floor` below ten times the truth's own bar.
+/// An error against the truth; `floor` below ten times the truth's error bar.
 pub fn truth_error(error: f64, truth: &TruthFacts) -> String {
     match truth.error_bound_m {
         Some(bar) if error < 10.0 * bar => "floor".into(),
@@ -193,7 +193,7 @@ pub fn one_line(text: &str) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// The steps outcomes were run at: `0.0005 s`, or `several, the file's 0.0005 s`; `own` is the file's.
+/// The timesteps of the outcomes: `0.0005 s`, or `several, the file's 0.0005 s`; `own` is the file's.
 pub fn timestep(own: f64, steps: &[f64]) -> String {
     match steps {
         [] => format!("{} s", short(own)),

@@ -1,5 +1,5 @@
-//! SVG text, written element by element. Every number has one fixed decimal, so equal input gives
-//! equal bytes; there are no ids, so several figures can stand inline on one page.
+//! SVG text, written element by element. Numbers have at most one decimal, so equal input gives
+//! equal bytes; there are no ids, so several figures can be inline on one page.
 
 /// The look of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ pub enum Align {
     Start,
     Middle,
     End,
-    /// Read from bottom to top, its middle at the point.
+    /// The text reads from bottom to top, its middle at the point.
     Upward,
 }
 

@@ -7,7 +7,7 @@ use super::key::LegendEntry;
 /// One mark of a panel. All numbers are values on the panel's axes.
 pub enum Mark {
     Line(Polyline),
-    /// A symbol at each of the points that are inside.
+    /// A symbol at each point that is inside.
     Symbols(Symbol, Vec<[f64; 2]>),
     /// Rectangles of one colour, each given by two opposite corners.
     Area(&'static str, Vec<[[f64; 2]; 2]>),

@@ -1,5 +1,5 @@
 //! One look per engine, the same in every figure: colours a colour-blind reader tells apart
-//! (Okabe and Ito, without the yellow that white swallows), dashes for rapier.
+//! (Okabe and Ito, without the yellow, which is too pale on white), dashes for rapier.
 
 use super::canvas::{Stroke, SymbolShape};
 use crate::solvers::SolverKind;

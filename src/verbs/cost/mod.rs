@@ -51,7 +51,7 @@ pub struct CostChoice {
     pub budget_s: f64,
     /// Exactly these steps, s, instead of a range; adaptive pairs, which choose theirs, are left out.
     pub timesteps: Option<Vec<f64>>,
-    /// What errors are measured against.
+    /// The truth that errors are measured against.
     pub truth: Demand,
 }
 
@@ -130,7 +130,7 @@ impl<'a> CostPlan<'a> {
     /// reason.
     pub fn execute(&self, session: &dyn Session) -> Report {
         let (scene, system) = (self.scene, &self.system);
-        // When the last run ends, s.
+        // The end of the longest run, s.
         let named = self.choice.timesteps.as_deref();
         let ends = named.unwrap_or_default().iter();
         let ends = ends.map(|h| scene.steps(*h) as f64 * h);

@@ -105,7 +105,7 @@ fn admits(
     rest: f64,
 ) -> bool {
     let mut state = State::new(vec![x1, 0.0, 0.0, x2, 0.0, 0.0], vec![0.0; 6]);
-    // The stiffness stands on both sides and cancels.
+    // The stiffness is on both sides and cancels.
     let strain = |state: &State| {
         let apart = |axis: usize| state.x[3 + axis] - state.x[axis];
         let length = (0..3).map(|axis| apart(axis).powi(2)).sum::<f64>().sqrt();

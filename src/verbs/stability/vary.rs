@@ -134,7 +134,7 @@ impl VariedKey {
 }
 
 impl fmt::Display for VariedKey {
-    /// As the command line writes it: `springs.stiffness`, `particles[1].mass`.
+    /// The key as the command line writes it: `springs.stiffness`, `particles[1].mass`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.part.path(self.member, self.row.key))
     }
@@ -185,7 +185,7 @@ impl Vary {
         Ok(Self { key, values })
     }
 
-    /// As the command line writes it: `springs.stiffness`, `particles[1].mass`.
+    /// The key as the command line writes it: `springs.stiffness`, `particles[1].mass`.
     pub fn id(&self) -> String {
         self.key.to_string()
     }

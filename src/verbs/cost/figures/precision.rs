@@ -74,7 +74,7 @@ fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
     let legend = legend(diagram, &lines);
 
     let mut marks = levels(cost, &targets, axes, diagram);
-    // The scene's own last: its line lies over the others.
+    // The scene's own comes last, so that its line lies over the others.
     lines.sort_by_key(|line| report.header.is_own(&line.curve.engine));
     marks.extend(lines.iter().flat_map(|line| line.marks(axes, diagram)));
     let silent = silent.iter().map(|line| engine(&line.curve.engine));

@@ -1,4 +1,4 @@
-//! The rankings and every setting as GitHub shows them.
+//! The rankings and every setting, in Markdown.
 
 use super::{answer, metres, ratio, tried};
 use crate::report::markdown::section;
