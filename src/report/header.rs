@@ -1,15 +1,15 @@
-//! What the reports of all verbs have: the scene, the truth, the checks.
+//! The header that the reports of all verbs have: the scene, the truth, the checks.
 
 use crate::measure::Check;
 use crate::truth::TruthKind;
 use serde::{Deserialize, Serialize};
 
-/// Marks the integrator the scene names.
+/// The mark of the integrator the scene names.
 pub const OWN: char = '▸';
-/// Marks an engine that is explained, not ranked.
+/// The mark of an engine that is explained, not ranked.
 pub const UNRANKED: char = '†';
 
-/// What the reports of all verbs have.
+/// The scene, the truth and the checks of a report.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Header {
     pub scene: SceneFacts,
@@ -23,7 +23,7 @@ impl Header {
         engine == self.scene.own_integrator
     }
 
-    /// What stands before the name of an engine that is ranked.
+    /// The mark before the name of a ranked engine.
     pub fn mark(&self, engine: &str) -> char {
         if self.is_own(engine) { OWN } else { ' ' }
     }
@@ -35,11 +35,11 @@ pub struct SceneFacts {
     pub file: String,
     pub particles: usize,
     pub springs: usize,
-    /// Only what the scene calls for.
+    /// The effects that act in this scene.
     pub effects: Vec<EffectUse>,
     /// The scene's own timestep, seconds.
     pub timestep: f64,
-    /// Seconds.
+    /// The duration, seconds.
     pub duration: f64,
     /// The scale S that energy errors are relative to, joules; null where the scene has none.
     pub energy_scale_j: Option<f64>,
@@ -53,23 +53,23 @@ pub struct SceneFacts {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct EffectUse {
     pub id: String,
-    /// Particles, springs or pairs it acts on.
+    /// The number of particles, springs or pairs it acts on.
     pub members: usize,
-    /// Times its force was evaluated, summed over the hand-written integrators of this run.
+    /// The number of evaluations, summed over the hand-written integrators of this run.
     pub evaluations: u64,
-    /// Nanoseconds one evaluation takes, measured.
+    /// The measured time of one evaluation, nanoseconds.
     pub wall_ns: Option<f64>,
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TruthFacts {
     pub kind: TruthKind,
-    /// The form, or the reference's methods and steps.
+    /// The closed form, or the reference's methods and steps.
     pub method: Option<String>,
-    /// Largest error bar of positions up to the horizon.
+    /// The largest error bar of positions up to the horizon, m.
     pub error_bound_m: Option<f64>,
-    /// Until when positions mean anything.
+    /// Positions are meaningful up to here, s.
     pub horizon_s: Option<f64>,
-    /// Why there is none, or why this form applies.
+    /// Why there is no truth, or why this closed form applies.
     pub reason: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! The machine-readable reports: the contract's keys, indented, floats that round-trip, and the way back.
+//! The reports as JSON, written and read: the contract's keys, indented, with floats that round-trip.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -18,7 +18,7 @@ pub struct Tool {
 }
 
 impl Tool {
-    /// This very program.
+    /// This program itself.
     pub fn this() -> Self {
         Self {
             name: env!("CARGO_PKG_NAME").to_owned(),
@@ -35,7 +35,7 @@ struct Envelope<'a, R> {
     reports: &'a [R],
 }
 
-/// Any number of reports as one object.
+/// Renders any number of reports as one object.
 pub fn render<R: Serialize + Debug>(tool: &Tool, reports: &[R]) -> String {
     debug_assert!(
         reports.iter().all(is_finite),
@@ -46,15 +46,16 @@ pub fn render<R: Serialize + Debug>(tool: &Tool, reports: &[R]) -> String {
         tool,
         reports,
     };
-    // Fails only for a `Serialize` that refuses or a map with keys that are no strings: not here.
+    // Serialization fails only for a `Serialize` that refuses, or a map whose keys are no strings: not here.
     let mut text = serde_json::to_string_pretty(&envelope).unwrap_or_default();
     text.push('\n');
     text
 }
 
-/// Why a text holds no reports.
+/// Why a text is not the JSON of reports. Not to be confused with a trajectory's
+/// [`ReadError`](crate::trajectory::ReadError).
 #[derive(Debug, thiserror::Error)]
-pub enum ReadError {
+pub enum ReportReadError {
     #[error("expected the JSON of a report, found text that ends too early: {0}")]
     Truncated(serde_json::Error),
     #[error("expected the JSON of a report: {0}")]
@@ -77,33 +78,33 @@ pub enum ReadError {
     },
 }
 
-/// What [`render`] wrote. Of reports with series, those are [`SeriesState::Missing`](crate::verbs::SeriesState):
-/// [`series::unpack`](crate::verbs::series::unpack) brings both together.
+/// Reads what [`render`] wrote. Series of a report are not in it, so they are
+/// [`SeriesState::Missing`](crate::verbs::SeriesState): [`series::unpack`](crate::verbs::series::unpack) adds them.
 ///
 /// # Errors
-/// [`ReadError`], whatever the text.
-pub fn read<R: DeserializeOwned>(text: &[u8]) -> Result<(Tool, Vec<R>), ReadError> {
+/// [`ReportReadError`] for every text that is not such JSON.
+pub fn read<R: DeserializeOwned>(text: &[u8]) -> Result<(Tool, Vec<R>), ReportReadError> {
     let value: Value = serde_json::from_slice(text).map_err(|why| match why.classify() {
-        serde_json::error::Category::Eof => ReadError::Truncated(why),
-        _ => ReadError::NoJson(why),
+        serde_json::error::Category::Eof => ReportReadError::Truncated(why),
+        _ => ReportReadError::NoJson(why),
     })?;
     let older = |value: &Value| value["schema_version"] == 1;
     match &value["schema_version"] {
         version if *version == SCHEMA_VERSION => {}
         Value::Number(version) if version.as_f64() > Some(SCHEMA_VERSION as f64) => {
-            return Err(ReadError::Later(Value::Number(version.clone())));
+            return Err(ReportReadError::Later(Value::Number(version.clone())));
         }
-        _ if older(&value) || older(&value[0]) => return Err(ReadError::Older),
-        _ => return Err(ReadError::NoReport),
+        _ if older(&value) || older(&value[0]) => return Err(ReportReadError::Older),
+        _ => return Err(ReportReadError::NoReport),
     }
     let Value::Object(mut keys) = value else {
-        return Err(ReadError::NoReport);
+        return Err(ReportReadError::NoReport);
     };
     let (Some(tool), Some(Value::Array(reports))) = (keys.remove("tool"), keys.remove("reports"))
     else {
-        return Err(ReadError::NoReport);
+        return Err(ReportReadError::NoReport);
     };
-    let wrong = |place: String| move |why| ReadError::Wrong { place, why };
+    let wrong = |place: String| move |why| ReportReadError::Wrong { place, why };
     let tool = serde_json::from_value(tool).map_err(wrong("tool".to_owned()))?;
     let report =
         |(at, report)| serde_json::from_value(report).map_err(wrong(format!("reports[{at}]")));
@@ -111,8 +112,8 @@ pub fn read<R: DeserializeOwned>(text: &[u8]) -> Result<(Tool, Vec<R>), ReadErro
     Ok((tool, reports.collect::<Result<_, _>>()?))
 }
 
-/// No NaN and no infinity in anything the JSON carries. `Debug` reaches every field, also those a
-/// later version adds, and prints such numbers as bare words.
+/// Whether a report holds no NaN and no infinity. `Debug` reaches every field, also those a later version
+/// adds, and prints such numbers as bare words.
 fn is_finite(report: &impl Debug) -> bool {
     let text = format!("{report:?}")
         .replace(r"\\", "")

@@ -1,4 +1,4 @@
-//! The report as GitHub shows it: what the pages of all verbs have.
+//! The report in GitHub's Markdown: the parts of a page that all verbs have.
 
 use super::table::Table;
 use super::verdict::verdict;
@@ -6,7 +6,8 @@ use super::words::{self, escape};
 use super::{Note, View};
 use crate::measure::{Check, CheckStatus};
 
-/// How a page begins: name, description, verdict, and the table of what the scene is and `more` of it.
+/// The beginning of a page: name, description, verdict, and the table of facts about the scene with `more`
+/// of them.
 pub fn opening(view: &View, more: Vec<(&str, String)>) -> String {
     let scene = &view.header.scene;
     let mut text = format!("# {}\n\n", escape(&scene.name));
@@ -27,7 +28,7 @@ pub fn opening(view: &View, more: Vec<(&str, String)>) -> String {
     text + &format!("| scene |  |\n|---|---|\n{}\n", rows.collect::<String>())
 }
 
-/// What is to be said of single engines, and whether the harness proved itself.
+/// The remarks on single engines, and the checks of the harness.
 pub fn findings(view: &View) -> String {
     let line = |Note { subject, sentence }: &Note| {
         format!("- **{}**: {}\n", escape(subject), escape(sentence))
@@ -36,7 +37,7 @@ pub fn findings(view: &View) -> String {
     remarks + &section("Checks", checks(&view.header.checks))
 }
 
-/// The text below its title; nothing where it is empty.
+/// The text below its title, or nothing where the text is empty.
 pub fn section(title: &str, text: String) -> String {
     if text.is_empty() {
         return text;

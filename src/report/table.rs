@@ -1,6 +1,6 @@
-//! Tables: each column is declared once, with its headers in the terminal and in Markdown. The terminal
-//! leaves the least telling columns out where the width does not hold them; the first, the engine's
-//! name, is cut last.
+//! Tables: each column is declared once, with its headers in the terminal and in Markdown. Where the
+//! terminal is too narrow, the least important columns are left out first; the engine's name, in the first
+//! column, is cut last.
 
 use super::OWN;
 use super::terminal::{Tone, WIDTH, clip, mark, width, wrap};
@@ -10,23 +10,23 @@ use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, TableStyle
 const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─'));
 /// Spaces between columns.
 const GAP: usize = 2;
-/// An engine's name is not cut below this while another column can go.
-const NAME: usize = 28;
+/// An engine's name is not cut below this width while another column can be left out.
+const MIN_NAME_WIDTH: usize = 28;
 
-/// One line a row, and columns over them.
+/// Rows, and the columns declared over them.
 pub struct Table<'a, R> {
     rows: &'a [R],
     columns: Vec<Column>,
 }
 
-/// One column, built whole.
+/// One column with its cells.
 struct Column {
-    /// In the terminal, where `\n` folds it, and in Markdown; where it is empty the column is not shown.
+    /// The header in the terminal, where `\n` folds it, and in Markdown. An empty one hides the column there.
     headers: [String; 2],
     alignment: CellAlignment,
-    /// Columns with the highest number leave the terminal first; 0 stays.
-    spare: u8,
-    /// Escaped for Markdown where they are not numbers.
+    /// Columns with the highest number are left out of the terminal first; 0 always stays.
+    drop_order: u8,
+    /// The texts, escaped for Markdown where they are not numbers.
     cells: Vec<(String, Option<Tone>)>,
 }
 
@@ -59,25 +59,30 @@ impl<'a, R> Table<'a, R> {
         self.add([terminal, markdown], CellAlignment::Left, 0, cell);
     }
 
-    /// A column of numbers. The terminal leaves out those with the highest `spare` first, and never one
+    /// A column of numbers. The terminal leaves out columns with the highest `drop_order` first, and never one
     /// with 0.
     pub fn right<C: Into<Option<String>>>(
         &mut self,
         terminal: &str,
         markdown: &str,
-        spare: u8,
+        drop_order: u8,
         cell: impl Fn(&R) -> C,
     ) {
         let cell = |row: &R| (cell(row).into().unwrap_or(NOTHING.into()), None);
-        self.add([terminal, markdown], CellAlignment::Right, spare, cell);
+        self.add([terminal, markdown], CellAlignment::Right, drop_order, cell);
     }
 
-    /// The same for the terminal alone, with tones.
-    pub fn toned(&mut self, header: &str, spare: u8, cell: impl Fn(&R) -> (String, Option<Tone>)) {
-        self.add([header, ""], CellAlignment::Right, spare, cell);
+    /// A column of numbers for the terminal alone, with tones.
+    pub fn toned(
+        &mut self,
+        header: &str,
+        drop_order: u8,
+        cell: impl Fn(&R) -> (String, Option<Tone>),
+    ) {
+        self.add([header, ""], CellAlignment::Right, drop_order, cell);
     }
 
-    /// A column of Markdown alone.
+    /// A column for Markdown alone.
     pub fn markdown<C: Into<Option<String>>>(&mut self, header: &str, cell: impl Fn(&R) -> C) {
         self.right("", header, 0, cell);
     }
@@ -86,13 +91,13 @@ impl<'a, R> Table<'a, R> {
         &mut self,
         headers: [&str; 2],
         alignment: CellAlignment,
-        spare: u8,
+        drop_order: u8,
         cell: impl Fn(&R) -> (String, Option<Tone>),
     ) {
         self.columns.push(Column {
             headers: headers.map(str::to_owned),
             alignment,
-            spare,
+            drop_order,
             cells: self.rows.iter().map(cell).collect(),
         });
     }
@@ -102,8 +107,8 @@ impl<'a, R> Table<'a, R> {
         self.fitted().1.is_empty()
     }
 
-    /// The lines and their legend, which is told the headers of the columns left out for width and to
-    /// which these are added, separated by `between`.
+    /// The lines of the table and its legend. `legend` is given the headers of the columns left out for width;
+    /// the same headers are appended to it, separated by `between`.
     pub fn in_terminal(
         &self,
         between: &str,
@@ -120,13 +125,13 @@ impl<'a, R> Table<'a, R> {
         lines
     }
 
-    /// The terminal's columns that say something and fit, and the headers of those that do not fit.
+    /// The columns the terminal shows, and the headers of those that do not fit.
     fn fitted(&self) -> (Vec<&Column>, Vec<String>) {
-        let mut columns: Vec<&Column> = self.columns.iter().filter(|c| c.is_told()).collect();
+        let mut columns: Vec<&Column> = self.columns.iter().filter(|c| c.is_shown()).collect();
         let mut left_out = Vec::new();
-        while room(&columns) < columns[0].width().min(NAME)
-            && let Some(i) = (1..columns.len()).max_by_key(|&i| columns[i].spare)
-            && columns[i].spare > 0
+        while room(&columns) < columns[0].width().min(MIN_NAME_WIDTH)
+            && let Some(i) = (1..columns.len()).max_by_key(|&i| columns[i].drop_order)
+            && columns[i].drop_order > 0
         {
             let [header, _] = &columns.remove(i).headers;
             left_out.push(header.replace("-\n", "-").replace('\n', " "));
@@ -146,8 +151,8 @@ impl<'a, R> Table<'a, R> {
 }
 
 impl Column {
-    /// Whether the terminal shows it: some cell says something.
-    fn is_told(&self) -> bool {
+    /// Whether the terminal shows the column: it has a header, and not every cell is empty.
+    fn is_shown(&self) -> bool {
         let silent = !self.cells.is_empty() && self.cells.iter().all(|(text, _)| text == NOTHING);
         !self.headers[0].is_empty() && !silent
     }
@@ -159,7 +164,7 @@ impl Column {
     }
 }
 
-/// What the other columns leave to the first.
+/// The width the other columns leave to the first.
 fn room(columns: &[&Column]) -> usize {
     let others: usize = columns[1..].iter().map(|c| c.width() + GAP).sum();
     WIDTH.saturating_sub(others)
@@ -173,7 +178,7 @@ fn laid_out(columns: &[&Column]) -> Vec<String> {
     let lines = |column: &Column| column.headers[0].lines().count();
     let height = columns.iter().map(|c| lines(c)).max().unwrap_or(1);
     table.set_header(columns.iter().map(|column| {
-        // Headers stand on the rule: shorter ones start lower.
+        // Headers are aligned at their last line, so shorter ones start lower.
         let above = "\n".repeat(height - lines(column));
         Cell::new(above + &column.headers[0]).set_alignment(column.alignment)
     }));

@@ -1,20 +1,20 @@
-//! The one sentence that says the most important thing.
+//! The verdict: one sentence with the most important findings.
 
 use super::View;
 use super::words::{listed, one_line};
 use crate::measure::{Check, CheckStatus};
 
-/// A part of the sentence: the same said at length, shorter, and so on. The last may be empty.
+/// A part of the verdict in several forms, from the longest to the shortest. The last may be empty.
 pub type Clause = Vec<String>;
 
-/// Failed checks first, then what the verb has to say, the scene's own integrator leading. One
-/// sentence, one line.
+/// The verdict on one line: failed checks first, then the verb's clauses, the scene's own integrator
+/// first.
 pub fn verdict(view: &View) -> String {
     within(view, usize::MAX)
 }
 
-/// The same in at most `columns` characters where that can be done: the least important groups are
-/// counted instead of named, then left out.
+/// The verdict in at most `columns` characters where that is possible: the least important clauses take
+/// their shorter forms first.
 pub fn within(view: &View, columns: usize) -> String {
     let failed = failed_checks(&view.header.checks);
     let clauses: Vec<&Clause> = failed.iter().chain(&view.clauses).collect();
@@ -40,7 +40,7 @@ pub fn within(view: &View, columns: usize) -> String {
     }
 }
 
-/// The checks that prove rapier's world and the hand-written system are the same scene.
+/// Whether a check belongs to the twin proof: rapier's world and the hand-written system are one scene.
 pub fn is_twin(check: &Check) -> bool {
     check.id.starts_with("twin")
 }

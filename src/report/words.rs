@@ -1,11 +1,11 @@
-//! The words and numbers the human-readable reports share.
+//! Words and numbers, as all human-readable reports write them.
 
 use crate::measure::{Check, CheckStatus, Energy, EnergyClass};
 use crate::report::TruthFacts;
 use crate::truth::TruthKind;
 use serde::Serialize;
 
-/// What stands where there is nothing to say.
+/// The text of an empty cell.
 pub const NOTHING: &str = "-";
 
 /// Two significant digits: `3.1e-4`; exact zero is `0`.
@@ -16,7 +16,7 @@ pub fn sci(value: f64) -> String {
     format!("{value:.1e}")
 }
 
-/// As plain as two significant digits allow: `0.31`, `12`, `3.1e4`.
+/// Two significant digits, plain where possible: `0.31`, `12`, `3.1e4`.
 pub fn short_sci(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
@@ -26,7 +26,7 @@ pub fn short_sci(value: f64) -> String {
     }
 }
 
-/// What a check compares: three digits, `2.97` or `1.1e-16`.
+/// A number a check compares, three digits: `2.97` or `1.1e-16`.
 pub fn quantity(value: f64) -> String {
     match value.abs() {
         v if (0.0995..999.5).contains(&v) => short((value * 1e3).round() / 1e3),
@@ -34,7 +34,7 @@ pub fn quantity(value: f64) -> String {
     }
 }
 
-/// What a check measured beside its bound, with the sign between them; empty without numbers.
+/// The measured value of a check and its bound, with the sign between them; empty without numbers.
 pub fn measured(check: &Check) -> String {
     let passed = check.status == CheckStatus::Pass;
     match (check.measured, check.bound) {
@@ -53,7 +53,7 @@ pub fn measured(check: &Check) -> String {
     }
 }
 
-/// A number as an author would write it, at most three digits where it is not short already:
+/// A number as an author would write it, with at most three digits unless it is short already:
 /// `0.0005`, `5`, `3.33e-4`.
 pub fn short(value: f64) -> String {
     let plain = format!("{value}");
@@ -123,7 +123,7 @@ pub fn listed(texts: &[String]) -> String {
     }
 }
 
-/// Equal things once, in the order they first come, each with all that belong to it.
+/// The pairs grouped by equal second parts, in the order these first come.
 pub fn grouped<M, T: PartialEq>(pairs: impl Iterator<Item = (M, T)>) -> Vec<(T, Vec<M>)> {
     let mut groups: Vec<(T, Vec<M>)> = Vec::new();
     for (member, of) in pairs {
@@ -135,7 +135,7 @@ pub fn grouped<M, T: PartialEq>(pairs: impl Iterator<Item = (M, T)>) -> Vec<(T, 
     groups
 }
 
-/// The largest relative energy error, signed by the way the energy goes.
+/// The largest relative energy error, with a sign for growing or falling energy.
 pub fn energy_error(energy: &Energy) -> Option<String> {
     let error = energy.relative_error_max?;
     let rises = energy.drift_per_s.is_some_and(|d| d > 0.0);
@@ -151,7 +151,7 @@ pub fn energy_error(energy: &Energy) -> Option<String> {
     Some(format!("{sign}{}", sci(error)))
 }
 
-/// An error against the truth; `floor` below ten times the truth's own bar.
+/// An error against the truth; `floor` below ten times the truth's error bar.
 pub fn truth_error(error: f64, truth: &TruthFacts) -> String {
     match truth.error_bound_m {
         Some(bar) if error < 10.0 * bar => "floor".into(),
@@ -159,7 +159,7 @@ pub fn truth_error(error: f64, truth: &TruthFacts) -> String {
     }
 }
 
-/// What the truth of this scene is, in one line.
+/// The truth of this scene, in one line.
 pub fn truth(truth: &TruthFacts) -> String {
     let kind = match truth.kind {
         TruthKind::ClosedForm => "closed form",
@@ -193,7 +193,7 @@ pub fn one_line(text: &str) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// The steps outcomes were run at: `0.0005 s`, or `several, the file's 0.0005 s`; `own` is the file's.
+/// The timesteps of the outcomes: `0.0005 s`, or `several, the file's 0.0005 s`; `own` is the file's.
 pub fn timestep(own: f64, steps: &[f64]) -> String {
     match steps {
         [] => format!("{} s", short(own)),
@@ -202,7 +202,7 @@ pub fn timestep(own: f64, steps: &[f64]) -> String {
     }
 }
 
-/// Text with nothing left that Markdown or HTML would read as its own, on one line.
+/// Text on one line, with everything escaped that Markdown or HTML would interpret.
 pub fn escape(text: &str) -> String {
     let text = one_line(text);
     let mut escaped = String::with_capacity(text.len());

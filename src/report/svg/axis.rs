@@ -1,4 +1,4 @@
-//! The range of values a figure shows, from values to places on an axis, and the ticks along it.
+//! The axis of a chart: its range, the map from values to places, and its ticks.
 
 /// How values are spread over an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -6,15 +6,16 @@ pub enum Scale {
     Linear,
     /// Logarithmic; the range is positive.
     Log,
-    /// Linear within ±`linear` (a power of ten), one more unit per decade beyond.
+    /// Linear within ±`linear` (a power of ten); beyond, each decade is one more unit.
     SymLog {
         linear: f64,
     },
 }
 
-/// A range of values under a scale.
+/// A range of values under a scale. Not to be confused with the direction in space,
+/// [`scene::Axis`](crate::scene::Axis).
 #[derive(Debug, Clone, Copy)]
-pub struct Axis {
+pub struct ChartAxis {
     pub scale: Scale,
     /// Smallest and largest value, the first below the second.
     pub range: [f64; 2],
@@ -23,29 +24,29 @@ pub struct Axis {
 /// Values beyond this are drawn as this, so that no difference overflows.
 pub const HUGE: f64 = 1e300;
 
-impl Axis {
-    /// `range` widened to something that can be divided by: a constant gets room around it.
-    pub fn linear(range: [f64; 2]) -> Axis {
+impl ChartAxis {
+    /// A linear axis. A range without a width gets room around it, so that it can be divided by.
+    pub fn linear(range: [f64; 2]) -> ChartAxis {
         let (scale, range) = (Scale::Linear, opened(range));
-        Axis { scale, range }
+        ChartAxis { scale, range }
     }
 
-    /// Logarithmic where both ends are positive and lie apart, else linear.
-    pub fn logarithmic(range: [f64; 2]) -> Axis {
+    /// An axis that is logarithmic where both ends are positive and lie apart, else linear.
+    pub fn logarithmic(range: [f64; 2]) -> ChartAxis {
         let ([lo, hi], scale) = (range, Scale::Log);
         if lo > 1.0 / HUGE && hi < HUGE && hi > 1.001 * lo {
-            return Axis { scale, range };
+            return ChartAxis { scale, range };
         }
-        Axis::linear(range)
+        ChartAxis::linear(range)
     }
 
-    /// 0 at the lower end, 1 at the upper, beyond them outside.
+    /// The place of a value: 0 at the lower end, 1 at the upper, outside beyond them.
     pub fn place(&self, value: f64) -> f64 {
         let [lo, hi] = self.range.map(|end| self.forward(end));
         (self.forward(value) - lo) / (hi - lo)
     }
 
-    /// The value at a part of the axis: the inverse of [`Axis::place`].
+    /// The value at a part of the axis: the inverse of [`ChartAxis::place`].
     pub fn at(&self, part: f64) -> f64 {
         let [lo, hi] = self.range.map(|end| self.forward(end));
         let forward = lo + part * (hi - lo);
@@ -59,13 +60,13 @@ impl Axis {
         }
     }
 
-    /// From the outer edge of the first of several cells of one size to that of the last, given their
-    /// middles in ascending order: logarithmic where all are positive.
-    pub fn of_cells(middles: &[f64]) -> Axis {
+    /// The axis over cells of one size, from the outer edge of the first to that of the last, given their
+    /// middles in ascending order. It is logarithmic where all are positive.
+    pub fn of_cells(middles: &[f64]) -> ChartAxis {
         let [first, last] = [middles.first(), middles.last()].map(|v| v.copied().unwrap_or(1.0));
-        let axis = Axis::logarithmic([first, last]);
+        let axis = ChartAxis::logarithmic([first, last]);
         let half = 0.5 / (middles.len().max(2) - 1) as f64;
-        Axis {
+        ChartAxis {
             range: [axis.at(-half), axis.at(1.0 + half)],
             ..axis
         }
@@ -78,7 +79,7 @@ impl Axis {
             Scale::Log => value.max(1.0 / HUGE).log10(),
             Scale::SymLog { linear } if value.abs() <= linear => value / linear,
             Scale::SymLog { linear } => {
-                // Logarithms subtracted, not a quotient taken: that could overflow.
+                // Logarithms are subtracted, since a quotient could overflow.
                 value.signum() * (1.0 + value.abs().log10() - linear.log10())
             }
         }
@@ -98,7 +99,7 @@ impl Axis {
         let first = linear.log10().round() as i32;
         let [lo, hi] = self.range.map(|end| self.forward(end));
         let every = ((hi - lo) / wanted.max(1) as f64).ceil().max(1.0) as usize;
-        // The first as far from zero as from the second.
+        // The first tick is as far from zero as from the second.
         let exponents = (first + every as i32 - 1..=300).step_by(every);
         let both = exponents.flat_map(|exponent| {
             let (value, label) = (10_f64.powi(exponent), power_of_ten(exponent));
@@ -109,8 +110,8 @@ impl Axis {
     }
 }
 
-/// Smallest and largest of the values that are finite; `None` without any. Of ranges: their ends,
-/// flattened.
+/// The smallest and the largest of the finite values; `None` without any. The range of ranges takes their
+/// ends, flattened.
 pub fn range(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
     let finite = values.into_iter().filter(|v| v.is_finite());
     finite.fold(None, |range, v| {
@@ -119,20 +120,20 @@ pub fn range(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
     })
 }
 
-/// What points span along x (0) or y (1).
+/// The range of points along x (0) or y (1).
 pub fn span(points: &[[f64; 2]], axis: usize) -> Option<[f64; 2]> {
     range(points.iter().map(|point| point[axis]))
 }
 
-/// Room on both sides, as a part of the range.
+/// The range with room on both sides, as a part of itself.
 pub fn padded([lo, hi]: [f64; 2], part: f64) -> [f64; 2] {
     let room = part * (hi / 2.0 - lo / 2.0) * 2.0;
     [lo - room, hi + room]
 }
 
-/// What the calm lines span, and of the wild ones (growing, diverged) as much as does not push the
-/// calm into a corner: each side gives way by at most half the calm span. Each line says whether it is
-/// wild, and its span; where all are, the smallest counts as calm.
+/// The range of the calm lines, widened for the wild ones (growing, diverged) by at most half the calm span
+/// on each side, so that the calm lines stay readable. `spans` says of each line whether it is wild, and its
+/// span. Where all lines are wild, the one with the smallest span counts as calm.
 pub fn tamed(spans: impl IntoIterator<Item = (bool, [f64; 2])>) -> Option<[f64; 2]> {
     let (wild, calm): (Vec<_>, Vec<_>) = spans.into_iter().partition(|(is_wild, _)| *is_wild);
     let size = |(_, [lo, hi]): &(bool, [f64; 2])| hi - lo;
@@ -148,7 +149,7 @@ pub fn tamed(spans: impl IntoIterator<Item = (bool, [f64; 2])>) -> Option<[f64; 
     }))
 }
 
-/// Room around a constant, order between the ends, nothing beyond [`HUGE`].
+/// The range within [`HUGE`], with room around a constant.
 fn opened([lo, hi]: [f64; 2]) -> [f64; 2] {
     let (lo, hi) = (lo.clamp(-HUGE, HUGE), hi.clamp(-HUGE, HUGE));
     let size = lo.abs().max(hi.abs());
@@ -175,7 +176,7 @@ fn linear_ticks([lo, hi]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
         .collect()
 }
 
-/// Powers of ten, every n-th where there are many; 1, 2, 5 times them where there are few.
+/// Ticks at powers of ten: every n-th where there are many; also 2 and 5 times them where there are few.
 fn log_ticks([lo, hi]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
     let inside = |value: &f64| (lo * (1.0 - 1e-9)..=hi * (1.0 + 1e-9)).contains(value);
     let (first, last) = (lo.log10().floor() as i32, hi.log10().ceil() as i32);
@@ -203,7 +204,7 @@ fn step(least: f64) -> f64 {
         .unwrap_or(10.0 * power)
 }
 
-/// As many digits as tell neighbouring ticks apart; scientific for very large or small axes.
+/// A tick's label, with enough digits to tell neighbours apart; scientific for very large or small axes.
 fn label(value: f64, step: f64, size: f64) -> String {
     if value.abs() < 0.5 * step {
         return "0".into();

@@ -1,13 +1,13 @@
-//! SVG text, written element by element. Every number has one fixed decimal, so equal input gives
-//! equal bytes; there are no ids, so several figures can stand inline on one page.
+//! SVG text, written element by element. Numbers have at most one decimal, so equal input gives
+//! equal bytes; there are no ids, so several figures can be inline on one page.
 
-/// How a line is drawn.
+/// The look of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
     pub colour: &'static str,
-    /// As `stroke-dasharray` takes it; empty for a solid line.
+    /// The value of `stroke-dasharray`; empty for a solid line.
     pub dash: &'static str,
-    /// Pixels.
+    /// The width, pixels.
     pub width: f64,
 }
 
@@ -21,36 +21,36 @@ impl Stroke {
     }
 }
 
-/// Where a text stands relative to its point.
+/// The place of a text relative to its point.
 #[derive(Debug, Clone, Copy)]
 pub enum Align {
     Start,
     Middle,
     End,
-    /// Read from bottom to top, its middle at the point.
+    /// The text reads from bottom to top, its middle at the point.
     Upward,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
+pub enum SymbolShape {
     Disc,
     Square,
     Diamond,
     Triangle,
-    /// Diagonal, without a filling.
+    /// Two diagonals, without a filling.
     Cross,
 }
 
 /// A point's look, about 7 pixels wide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Symbol {
-    pub shape: Shape,
+    pub shape: SymbolShape,
     pub fill: &'static str,
     pub outline: &'static str,
 }
 
 impl Symbol {
-    pub const fn new(shape: Shape, fill: &'static str, outline: &'static str) -> Symbol {
+    pub const fn new(shape: SymbolShape, fill: &'static str, outline: &'static str) -> Symbol {
         Symbol {
             shape,
             fill,
@@ -58,19 +58,19 @@ impl Symbol {
         }
     }
 
-    /// Where something ended early.
+    /// The mark of a run that ended early.
     pub const fn cross(colour: &'static str) -> Symbol {
-        Symbol::new(Shape::Cross, colour, colour)
+        Symbol::new(SymbolShape::Cross, colour, colour)
     }
 }
 
 pub const WHITE: &str = "#ffffff";
-/// Dark grey of text.
+/// The dark grey of text.
 pub const INK: &str = "#222222";
-/// Grey of what stands back: axes, notes.
+/// The lighter grey of axes and notes.
 pub const FAINT: &str = "#6b6b6b";
 
-/// A drawing under way; pixels, y downward.
+/// An unfinished drawing, in pixels with y downward.
 #[derive(Default)]
 pub struct Canvas {
     body: String,
@@ -86,7 +86,7 @@ impl Canvas {
         ));
     }
 
-    /// `data` as in the `d` attribute; nothing if empty.
+    /// Draws a path; `data` is its `d` attribute. Empty `data` draws nothing.
     pub fn path(&mut self, data: &str, stroke: Stroke) {
         if data.is_empty() {
             return;
@@ -103,7 +103,7 @@ impl Canvas {
         ));
     }
 
-    /// A closed area, filled with hard edges, so that neighbours leave no seam; nothing if empty.
+    /// Fills a closed area. Its edges are hard, so that neighbours leave no seam. Empty `data` draws nothing.
     pub fn area(&mut self, data: &str, colour: &str) {
         if !data.is_empty() {
             self.push(&format!(
@@ -122,19 +122,19 @@ impl Canvas {
     pub fn symbol(&mut self, centre: [f64; 2], symbol: Symbol) {
         let ([x, y], fill, outline) = (centre, symbol.fill, symbol.outline);
         let corners: &[[f64; 2]] = match symbol.shape {
-            Shape::Disc => {
+            SymbolShape::Disc => {
                 let [x, y] = centre.map(px);
                 return self.push(&format!(
                     r#"<circle cx="{x}" cy="{y}" r="3.3" fill="{fill}" stroke="{outline}"/>"#
                 ));
             }
-            Shape::Cross => {
+            SymbolShape::Cross => {
                 self.line([x - 3.8, y - 3.8], [x + 3.8, y + 3.8], outline, 2.0);
                 return self.line([x - 3.8, y + 3.8], [x + 3.8, y - 3.8], outline, 2.0);
             }
-            Shape::Square => &[[-3.0, -3.0], [3.0, -3.0], [3.0, 3.0], [-3.0, 3.0]],
-            Shape::Diamond => &[[0.0, -4.3], [4.3, 0.0], [0.0, 4.3], [-4.3, 0.0]],
-            Shape::Triangle => &[[0.0, -4.0], [3.8, 2.8], [-3.8, 2.8]],
+            SymbolShape::Square => &[[-3.0, -3.0], [3.0, -3.0], [3.0, 3.0], [-3.0, 3.0]],
+            SymbolShape::Diamond => &[[0.0, -4.3], [4.3, 0.0], [0.0, 4.3], [-4.3, 0.0]],
+            SymbolShape::Triangle => &[[0.0, -4.0], [3.8, 2.8], [-3.8, 2.8]],
         };
         let corner = |[dx, dy]: &[f64; 2]| format!("{} {}", px(x + dx), px(y + dy));
         let corners: Vec<String> = corners.iter().map(corner).collect();
@@ -166,7 +166,7 @@ impl Canvas {
         self.body.push('\n');
     }
 
-    /// The whole file: white behind everything, so that dark pages show it too.
+    /// The whole file. Its background is white, so that it shows on dark pages too.
     pub fn finish(self, width: f64, height: f64, title: &str) -> String {
         let (width, height) = (px(width.ceil()), px(height.ceil()));
         let (title, body) = (escape(title), self.body);
@@ -182,11 +182,11 @@ impl Canvas {
 
 /// A coordinate with at most one decimal, never `-0`.
 pub fn px(value: f64) -> String {
-    // Adding 0 takes the sign from -0.
+    // Adding 0 turns -0 into 0.
     ((10.0 * value).round() / 10.0 + 0.0).to_string()
 }
 
-/// Text as XML carries it between tags; characters XML 1.0 forbids are left out.
+/// Text escaped for XML, without the characters XML 1.0 forbids.
 fn escape(text: &str) -> String {
     let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     let text = text.replace(forbidden, "").replace('&', "&amp;");

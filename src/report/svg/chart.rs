@@ -1,39 +1,40 @@
-//! The grammar of every figure: a chart is a title, a legend and panels in rows; a panel is two axes,
-//! marks, and labels beside them. Figures say in values what there is to see; its place is decided here.
+//! The layout of every figure: a chart is a title, a legend and panels in rows; a panel is two axes, marks,
+//! and labels beside them. Figures give values; this file decides where they are drawn.
 
 use super::WIDTH;
-use super::axis::Axis;
+use super::axis::ChartAxis;
 use super::canvas::{Align, Canvas, FAINT, INK};
-use super::key::{Key, Look, SWATCH};
+use super::key::{LegendEntry, Look, SWATCH};
 use super::marks::{Anchor, Frame, Mark, Window};
 
 /// Pixels left of the first panel, for tick labels and the axis title.
 const LEFT: f64 = 84.0;
-/// Pixels below a panel, for the same.
+/// Pixels below a panel, for tick labels and the axis title.
 const BELOW: f64 = 46.0;
-/// Points the lines of a chart have together: the file stays below 300 kB.
+/// The most points of all lines of a chart together: the file stays below 300 kB.
 const POINTS: usize = 20_000;
 /// Pixels from one label's baseline to the next.
 const PITCH: f64 = 16.0;
 /// Pixels from a panel's edge to the labels beside it, crossed by the thin lines that lead there.
 const LEADER: f64 = 16.0;
-/// Smallest size of a panel with equal scales.
-const SMALLEST: [f64; 2] = [240.0, 160.0];
+/// The smallest size of a panel with equal scales, pixels.
+const MIN_SIZE: [f64; 2] = [240.0, 160.0];
 
 /// A figure.
 #[derive(Default)]
 pub struct Chart {
     pub title: String,
-    /// Below the title, in as many lines as it takes.
-    pub legend: Vec<Key>,
-    /// Titles of x and y: beside each panel in a single column, else once for all.
+    /// The entries below the title, in as many lines as they need.
+    pub legend: Vec<LegendEntry>,
+    /// The titles of x and y: at each panel of a single column, else once for all panels.
     pub titles: [String; 2],
-    /// In rows of [`Chart::columns`]; with more than one, the panels of a column share their x axis.
+    /// The panels, in rows of [`Chart::columns`]. With more than one column, the panels of a column have the
+    /// same x axis.
     pub panels: Vec<Panel>,
     pub columns: usize,
-    /// Whether each panel of a row has a y axis of its own, or all have the first one's.
+    /// Whether each panel of a row has a y axis of its own; else all have that of the first.
     pub own_y: bool,
-    /// Below everything; may be empty.
+    /// The text below everything; may be empty.
     pub note: String,
 }
 
@@ -41,21 +42,21 @@ pub struct Chart {
 pub struct Panel {
     /// May be empty.
     pub title: String,
-    /// Pixels, at most; infinite for as many as there are.
+    /// The largest width, pixels; infinite to take all the room.
     pub width: f64,
-    /// Pixels, at least; more where the labels need it.
+    /// The smallest height, pixels; it grows where the labels need more.
     pub height: f64,
-    /// Along x and y.
-    pub axes: [Axis; 2],
-    /// Whether a unit is as long along both axes; the axes then grow, or the panel is smaller.
+    /// The axes along x and y.
+    pub axes: [ChartAxis; 2],
+    /// Whether a unit has the same length along both axes. The axes then grow, or the panel shrinks.
     pub equal_scales: bool,
-    /// Whether it stands close below the panel before and has the same x axis.
+    /// Whether the panel is placed close below the one before and has the same x axis.
     pub joined: bool,
-    /// In the order they are painted.
+    /// The marks, in the order they are painted.
     pub marks: Vec<Mark>,
-    /// Stand beside the panel from the top down. Not to be confused with the labels of lines, which
-    /// stand at their lines' ends.
-    pub keys: Vec<Key>,
+    /// The entries beside the panel, from the top down. Not to be confused with the labels of lines, which
+    /// are placed at their lines' ends.
+    pub keys: Vec<LegendEntry>,
 }
 
 impl Chart {
@@ -65,9 +66,13 @@ impl Chart {
         canvas.text([LEFT, 24.0], Align::Start, 15.0, INK, &self.title);
         let mut top = self.legend(&mut canvas);
         let columns = self.columns.max(1);
-        // Between panels of one row: more where each has tick labels.
+        // The gap between panels of one row is larger where each has tick labels.
         let gap = if self.own_y { 56.0 } else { 18.0 };
-        let labels = self.panels.iter().flat_map(Panel::labels).map(Key::width);
+        let labels = self
+            .panels
+            .iter()
+            .flat_map(Panel::labels)
+            .map(LegendEntry::width);
         let labels = labels.fold(0.0, |most, text| f64::max(most, LEADER + SWATCH + text));
         let gaps = gap * (columns - 1) as f64;
         let room = (WIDTH - LEFT - f64::max(12.0, labels) - gaps) / columns as f64;
@@ -79,7 +84,7 @@ impl Chart {
         let budget = (POINTS / lines.max(1)).clamp(16, 1_000);
 
         let stacks: Vec<&[Panel]> = self.panels.chunk_by(|_, next| next.joined).collect();
-        // What has axis titles: each stack of a single column, or all together.
+        // The windows that have axis titles: each stack of a single column, or all panels together.
         let mut titled: Vec<Window> = Vec::new();
         for (row, in_row) in stacks.chunks(columns).enumerate() {
             if in_row.iter().any(|stack| !stack[0].title.is_empty()) {
@@ -129,7 +134,7 @@ impl Chart {
         canvas.finish(WIDTH, top + 2.0, &self.title)
     }
 
-    /// Returns where the panels start.
+    /// Draws the legend and returns the top of the panels, pixels.
     fn legend(&self, canvas: &mut Canvas) -> f64 {
         let (mut x, mut y) = (LEFT, 46.0);
         for key in &self.legend {
@@ -148,7 +153,7 @@ impl Chart {
     }
 }
 
-/// Which sides of a panel have tick labels, and how many pixels those below may stand over.
+/// The sides of a panel with tick labels, and how many pixels the labels below may reach past its edges.
 struct Ticks {
     left: bool,
     below: bool,
@@ -156,8 +161,8 @@ struct Ticks {
 }
 
 impl Panel {
-    /// As wide as there is room, without keys.
-    pub fn new(title: String, height: f64, axes: [Axis; 2], marks: Vec<Mark>) -> Panel {
+    /// A panel as wide as there is room, without keys.
+    pub fn new(title: String, height: f64, axes: [ChartAxis; 2], marks: Vec<Mark>) -> Panel {
         Panel {
             title,
             width: f64::INFINITY,
@@ -170,8 +175,8 @@ impl Panel {
         }
     }
 
-    /// Everything that stands beside it.
-    fn labels(&self) -> impl Iterator<Item = &Key> {
+    /// All labels beside the panel.
+    fn labels(&self) -> impl Iterator<Item = &LegendEntry> {
         let labels = self.marks.iter().filter_map(Mark::label);
         labels.chain(&self.keys)
     }
@@ -187,16 +192,16 @@ impl Panel {
         let (space, ranges) = ([self.width, self.height], self.axes.map(|axis| axis.range));
         let spans = ranges.map(|[lo, hi]| hi - lo);
         let scale = f64::min(space[0] / spans[0], space[1] / spans[1]);
-        let size = [0, 1].map(|a| (spans[a] * scale).max(SMALLEST[a]).min(space[a]));
+        let size = [0, 1].map(|a| (spans[a] * scale).max(MIN_SIZE[a]).min(space[a]));
         let grown = |a: usize| {
             let ([lo, hi], half) = (ranges[a], size[a] / scale / 2.0);
             let middle = lo / 2.0 + hi / 2.0;
-            Axis::linear([middle - half, middle + half])
+            ChartAxis::linear([middle - half, middle + half])
         };
         ([self.width, self.height], self.axes) = (size, [grown(0), grown(1)]);
     }
 
-    /// Returns where its labels end, which is below the window where more stand than fit.
+    /// Draws the panel and returns the bottom of its labels, pixels: below the window where not all fit.
     fn draw(&self, canvas: &mut Canvas, window: Window, ticks: Ticks, budget: usize) -> f64 {
         if !self.title.is_empty() {
             let size = if self.width < 300.0 { 11.0 } else { 12.0 };
@@ -205,8 +210,8 @@ impl Panel {
         }
         let axes = self.axes;
         let frame = Frame { window, axes };
-        ground(canvas, &frame, ticks);
-        let mut notes: Vec<(&Key, Option<Anchor>)> = Vec::new();
+        grid(canvas, &frame, ticks);
+        let mut notes: Vec<(&LegendEntry, Option<Anchor>)> = Vec::new();
         for mark in &self.marks {
             let anchor = frame.draw(canvas, mark, budget);
             let label = mark.label().filter(|_| anchor.is_some());
@@ -220,17 +225,17 @@ impl Panel {
 }
 
 /// Grid lines and ticks along both axes.
-fn ground(canvas: &mut Canvas, frame: &Frame, ticks: Ticks) {
+fn grid(canvas: &mut Canvas, frame: &Frame, ticks: Ticks) {
     let (w, [width, height]) = (frame.window, frame.window.size());
-    let grid = |value| if value == 0.0 { "#b4b4b4" } else { "#e4e4e4" };
+    let colour = |value| if value == 0.0 { "#b4b4b4" } else { "#e4e4e4" };
     // Small panels have their ticks closer together.
     let apart = (width / 8.0).clamp(42.0, 75.0);
     for (value, label) in frame.axes[0].ticks((width / apart) as usize) {
         let [x, _] = frame.place([value, 0.0]);
-        canvas.line([x, w.top], [x, w.bottom], grid(value), 1.0);
+        canvas.line([x, w.top], [x, w.bottom], colour(value), 1.0);
         canvas.line([x, w.bottom], [x, w.bottom + 4.0], FAINT, 1.0);
         if ticks.below {
-            // Pushed inward at the edges, where the next panel's labels begin.
+            // Labels are pushed inward at the edges, where the next panel's labels begin.
             let half = 3.3 * label.chars().count() as f64 - ticks.overhang;
             let x = x.max(w.left + half).min(w.right - half);
             canvas.text([x, w.bottom + 16.0], Align::Middle, 11.0, INK, &label);
@@ -239,7 +244,7 @@ fn ground(canvas: &mut Canvas, frame: &Frame, ticks: Ticks) {
     let apart = (height / 5.0).clamp(17.0, 32.0);
     for (value, label) in frame.axes[1].ticks((height / apart) as usize) {
         let [_, y] = frame.place([0.0, value]);
-        canvas.line([w.left, y], [w.right, y], grid(value), 1.0);
+        canvas.line([w.left, y], [w.right, y], colour(value), 1.0);
         canvas.line([w.left - 4.0, y], [w.left, y], FAINT, 1.0);
         if ticks.left {
             canvas.text([w.left - 7.0, y + 4.0], Align::End, 11.0, INK, &label);
@@ -247,9 +252,9 @@ fn ground(canvas: &mut Canvas, frame: &Frame, ticks: Ticks) {
     }
 }
 
-/// Labels right of a window, each as near to its point as the others allow, those without a point from
-/// the top down. Returns where they end, which is below the window where more stand than fit.
-fn beside(canvas: &mut Canvas, mut notes: Vec<(&Key, Option<Anchor>)>, w: Window) -> f64 {
+/// Draws labels right of a window, each as near to its point as the others allow, those without a point
+/// from the top down. Returns their bottom, pixels: below the window where not all fit.
+fn beside(canvas: &mut Canvas, mut notes: Vec<(&LegendEntry, Option<Anchor>)>, w: Window) -> f64 {
     let wish = |anchor: &Option<Anchor>| anchor.map_or(w.top, |anchor| anchor.point[1]);
     notes.sort_by(|(_, a), (_, b)| wish(a).total_cmp(&wish(b)));
     let wishes: Vec<f64> = notes.iter().map(|(_, anchor)| wish(anchor)).collect();
@@ -268,8 +273,8 @@ fn beside(canvas: &mut Canvas, mut notes: Vec<(&Key, Option<Anchor>)>, w: Window
     places.last().map_or(w.top, |last| last + PITCH)
 }
 
-/// Sorted wishes, moved apart to at least [`PITCH`] and into the bounds, as little as a pass down
-/// and a pass up manage. More than fit run over the lower bound.
+/// Places near the sorted wishes, at least [`PITCH`] apart and within the bounds. One pass down and one pass
+/// up move them. Where they do not fit, they run over the lower bound.
 fn spread(wishes: &[f64], top: f64, bottom: f64) -> Vec<f64> {
     let mut places = wishes.to_vec();
     let mut limit = top;

@@ -1,21 +1,21 @@
-//! What a legend or a label says: a text, and the look of what it stands for.
+//! The entries of legends and labels: a text, and the look of what it names.
 
 use super::canvas::{Align, Canvas, FAINT, INK, Stroke, Symbol};
 
-/// Pixels of the piece of line before a text, and of a character, on the wide side.
+/// Width of the piece of line before a text, and of a character (a generous estimate), pixels.
 pub const SWATCH: f64 = 24.0;
 pub const CHARACTER: f64 = 6.9;
 
-/// A text and the look of what it stands for.
-pub struct Key {
+/// A text and the look of what it names.
+pub struct LegendEntry {
     pub text: String,
     pub look: Look,
 }
 
-/// What stands before a text to say what it is about.
+/// The sign before a text that shows what it names.
 #[derive(Clone, Copy)]
 pub enum Look {
-    /// Nothing: the text is a remark.
+    /// No sign: the text is a remark.
     Remark,
     Line(Stroke),
     /// A line whose points are marked.
@@ -24,13 +24,13 @@ pub enum Look {
     Fill(&'static str),
 }
 
-impl Key {
-    pub fn new(text: impl Into<String>, look: Look) -> Key {
+impl LegendEntry {
+    pub fn new(text: impl Into<String>, look: Look) -> LegendEntry {
         let text = text.into();
-        Key { text, look }
+        LegendEntry { text, look }
     }
 
-    /// The look within `wide` pixels from `at` on, and the text after it.
+    /// Draws the look within `wide` pixels from `at` on, and the text after it.
     pub fn draw(&self, canvas: &mut Canvas, at: [f64; 2], wide: f64) {
         let [x, y] = at;
         let (middle, piece) = ([x + wide / 2.0, y], format!("M{x:.1} {y:.1}h{wide}"));
@@ -49,7 +49,7 @@ impl Key {
         canvas.text(at, Align::Start, 12.0, colour, &self.text);
     }
 
-    /// Pixels of the text, and of the gaps before and after it.
+    /// Width of the text with the gaps before and after it, pixels.
     pub fn width(&self) -> f64 {
         6.0 + CHARACTER * self.text.chars().count() as f64 + 10.0
     }

@@ -1,13 +1,13 @@
-//! What a panel shows: lines, symbols, areas and texts, placed by two axes and cut at the panel's edge.
+//! The marks of a panel: lines, symbols, areas and texts, placed by two axes and cut at the panel's edge.
 
-use super::axis::Axis;
+use super::axis::ChartAxis;
 use super::canvas::{Align, Canvas, FAINT, Stroke, Symbol, px};
-use super::key::Key;
+use super::key::LegendEntry;
 
-/// Something a panel shows. All numbers are values on the panel's axes.
+/// One mark of a panel. All numbers are values on the panel's axes.
 pub enum Mark {
-    Line(Line),
-    /// A symbol at each of the points that are inside.
+    Line(Polyline),
+    /// A symbol at each point that is inside.
     Symbols(Symbol, Vec<[f64; 2]>),
     /// Rectangles of one colour, each given by two opposite corners.
     Area(&'static str, Vec<[[f64; 2]; 2]>),
@@ -18,10 +18,10 @@ pub enum Mark {
 impl Mark {
     /// A calm line without a label.
     pub fn line(points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke) -> Mark {
-        Mark::Line(Line::new(points, stroke))
+        Mark::Line(Polyline::new(points, stroke))
     }
 
-    pub fn label(&self) -> Option<&Key> {
+    pub fn label(&self) -> Option<&LegendEntry> {
         match self {
             Mark::Line(line) => line.label.as_ref(),
             _ => None,
@@ -30,23 +30,23 @@ impl Mark {
 }
 
 /// Points joined in their order.
-pub struct Line {
+pub struct Polyline {
     pub points: Vec<[f64; 2]>,
     pub stroke: Stroke,
-    /// The line ends where it first is more than a panel's size outside: what returns from there would
-    /// only cross the panel again and again.
+    /// Whether the line ends where it first is more than a panel's size outside. A line that returned from
+    /// there would only cross the panel again and again.
     pub wild: bool,
-    /// Stands at the last point, if the line gets there and it is inside.
+    /// The symbol at the last point, drawn if the line gets there and the point is inside.
     pub end: Option<Symbol>,
-    /// Stands beside the panel, at the height of the last point inside.
-    pub label: Option<Key>,
+    /// The label beside the panel, at the height of the last point inside.
+    pub label: Option<LegendEntry>,
 }
 
-impl Line {
-    /// Calm, without a label; points with a number that is not finite are left out.
-    pub fn new(points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke) -> Line {
+impl Polyline {
+    /// A calm line without a label. Points that are not finite are left out.
+    pub fn new(points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke) -> Polyline {
         let points = points.into_iter();
-        Line {
+        Polyline {
             points: points.filter(|p| p.iter().all(|c| c.is_finite())).collect(),
             stroke,
             wild: false,
@@ -56,11 +56,11 @@ impl Line {
     }
 }
 
-/// The cells for which `belongs` holds, as one area; neighbours along y are one rectangle. `counts`
-/// are columns along x and rows along y, the first row below; the cells fill the axes from end to end.
+/// The cells for which `belongs` holds, as one area; neighbours along y become one rectangle. There are
+/// `columns` cells along x and `rows` along y, the first row at the bottom; they fill the axes.
 pub fn cells(
     colour: &'static str,
-    [x, y]: [Axis; 2],
+    [x, y]: [ChartAxis; 2],
     [columns, rows]: [usize; 2],
     belongs: impl Fn(usize, usize) -> bool,
 ) -> Mark {
@@ -130,29 +130,30 @@ impl Window {
     }
 }
 
-/// Where a line's label stands: at the height of this point, with a thin line to it or without.
+/// The anchor of a line's label: its point sets the label's height.
 #[derive(Debug, Clone, Copy)]
 pub struct Anchor {
     pub point: [f64; 2],
+    /// Whether a thin line leads from the point to the label.
     pub led: bool,
 }
 
 /// A window and the axes along it.
 pub struct Frame {
     pub window: Window,
-    pub axes: [Axis; 2],
+    pub axes: [ChartAxis; 2],
 }
 
 impl Frame {
-    /// Pixels of a pair of values; may lie outside the window.
+    /// The place of a pair of values, pixels; it may lie outside the window.
     pub fn place(&self, values: [f64; 2]) -> [f64; 2] {
         let (w, [width, height]) = (self.window, self.window.size());
         let [x, y] = [0, 1].map(|a| self.axes[a].place(values[a]));
         [w.left + x * width, w.bottom - y * height]
     }
 
-    /// Draws what is inside; a line has at most about `budget` points. Returns where a line's label
-    /// stands; `None` where nothing can be labelled.
+    /// Draws the part of a mark that is inside. A line is thinned to about `budget` points. Returns the anchor
+    /// of a line's label; `None` for other marks and for lines without points.
     pub fn draw(&self, canvas: &mut Canvas, mark: &Mark, budget: usize) -> Option<Anchor> {
         match mark {
             Mark::Line(line) => return self.line(canvas, line, budget),
@@ -181,7 +182,7 @@ impl Frame {
         None
     }
 
-    fn line(&self, canvas: &mut Canvas, line: &Line, budget: usize) -> Option<Anchor> {
+    fn line(&self, canvas: &mut Canvas, line: &Polyline, budget: usize) -> Option<Anchor> {
         let (w, [width, height]) = (self.window, self.window.size());
         let mut pixels: Vec<[f64; 2]> = line.points.iter().map(|p| self.place(*p)).collect();
         let last = *pixels.last()?;
@@ -206,8 +207,8 @@ impl Frame {
     }
 }
 
-/// At most about `budget` of the points: both ends and, in each stretch of the line, the smallest and
-/// largest of every coordinate, so that no peak is lost. An x that only grows needs no extremes.
+/// About `budget` of the points at most: both ends and, in each stretch of the line, the smallest and the
+/// largest of each coordinate, so that no peak is lost. Where x only grows, its extremes are not needed.
 fn thinned(points: &[[f64; 2]], budget: usize) -> Vec<[f64; 2]> {
     if points.len() <= budget.max(2) {
         return points.to_vec();
@@ -228,8 +229,8 @@ fn thinned(points: &[[f64; 2]], budget: usize) -> Vec<[f64; 2]> {
     kept.into_iter().map(|at| points[at]).collect()
 }
 
-/// The points joined and cut at the window, as the `d` attribute of a path, and the last point of it;
-/// nothing if none is inside.
+/// The points joined and cut at the window, as the `d` attribute of a path, and the path's last point;
+/// empty where no part is inside.
 fn path(points: &[[f64; 2]], window: Window) -> (String, Option<[f64; 2]>) {
     if let [only] = points
         && window.holds(*only)
@@ -238,7 +239,7 @@ fn path(points: &[[f64; 2]], window: Window) -> (String, Option<[f64; 2]>) {
         return (format!("M{x} {y}h0"), Some(*only));
     }
     let mut data = String::new();
-    // Where the pen is, as written.
+    // The position of the pen, as written.
     let mut pen: Option<[String; 2]> = None;
     let mut end = None;
     for pair in points.windows(2) {

@@ -7,21 +7,21 @@ mod key;
 mod marks;
 pub mod palette;
 
-pub use axis::{Axis, HUGE, Scale, padded, range, span, tamed};
-pub use canvas::{FAINT, INK, Shape, Stroke, Symbol, WHITE};
+pub use axis::{ChartAxis, HUGE, Scale, padded, range, span, tamed};
+pub use canvas::{FAINT, INK, Stroke, Symbol, SymbolShape, WHITE};
 pub use chart::{Chart, Panel};
-pub use key::{Key, Look};
-pub use marks::{Line, Mark, cells};
+pub use key::{LegendEntry, Look};
+pub use marks::{Mark, Polyline, cells};
 
 use super::words::one_line;
 use super::{Header, OWN};
 
-/// Pixels; what a page of text is wide.
+/// The width of a figure, pixels: that of a page of text.
 pub const WIDTH: f64 = 880.0;
-/// What labels call the truth.
+/// The name of the truth in labels.
 pub const TRUTH_NAME: &str = "truth";
-/// Characters of an engine's name that labels have room for.
-const NAME: usize = 30;
+/// The most characters of an engine's name in a label.
+const MAX_NAME: usize = 30;
 
 /// A figure's title: the scene, then what is shown.
 pub fn heading(header: &Header, shown: &str) -> String {
@@ -32,12 +32,12 @@ pub fn heading(header: &Header, shown: &str) -> String {
     )
 }
 
-/// An engine as labels call it.
+/// The name of an engine in labels.
 pub fn engine(name: &str) -> String {
-    shortened(name, NAME)
+    shortened(name, MAX_NAME)
 }
 
-/// A panel's title where each engine has one; the scene's own integrator is pointed at.
+/// The title of an engine's panel; the scene's own integrator is marked.
 pub fn panel_title(header: &Header, name: &str) -> String {
     match header.mark(name) {
         OWN => format!("{OWN} {}", engine(name)),
@@ -45,7 +45,7 @@ pub fn panel_title(header: &Header, name: &str) -> String {
     }
 }
 
-/// One line of so many characters at most.
+/// The text on one line of at most this many characters.
 pub fn shortened(text: &str, characters: usize) -> String {
     let text = one_line(text);
     if text.chars().count() <= characters {
@@ -55,6 +55,6 @@ pub fn shortened(text: &str, characters: usize) -> String {
     head + "…"
 }
 
-/// A picture: its file; what it shows, for those who do not see it; and what there is to draw, None where
-/// the report does not have what it takes.
+/// A picture: its file name; a description for readers who do not see it; and its chart, None where the
+/// report has no data for it.
 pub type Figure<R> = (&'static str, &'static str, fn(&R) -> Option<Chart>);

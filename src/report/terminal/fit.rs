@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use textwrap::{Options, WordSeparator, WordSplitter};
 use unicode_width::UnicodeWidthStr;
 
-/// Columns the text takes.
+/// The width of the text, columns.
 pub fn width(text: &str) -> usize {
     text.width()
 }
@@ -28,13 +28,13 @@ pub fn clip(text: &str, columns: usize) -> String {
     text[..end].trim_end().to_owned() + "…"
 }
 
-/// Filled with spaces on the right.
+/// The text, filled with spaces on the right.
 pub fn pad(text: &str, columns: usize) -> String {
     text.to_string() + &" ".repeat(columns.saturating_sub(width(text)))
 }
 
-/// Broken between words, within one only where it is longer than a line. Lines but the first start
-/// with `indent`. White space at the very start is kept.
+/// The text broken between words, within a word only where it is longer than a line. All lines but the first
+/// start with `indent`. White space at the very start is kept.
 pub fn wrap(text: &str, columns: usize, indent: &str) -> Vec<String> {
     let options = Options::new(columns)
         .subsequent_indent(indent)

@@ -1,5 +1,5 @@
-//! The terminal's report: what ran, what holds of the whole scene, the verb's own part, what is notable
-//! about single engines, and whether the harness proved itself. No line exceeds [`WIDTH`] columns.
+//! The terminal's report: the scene, the facts about it, the verb's own part, the notes on single engines,
+//! and the checks of the harness. No line exceeds [`WIDTH`] columns.
 
 mod fit;
 mod paint;
@@ -12,7 +12,7 @@ use super::{Note, View, verdict};
 use crate::measure::{Check, CheckStatus};
 use paint::paint;
 
-/// Visible columns no line exceeds.
+/// The most visible columns of a line.
 pub const WIDTH: usize = 100;
 
 /// The report with ANSI colours, which the caller's stream strips where they are not wanted. Ends
@@ -25,23 +25,23 @@ pub fn render(view: View) -> String {
         facts.map(|(label, text)| (label, one_line(&text))),
     ));
     lines.extend(view.lines);
-    lines.extend(apart(notes(&view.notes)));
-    lines.extend(apart(checks(&view.header.checks)));
-    lines.extend(apart(labelled(view.last.into_iter())));
+    lines.extend(after_blank_line(notes(&view.notes)));
+    lines.extend(after_blank_line(checks(&view.header.checks)));
+    lines.extend(after_blank_line(labelled(view.last.into_iter())));
     lines.push(String::new());
     lines.extend(verdict.iter().map(|line| mark(Tone::Strong, line)));
     paint(&(lines.join("\n") + "\n"))
 }
 
-/// The lines below an empty one, if there are any.
-fn apart(mut lines: Vec<String>) -> Vec<String> {
+/// The lines after an empty one, if there are any.
+fn after_blank_line(mut lines: Vec<String>) -> Vec<String> {
     if !lines.is_empty() {
         lines.insert(0, String::new());
     }
     lines
 }
 
-/// Its name and size, and what its file says of it.
+/// The scene's name and size, and the description in its file.
 fn scene(view: &View) -> Vec<String> {
     let scene = &view.header.scene;
     let facts = format!(
@@ -61,7 +61,7 @@ fn scene(view: &View) -> Vec<String> {
     lines
 }
 
-/// Texts beside their labels.
+/// Lines of texts after their labels.
 fn labelled<'a>(facts: impl Iterator<Item = (&'a str, String)>) -> Vec<String> {
     let line = |(label, text)| wrap(&format!("{label:<9}{text}"), WIDTH, "         ");
     facts.flat_map(line).collect()
@@ -100,7 +100,7 @@ fn checks(checks: &[Check]) -> Vec<String> {
             wrap(&line, WIDTH, &" ".repeat(8 + ids))
         };
         lines.extend(match group.as_slice() {
-            // An expectation that is met.
+            // Expectations that are met are counted.
             met if id == "expect" && why.is_none() => wrapped(counted(met)),
             [check] => vec![format!("{head}  {}", alone(check, WIDTH - 10 - ids))],
             several => wrapped(several.iter().map(|check| measured(check)).collect()),
@@ -127,21 +127,21 @@ fn counted(checks: &[&Check]) -> Vec<String> {
     counts.map(count).collect()
 }
 
-/// What a check says, without its subject.
+/// A check's message, without its subject.
 fn reason(check: &Check) -> &str {
     let said = check.message.strip_prefix(check.subject.as_str());
     said.and_then(|said| said.strip_prefix(": "))
         .unwrap_or(&check.message)
 }
 
-/// What was measured beside its bound, in at most `columns` and two spaces.
+/// The subject of a check, its measured value and its bound, in at most `columns` and two spaces.
 fn alone(check: &Check, columns: usize) -> String {
     let measured = words::measured(check);
     let subject = clip(&one_line(&check.subject), columns - width(&measured));
     format!("{subject}  {measured}")
 }
 
-/// Of one check among several with the same result: its subject and what was measured.
+/// The subject and the measured value of one check among several with the same result.
 fn measured(check: &Check) -> String {
     let measured = check.measured.map(words::quantity).unwrap_or_default();
     let text = format!("{} {measured}", one_line(&check.subject));

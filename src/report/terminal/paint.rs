@@ -1,6 +1,6 @@
 //! Colour for laid-out text.
 //!
-//! Layout counts columns, and escape sequences would be counted with the text. So cells carry
+//! Layout counts columns, and would count escape sequences with the text. So cells carry
 //! zero-width marks (variation selectors, which [`words::one_line`](crate::report::words::one_line)
 //! takes out of foreign text) that become ANSI sequences once everything stands in its place.
 
@@ -11,7 +11,7 @@ pub enum Tone {
     Good,
     Warn,
     Bad,
-    /// Energy that leaves: neither good nor bad.
+    /// Energy that the method loses: neither good nor bad.
     Cool,
     Dim,
     Strong,
@@ -29,7 +29,7 @@ const TONES: [(Tone, Style); 6] = [
 const FIRST: u32 = 0xE0100;
 const END: char = '\u{e01ef}';
 
-/// The text between zero-width marks.
+/// Puts the text between zero-width marks.
 pub fn mark(tone: Tone, text: &str) -> String {
     if text.is_empty() {
         return String::new();
@@ -38,7 +38,7 @@ pub fn mark(tone: Tone, text: &str) -> String {
     format!("{start}{text}{END}")
 }
 
-/// Marks replaced by ANSI sequences.
+/// Replaces the marks by ANSI sequences.
 pub fn paint(text: &str) -> String {
     let mut painted = String::with_capacity(text.len() + 256);
     for c in text.chars() {

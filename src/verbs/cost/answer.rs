@@ -1,4 +1,4 @@
-//! From points to curves and answers.
+//! Makes curves and the answer for each target from the points of all runs.
 
 use super::CostChoice;
 use super::runs::{Curve, Setup};
@@ -25,7 +25,7 @@ pub fn answer(setup: &Setup, choice: &CostChoice, sweeps: &[Sweep], curves: Vec<
     let curves: Vec<CostCurve> = sweeps.iter().zip(curves).map(curve).collect();
     let floor = setup.floor();
     let target = |&error: &f64| {
-        // Why the truth cannot tell who is within this error.
+        // Why the truth cannot tell which solvers are within this error.
         let open = match floor {
             None => Some(format!(
                 "no truth to hold errors against: {}",
@@ -47,7 +47,7 @@ pub fn answer(setup: &Setup, choice: &CostChoice, sweeps: &[Sweep], curves: Vec<
     }
 }
 
-/// Why a reference engine's line is what it is: it is explained and not ranked.
+/// Why a reference engine's curve lies where it does: reference engines are explained, not ranked.
 fn explanation(solver: &Solver) -> Option<String> {
     let rapier = solver.kind == SolverKind::Rapier;
     rapier.then(|| match (solver.dissipates(), solver.follows) {

@@ -64,14 +64,14 @@ pub struct Args {
     output: Output,
 }
 
-/// What shortens this verb.
+/// The flags that shorten a run of this verb.
 const SHORTER: &str = "--budget, fewer --steps, --integrators A,B, --engines none";
-/// Errors anybody may want, m.
+/// Bounds of the targets, m.
 const TARGETS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
-/// More targets or steps than this are a mistake.
-const MOST: usize = 32;
+/// The most targets or timesteps the command line takes: more are a mistake.
+const MAX_VALUES: usize = 32;
 
-/// An error to reach, m.
+/// Reads a target, m.
 fn target(text: &str) -> Result<f64, String> {
     let metres = text.parse().ok().filter(|metres| TARGETS.contains(metres));
     metres.ok_or_else(|| "expected metres from 1e-30 to 1e30".to_owned())
@@ -97,7 +97,7 @@ fn read(args: &Args) -> anyhow::Result<Scene> {
     let scene = flags::scene(&args.scene, args.duration)?;
     let file = args.scene.display();
     if args.timestep.is_empty() {
-        // The file's step is not run here, so a duration below it is none of its business.
+        // The file's step is not run here, so the duration may be below it.
         let step = scene.solver.timestep;
         let within = scene.duration > 0.0 && scene.duration < step;
         let step = if within { scene.duration } else { step };
@@ -112,8 +112,8 @@ fn read(args: &Args) -> anyhow::Result<Scene> {
 
 fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
     without_timestep(&args.rapier, "swept; leave dt out, or give --timestep")?;
-    if args.targets.len() > MOST || args.timestep.len() > MOST {
-        bail!("at most {MOST} targets and {MOST} timesteps");
+    if args.targets.len() > MAX_VALUES || args.timestep.len() > MAX_VALUES {
+        bail!("at most {MAX_VALUES} targets and {MAX_VALUES} timesteps");
     }
     let usual = CostChoice::default_for(scene);
     let mut targets = args.targets.clone();
@@ -136,14 +136,15 @@ fn choice(args: &Args, scene: &Scene) -> anyhow::Result<CostChoice> {
     if choice.solvers.is_empty() {
         bail!("nothing to sweep: no integrators and no engines");
     }
-    let swept = |solver: &Solver| solver.as_pair().is_none();
-    if choice.timesteps.is_some() && !choice.solvers.iter().any(swept) {
+    let is_swept = |solver: &Solver| solver.as_pair().is_none();
+    if choice.timesteps.is_some() && !choice.solvers.iter().any(is_swept) {
         bail!("nothing to sweep: adaptive pairs choose their own steps; leave --timestep out");
     }
     Ok(choice)
 }
 
-/// The classic picture, or after it the cheapest integrator in a cross-check.
+/// The command to run next: the picture of a few steps, or after it a cross-check of the cheapest
+/// integrator.
 fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
     let path = output::quoted(&args.scene)?;
     let flag = |duration| format!(" --duration {duration}");

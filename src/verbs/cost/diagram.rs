@@ -1,13 +1,14 @@
-//! Which numbers a work-precision diagram shows, as a figure and in characters.
+//! The numbers a work-precision diagram shows, as a figure and in characters.
 
 use super::CostPoint;
 
-/// Which numbers a work-precision diagram shows: an error over a cost.
+/// The numbers a work-precision diagram shows: an error over a cost.
 #[derive(Clone, Copy)]
 pub struct Diagram {
-    /// Whether the error is the one targets, floor, front and slope are about; else that of the energy.
+    /// Whether the error is that of positions, which targets, floor, Pareto front and slope are about;
+    /// else it is that of the energy.
     pub judged: bool,
-    /// Whether the cost is a time, which has a spread; else force evaluations.
+    /// Whether the cost is a wall time, which has a spread; else it is force evaluations.
     pub timed: bool,
 }
 

@@ -1,8 +1,8 @@
-//! What accuracy costs: every chosen engine over a range of settings, its error against the truth, and
-//! what it took, counted and timed.
+//! What accuracy costs: every chosen engine runs at a range of settings, and each run's error against
+//! the truth stands beside its cost, counted and timed.
 //!
-//! Errors are found in parallel; then, with nothing else running, what completed is timed one after the
-//! other. Only wall times, and what is chosen by them, differ between two runs.
+//! Errors are found in parallel. Then the settings that completed are timed one after the other, with
+//! nothing else running. Only wall times, and what is chosen by them, differ between two runs.
 
 mod answer;
 mod args;
@@ -36,22 +36,22 @@ use rayon::prelude::*;
 use runs::{Curve, Setup};
 use settings::Sweep;
 
-/// What is asked.
+/// The question: which solvers, at which settings, held against which targets.
 #[derive(Debug, Clone)]
 pub struct CostChoice {
-    /// In the order of the curves; adaptive pairs are swept over their tolerance. A timestep of their own
-    /// is not looked at: the step is what is swept.
+    /// In the order of the curves. Adaptive pairs run at a range of tolerances, the others at a range of
+    /// timesteps, so a timestep of their own is ignored.
     pub solvers: Vec<Solver>,
-    /// Errors somebody wants to reach, m.
+    /// Errors to reach, m.
     pub targets: Vec<f64>,
-    /// Settings of each solver, at least 2; a few more where a target lies between two of them.
+    /// Settings of each solver, at least 2. A few more are run where a target lies between two of them.
     pub settings: usize,
-    /// What the whole may take, in seconds of a nominal machine: work is counted, so that every machine
-    /// tries the same settings.
+    /// Time all runs together may take, in seconds of a nominal machine: work is counted, so that every
+    /// machine tries the same settings.
     pub budget_s: f64,
     /// Exactly these steps, s, instead of a range; adaptive pairs, which choose theirs, are left out.
     pub timesteps: Option<Vec<f64>>,
-    /// What errors are measured against.
+    /// The truth that errors are measured against.
     pub truth: Demand,
 }
 
@@ -61,7 +61,7 @@ pub const TARGETS: [f64; 3] = [1e-3, 1e-6, 1e-9];
 pub const SETTINGS: usize = 12;
 /// The budget when none is given, s.
 pub const BUDGET_S: f64 = 30.0;
-/// rapier's iterations that are swept beside its default.
+/// rapier's iterations that are tried beside its default.
 const ITERATIONS: [u32; 2] = [1, 16];
 
 impl CostChoice {
@@ -87,7 +87,7 @@ impl CostChoice {
     }
 }
 
-/// The settings of every engine on one scene.
+/// The settings planned for every engine on one scene.
 pub struct CostPlan<'a> {
     scene: &'a Scene,
     system: ParticleSystem,
@@ -107,7 +107,7 @@ impl<'a> CostPlan<'a> {
         }
     }
 
-    /// What a progress bar counts against and [`Session::progress`] is told: nominal microseconds.
+    /// The planned work, nominal microseconds: the total that [`Session::progress`] counts towards.
     pub fn work(&self) -> u64 {
         self.sweeps.iter().map(Sweep::work).sum()
     }
@@ -126,10 +126,11 @@ impl<'a> CostPlan<'a> {
         self.sweeps.iter().map(estimate).collect()
     }
 
-    /// Sweeps, times and judges. Whatever an engine does is a point with its reason.
+    /// Runs all settings, times them and ranks them. A run that diverges or fails is a point with its
+    /// reason.
     pub fn execute(&self, session: &dyn Session) -> Report {
         let (scene, system) = (self.scene, &self.system);
-        // When the last run ends, s.
+        // The end of the longest run, s.
         let named = self.choice.timesteps.as_deref();
         let ends = named.unwrap_or_default().iter();
         let ends = ends.map(|h| scene.steps(*h) as f64 * h);

@@ -1,4 +1,4 @@
-//! The classic picture: a coordinate over time at a few steps, engine by engine, beside the truth.
+//! The picture of a few steps: a coordinate over time, engine by engine, beside the truth.
 
 use super::runs::{Curve, Setup};
 use super::samples::Samples;

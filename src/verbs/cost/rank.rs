@@ -1,4 +1,4 @@
-//! What a sweep of settings says: which reach an error, at what price, and how fast errors fall.
+//! The answers a sweep of settings gives: which reach an error, at what cost, and how fast errors fall.
 //!
 //! Pure functions of [`CostPoint`]s, coarse to fine.
 
@@ -9,9 +9,9 @@ use crate::solvers::Status;
 use crate::verbs::cost::{CostCurve, CostPoint, CostRank, CostReached, CostTarget};
 use std::cmp::Ordering;
 
-/// Indices of the points with an error that no other point has both at most the error and at most the
-/// work of, one of them less. Of equal ones all are kept. Work is counted, so the answer is the same in
-/// every run.
+/// Indices of the points on the Pareto front of error and work. A point is on it if no other has at most
+/// its error and at most its work, with one of the two less. Equal points are all kept; points without an
+/// error are not. Work is counted, so the answer is the same in every run.
 pub fn pareto(points: &[CostPoint]) -> Vec<usize> {
     let known = |at: &usize| Some((points[*at].error_m?, points[*at].work()));
     let beaten = |(error, work): (f64, u64)| {
@@ -22,21 +22,21 @@ pub fn pareto(points: &[CostPoint]) -> Vec<usize> {
     (0..points.len()).filter(kept).collect()
 }
 
-/// Points a slope is fitted through at least.
-const FEWEST: usize = 4;
-/// Neighbouring slopes of one straight line differ by no more than this: errors of the next order up add
-/// about their ratio to the slope, and within this a line through the points is off by half of it at most.
-const STRAIGHT: f64 = 0.15;
+/// The fewest points a slope is fitted through.
+const MIN_POINTS: usize = 4;
+/// Neighbouring slopes of one straight line differ by no more than this. The error term of the next order
+/// adds about its ratio to the slope, so a line fitted within this is off by half of it at most.
+const MAX_SLOPE_CHANGE: f64 = 0.15;
 
 /// Points at the fine end that rounding may have spoilt without reaching the floor.
-const SPOILT: usize = 2;
+const MAX_SPOILT: usize = 2;
 
-/// Orders are whole numbers from 1 on: what falls slower than this has not begun to.
-const LEAST: f64 = 0.75;
+/// Orders are whole numbers from 1 on: an error that falls slower than this has not begun to converge.
+const MIN_SLOPE: f64 = 0.75;
 
 /// A fitted slope.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Slope {
+pub struct FittedSlope {
     /// d ln(error) / d ln(step).
     pub order: f64,
     /// Indices of the points it was fitted through, coarse to fine.
@@ -46,10 +46,10 @@ pub struct Slope {
 /// The slope of ln(error) over ln(step) through the finest points of `points` (coarse to fine) that lie
 /// on a straight line: neither in the floor, nor so coarse that the slope still changes.
 ///
-/// Reading orders to 0.05 and calling a method wrong is [`order`](crate::measure::order)'s, which makes
-/// runs of its own; this one is read off the settings of a diagram. None with fewer than four such
-/// points.
-pub fn slope(points: &[CostPoint]) -> Option<Slope> {
+/// Not to be confused with [`order`](crate::measure::order), which makes runs of its own, finds orders to
+/// 0.05 and calls a method wrong; this slope is read off the settings of a diagram. None with fewer than
+/// four such points.
+pub fn slope(points: &[CostPoint]) -> Option<FittedSlope> {
     let usable: Vec<(usize, f64, f64)> = points
         .iter()
         .enumerate()
@@ -59,12 +59,12 @@ pub fn slope(points: &[CostPoint]) -> Option<Slope> {
             Some((at, point.timestep.ln(), error.ln()))
         })
         .collect();
-    // From the finest on, as long as neighbouring slopes agree; where the finest do not, one is left out
-    // at a time: rounding may already show in it.
-    let mut best: Option<Slope> = None;
-    for end in (FEWEST..=usable.len()).rev().take(SPOILT + 1) {
+    // The line starts at the finest point and grows as long as neighbouring slopes agree. Where the finest
+    // do not agree, one is left out at a time: rounding may already show in it.
+    let mut best: Option<FittedSlope> = None;
+    for end in (MIN_POINTS..=usable.len()).rev().take(MAX_SPOILT + 1) {
         let line = straight(&usable[..end]);
-        if line.len() >= FEWEST && best.as_ref().is_none_or(|b| line.len() > b.points.len()) {
+        if line.len() >= MIN_POINTS && best.as_ref().is_none_or(|b| line.len() > b.points.len()) {
             best = fitted(line);
         }
     }
@@ -81,12 +81,12 @@ fn straight(points: &[(usize, f64, f64)]) -> &[(usize, f64, f64)] {
     let agree = slopes
         .iter()
         .rev()
-        .take_while(|s| **s >= LEAST && (*s - last).abs() <= STRAIGHT);
+        .take_while(|s| **s >= MIN_SLOPE && (*s - last).abs() <= MAX_SLOPE_CHANGE);
     &points[points.len() - 1 - agree.count()..]
 }
 
 /// The least-squares line through these points.
-fn fitted(points: &[(usize, f64, f64)]) -> Option<Slope> {
+fn fitted(points: &[(usize, f64, f64)]) -> Option<FittedSlope> {
     let n = points.len() as f64;
     let mean = |value: fn(&(usize, f64, f64)) -> f64| points.iter().map(value).sum::<f64>() / n;
     let (x, y) = (mean(|p| p.1), mean(|p| p.2));
@@ -96,19 +96,19 @@ fn fitted(points: &[(usize, f64, f64)]) -> Option<Slope> {
         under += (point.1 - x) * (point.1 - x);
     }
     let order = over / under;
-    order.is_finite().then(|| Slope {
+    order.is_finite().then(|| FittedSlope {
         order,
         points: points.iter().map(|p| p.0).collect(),
     })
 }
 
-/// Why a curve reaches a target at no setting.
+/// Why a curve does not reach a target.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Misses {
-    /// There is nothing finer than what was tried, and that has this error, m.
+pub enum Unreached {
+    /// No setting tried has an error as small; the smallest found, m.
     Nearest(f64),
-    /// Some setting is near enough, and a finer one is not: a lucky zero crossing, or rounding. The
-    /// error of the finest that is not, m.
+    /// Some setting has an error small enough, but the finest has not: a lucky zero crossing, or rounding.
+    /// The error of the finest, m.
     Unsettled(f64),
     /// The finest setting has no error.
     Ended,
@@ -119,12 +119,12 @@ pub enum Misses {
 /// The first of `points` (coarse to fine) from which on every finer one, itself included, has at most
 /// the error `target`, m.
 ///
-/// Not the coarsest that does: an error that changes its sign passes through 0 on its way, and a
-/// setting there would be credited with an accuracy that its neighbours on both sides have not.
+/// Not to be confused with the coarsest that has: an error that changes its sign passes through 0, and a
+/// setting there would be credited with an accuracy that its neighbours on both sides do not have.
 ///
 /// # Errors
-/// [`Misses`] where the finest does not reach it.
-pub fn reach(points: &[CostPoint], target: f64) -> Result<usize, Misses> {
+/// [`Unreached`] where the finest does not reach it.
+pub fn reach(points: &[CostPoint], target: f64) -> Result<usize, Unreached> {
     let near = |point: &CostPoint| {
         point.status == Status::Completed && point.error_m.is_some_and(|error| error <= target)
     };
@@ -133,34 +133,34 @@ pub fn reach(points: &[CostPoint], target: f64) -> Result<usize, Misses> {
         return Ok(points.len() - fine);
     }
     let Some(finest) = points.last() else {
-        return Err(Misses::Nothing);
+        return Err(Unreached::Nothing);
     };
     let Some(error) = finest.error_m else {
-        return Err(Misses::Ended);
+        return Err(Unreached::Ended);
     };
     let errors = points.iter().filter_map(|point| point.error_m);
     let nearest = errors.fold(error, f64::min);
     Err(if nearest <= target {
-        Misses::Unsettled(error)
+        Unreached::Unsettled(error)
     } else {
-        Misses::Nearest(nearest)
+        Unreached::Nearest(nearest)
     })
 }
 
-/// Extrapolating farther than this is guessing; so is a line that hardly falls.
-const MOST_STEPS: f64 = 1e4;
-const SLOWEST: f64 = 0.5;
+/// Extrapolating by more steps than this is guessing; so is extrapolating a line that hardly falls.
+const MAX_MORE_STEPS: f64 = 1e4;
+const MIN_EXTRAPOLATED_SLOPE: f64 = 0.5;
 
-/// The answer for one target, m, over all curves; only the reason where there is one why errors cannot be
-/// held against the target at all.
-pub fn target(curves: &[CostCurve], error: f64, unjudged: Option<String>) -> CostTarget {
+/// The answer for one target, m, over all curves. With a `reason` why errors cannot be held against the
+/// target, the answer holds that reason alone.
+pub fn target(curves: &[CostCurve], error: f64, reason: Option<String>) -> CostTarget {
     let mut answer = CostTarget {
         error_m: error,
         cheapest: None,
         fewest_evaluations: None,
         ranking: Vec::new(),
         reference: Vec::new(),
-        reason: unjudged,
+        reason,
     };
     if answer.reason.is_some() {
         return answer;
@@ -173,7 +173,7 @@ pub fn target(curves: &[CostCurve], error: f64, unjudged: Option<String>) -> Cos
     };
     answer.ranking = ranks(true).collect();
     answer.reference = ranks(false).collect();
-    // Stable: equal and untimed ones stay in the order of the curves.
+    // The sort is stable: equal and untimed entries stay in the order of the curves.
     answer.ranking.sort_by(cheaper);
     let reached = answer.ranking.iter().filter_map(|r| r.reached.as_ref());
     answer.cheapest = reached.clone().next().cloned();
@@ -214,38 +214,42 @@ fn rank(curve: &CostCurve, error: f64) -> CostRank {
                 force_evaluations: point.force_evaluations,
             });
         }
-        Err(misses) => {
-            if let Misses::Nearest(nearest) = misses {
+        Err(unreached) => {
+            if let Unreached::Nearest(nearest) = unreached {
                 rank.more_steps = more_steps(curve, nearest, error);
             }
-            rank.reason = Some(why(curve, &misses));
+            rank.reason = Some(reason(curve, &unreached));
         }
     }
     rank
 }
 
-fn why(curve: &CostCurve, misses: &Misses) -> String {
-    match misses {
-        Misses::Nearest(error) => format!("nearest {error:.1e} m at the settings tried"),
-        Misses::Unsettled(error) => {
+fn reason(curve: &CostCurve, unreached: &Unreached) -> String {
+    match unreached {
+        Unreached::Nearest(error) => format!("nearest {error:.1e} m at the settings tried"),
+        Unreached::Unsettled(error) => {
             format!("near enough at a coarser setting only: {error:.1e} m at the finest")
         }
-        Misses::Ended | Misses::Nothing => {
+        Unreached::Ended | Unreached::Nothing => {
             let reason = curve.points.last().and_then(|point| point.reason.clone());
             reason.unwrap_or_else(|| "no setting gave an error".to_owned())
         }
     }
 }
 
-/// What the curve's slope promises beyond its finest setting, where that is still on its line.
+/// Times the steps of the finest setting that would reach the target by the curve's slope, where the
+/// finest setting is still on the fitted line.
 fn more_steps(curve: &CostCurve, nearest: f64, target: f64) -> Option<f64> {
-    let order = curve.observed_order.filter(|order| *order > SLOWEST)?;
+    let order = curve
+        .observed_order
+        .filter(|order| *order > MIN_EXTRAPOLATED_SLOPE)?;
     let on_line = curve.slope_points.last() == Some(&curve.points.len().checked_sub(1)?);
     let times = (nearest / target).powf(1.0 / order);
-    (on_line && times < MOST_STEPS).then_some(times)
+    (on_line && times < MAX_MORE_STEPS).then_some(times)
 }
 
-/// By median time; untimed after timed ones, by evaluations; those that do not reach it last.
+/// Orders by median time, then untimed entries by evaluations; entries that do not reach the target come
+/// last.
 fn cheaper(a: &CostRank, b: &CostRank) -> Ordering {
     let key = |rank: &CostRank| {
         let reached = rank.reached.as_ref();

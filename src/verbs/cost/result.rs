@@ -1,4 +1,4 @@
-//! What `cost` found: errors against what they cost, and who reaches which error cheapest.
+//! The result of `cost`: errors against their cost, and which engine reaches which error cheapest.
 //!
 //! Wall times differ from run to run, and with them what is chosen by them: [`CostTarget::cheapest`],
 //! the order of [`CostTarget::ranking`] and every key that holds `wall`. All else is the same in every run.
@@ -12,29 +12,29 @@ use serde::{Deserialize, Serialize};
 pub struct Cost {
     /// How long every run is, s.
     pub duration_s: f64,
-    /// Up to when positions are held against the truth; null without one.
+    /// Positions are held against the truth up to here, s; null without a truth.
     pub horizon_s: Option<f64>,
-    /// Ten times the truth's own error bar, m: no error below can be told from it. Null without truth.
+    /// Ten times the truth's own error bar, m: no smaller error can be told from it. Null without truth.
     pub floor_m: Option<f64>,
     pub targets: Vec<CostTarget>,
-    /// One an engine, in the order of the plan; adaptive pairs after the methods.
+    /// One for each engine, in the order of the plan; adaptive pairs after the methods.
     pub curves: Vec<CostCurve>,
 }
 
-/// Who reaches an error, and at what price.
+/// Which engines reach an error, and at what cost.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CostTarget {
-    /// Largest distance of a particle from where it truly is, over the horizon, m.
+    /// Largest distance of a particle from its true position, over the horizon, m.
     pub error_m: f64,
-    /// Of the integrators: the least median wall time. Null where none reaches it.
+    /// The integrator with the least median wall time. Null where none reaches the target.
     pub cheapest: Option<CostReached>,
-    /// Of the integrators: the fewest force evaluations, which do not depend on the clock.
+    /// The integrator with the fewest force evaluations, which do not depend on the clock.
     pub fewest_evaluations: Option<CostReached>,
     /// Every integrator: first those that reach it, cheapest first, then the others.
     pub ranking: Vec<CostRank>,
     /// Engines that are explained and not ranked (rapier's), as they are listed.
     pub reference: Vec<CostRank>,
-    /// Why nobody can be said to reach it (no truth, or one not good enough); else null.
+    /// Why the target cannot be judged (no truth, or one not good enough); else null.
     pub reason: Option<String>,
 }
 
@@ -42,14 +42,14 @@ pub struct CostTarget {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CostReached {
     pub engine: String,
-    /// Seconds; of an adaptive pair the mean.
+    /// Seconds; the mean step of an adaptive pair.
     pub timestep: f64,
-    /// Of an adaptive pair; null for fixed steps.
+    /// The tolerance of an adaptive pair; null for fixed steps.
     pub tolerance: Option<f64>,
     pub error_m: f64,
-    /// Null where it was not timed.
+    /// Null where the setting was not timed.
     pub wall_median_s: Option<f64>,
-    /// Null where the engine does not tell.
+    /// Null where the engine does not count them.
     pub force_evaluations: Option<u64>,
 }
 
@@ -59,14 +59,14 @@ pub struct CostRank {
     pub engine: String,
     /// The coarsest setting from which on every finer one reaches the target; null if there is none.
     pub reached: Option<CostReached>,
-    /// Its median time in units of the cheapest integrator's; null where either is missing.
+    /// The median time in units of the cheapest integrator's; null where either is missing.
     pub wall_ratio: Option<f64>,
-    /// Why it does not reach the target; else null.
+    /// Why the engine does not reach the target; else null.
     pub reason: Option<String>,
-    /// Times the steps of its finest setting that would reach it, by the curve's slope; null where it
-    /// reaches it, or nothing can be said.
+    /// How many times the steps of the finest setting would reach the target, by the curve's slope; null
+    /// where the engine reaches it, or the slope does not say.
     pub more_steps: Option<f64>,
-    /// What that would take in units of the cheapest integrator's time; null where either is missing.
+    /// The time of those steps in units of the cheapest integrator's; null where either is missing.
     pub extrapolated_wall_ratio: Option<f64>,
 }
 
@@ -75,24 +75,25 @@ pub struct CostRank {
 pub struct CostCurve {
     pub engine: String,
     pub kind: SolverKind,
-    /// What its row states for this scene (order with damping where there is some); null for rapier.
+    /// The stated order on this scene (the order with damping where there is some); null for rapier.
     pub order: Option<u32>,
-    /// Slope of ln(error_m) over ln(timestep) through `slope_points`, which for a fixed number of
-    /// evaluations a step is that over evaluations, its sign turned; null where there are fewer than four.
+    /// Slope of ln(error_m) over ln(timestep) through `slope_points`; null where there are fewer than four.
+    /// With a fixed number of evaluations a step, the slope over ln(evaluations) is its negative.
     pub observed_order: Option<f64>,
-    /// Indices into `points` the slope was fitted through: below the coarse ones, above the floor.
+    /// Indices into `points` the slope was fitted through: finer than where it still changes, above the
+    /// floor.
     pub slope_points: Vec<usize>,
     /// Coarse to fine.
     pub points: Vec<CostPoint>,
-    /// Indices into `points`: no other point has both a smaller error and fewer force evaluations (steps,
-    /// where evaluations are not told).
+    /// Indices into `points` of the Pareto front: no other point has both a smaller error and fewer force
+    /// evaluations (steps, where evaluations are not counted).
     pub pareto: Vec<usize>,
-    /// What makes a reference engine's line what it is; null for integrators.
+    /// Why a reference engine's curve lies where it does; null for integrators.
     pub explanation: Option<String>,
 }
 
 impl CostCurve {
-    /// Whether it takes part in the ranking: distance from the truth is no error of a reference engine's.
+    /// Whether the engine is ranked. Reference engines are not: their distance from the truth is no error.
     pub fn is_ranked(&self) -> bool {
         self.kind == SolverKind::Integrator
     }
@@ -101,46 +102,46 @@ impl CostCurve {
 /// One engine at one setting.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CostPoint {
-    /// Seconds; of an adaptive pair the duration over the steps taken.
+    /// Seconds; for an adaptive pair the duration over the steps taken.
     pub timestep: f64,
-    /// Of an adaptive pair; null for fixed steps.
+    /// The tolerance of an adaptive pair; null for fixed steps.
     pub tolerance: Option<f64>,
     /// Steps accepted.
     pub steps: u64,
     pub status: Status,
-    /// Why it has no error: it diverged, failed, or is unsupported; else null.
+    /// Why the run has no error: it diverged, failed, or is unsupported; else null.
     pub reason: Option<String>,
-    /// Largest distance of a particle from where it truly is over the horizon, m; null without one.
+    /// Largest distance of a particle from its true position over the horizon, m; null without a truth.
     pub error_m: Option<f64>,
-    /// The same at the last instant within the horizon.
+    /// The same distance at the last instant within the horizon.
     pub error_final_m: Option<f64>,
     /// max |B - B(0)| / S of the energy balance over the whole run.
     pub energy_error: Option<f64>,
-    /// The error is no larger than what the truth's bar and rounding explain.
+    /// Whether the truth's error bar and rounding explain the whole error.
     pub at_floor: bool,
-    /// Null for what did not complete: a wrong answer has no speed.
+    /// Null for a run that did not complete: a wrong answer has no speed.
     pub wall_s: Option<WallTime>,
-    /// Full evaluations and passes over damping alone; null where the engine does not tell.
+    /// Full evaluations and passes over damping alone; null where the engine does not count them.
     pub force_evaluations: Option<u64>,
     pub linear_solves: Option<u64>,
     pub newton_iterations: Option<u64>,
 }
 
 impl CostPoint {
-    /// What its run costs, counted: force evaluations, or steps where those are not told.
+    /// The counted cost of the run: force evaluations, or steps where those are not counted.
     pub fn work(&self) -> u64 {
         self.force_evaluations.unwrap_or(self.steps)
     }
 }
 
-/// The classic picture: each integrator at a few steps, the truth, and the difference.
+/// The picture of a few steps: each integrator's curve, the truth, and the difference.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CostPanels {
     /// The coordinate shown, such as `particle 1, z (m)`.
     pub label: String,
     /// The truth's curve: seconds and metres; empty without truth.
     pub truth: Vec<[f64; 2]>,
-    /// One an engine, in the order of the curves.
+    /// One for each engine, in the order of the curves.
     pub panels: Vec<CostPanel>,
 }
 

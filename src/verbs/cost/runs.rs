@@ -1,5 +1,6 @@
-//! The runs of a sweep: each setting once, from coarse to fine, until it can get no better, and where a target lies
-//! between two settings one or two more. What completed is timed afterwards, when nothing else runs.
+//! The runs of a sweep. Each setting runs once, from coarse to fine, until finer ones can be no better; where a
+//! target lies between two settings, one or two more run. Completed settings are timed afterwards, when nothing
+//! else runs.
 
 use super::rank::reach;
 use super::samples::{Sampler, Samples};
@@ -15,51 +16,52 @@ use crate::verbs::facts;
 use crate::verbs::session::Session;
 use std::time::Instant;
 
-/// Instants of a run that are looked at, at most.
-const INSTANTS: u64 = 500;
-/// And at most about this many numbers.
-const NUMBERS: u64 = 1 << 21;
-/// Roundings of the largest coordinate, a random walk over all steps, that may be in an error.
+/// The most instants of a run that are compared.
+const MAX_INSTANTS: u64 = 500;
+/// About the most numbers a run keeps.
+const MAX_NUMBERS: u64 = 1 << 21;
+/// Rounding in an error is at most this many roundings of the largest coordinate, times the square root
+/// of the steps: a random walk.
 const ROUNDINGS: f64 = 4.0;
 
-/// An error that is no less than this share of the best so far has stopped falling.
-const FALLING: f64 = 0.7;
-/// Errors below this share of the largest that stop falling do so because of rounding.
+/// An error above this fraction of the best so far has stopped falling.
+const STALLED: f64 = 0.7;
+/// Errors below this fraction of the largest stop falling because of rounding.
 const SMALL: f64 = 1e-2;
 
-/// Attempts for each target.
-const ATTEMPTS: usize = 2;
-/// Settings closer than this are near enough.
-const CLOSE: f64 = 1.06;
-/// Aimed at, as a share of the target: the line between two points is not quite straight.
+/// The most extra runs for each target.
+const MAX_ATTEMPTS: usize = 2;
+/// Two settings whose steps differ by less than this factor need none between them.
+const MIN_STEP_RATIO: f64 = 1.06;
+/// The error aimed at, as a fraction of the target: the line between two points is not quite straight.
 const AIM: f64 = 0.93;
-/// Not worth another run: an error so close to the target.
-const NEAR: f64 = 0.85;
+/// An error above this fraction of the target is not worth another run.
+const CLOSE_ENOUGH: f64 = 0.85;
 
-/// A sample takes at least this, s, by repeating a short run: a thousand grains of the clock.
-const SAMPLE: f64 = 1e-3;
-/// Runs in a sample at most: their engines are built before the clock starts.
-const MOST: usize = 1_000;
-/// Samples of a short run, after its warm-up.
-const SAMPLES: usize = 5;
-/// A run longer than this, s, warms up within itself: it is run so often in all.
-const LONG: f64 = 0.02;
-const RUNS_OF_LONG: usize = 3;
+/// A sample takes at least this, s: short runs are repeated until it is a thousand ticks of the clock.
+const MIN_SAMPLE_S: f64 = 1e-3;
+/// The most runs in a sample: their engines are built before the clock starts.
+const MAX_BATCH: usize = 1_000;
+/// Samples taken of a short run, after its warm-up.
+const SHORT_SAMPLES: usize = 5;
+/// A run longer than this, s, needs no warm-up of its own, and has this many samples in all.
+const LONG_RUN_S: f64 = 0.02;
+const LONG_RUNS: usize = 3;
 
-/// What all runs of a scene share, and are held against.
+/// The scene, truth and limits that all runs of a sweep have in common.
 pub struct Setup<'a> {
     pub scene: &'a Scene,
     pub system: &'a ParticleSystem,
     pub truth: &'a Truth,
     pub session: &'a dyn Session,
     limits: Limits,
-    /// S, J.
+    /// The energy scale S, J.
     scale: Option<f64>,
-    /// Largest coordinate of the truth, m.
+    /// The largest coordinate of the truth, m.
     size: f64,
-    /// Instants a run keeps at most.
-    room: u64,
-    /// Whether the settings were named: then all of them are run, and their states kept.
+    /// The most instants a run keeps.
+    max_instants: u64,
+    /// Whether the timesteps were given by name: then all of them run, and their states are kept.
     named: bool,
 }
 
@@ -87,26 +89,26 @@ impl<'a> Setup<'a> {
             limits: facts::limits(scene, system).coarse(),
             scale,
             size,
-            room: (NUMBERS / each).clamp(16, INSTANTS),
+            max_instants: (MAX_NUMBERS / each).clamp(16, MAX_INSTANTS),
             named,
         }
     }
 
-    /// Ten times the truth's own bar, m; None without a truth.
+    /// Ten times the truth's own error bar, m; None without a truth.
     pub fn floor(&self) -> Option<f64> {
         (self.truth.kind != TruthKind::None).then_some(10.0 * self.truth.error_bound)
     }
 
-    /// Whether an error after so many steps may be the truth's own or rounding.
+    /// Whether the truth's own error or rounding over so many steps may explain an error, m.
     fn at_floor(&self, error: f64, steps: u64) -> bool {
         let rounding = ROUNDINGS * f64::EPSILON * self.size * (steps as f64).sqrt();
         error <= self.floor().unwrap_or(0.0).max(rounding)
     }
 
-    /// The truth at the instants of a run within the horizon, the start left out.
+    /// The truth at the instants of a run within the horizon, without the start: times, s, and states.
     pub fn truth_beside(&self, kept: &Samples) -> Option<(Vec<f64>, States)> {
         let motion = self.truth.motion()?;
-        // A run ends at n h, which may round to just past where the truth was asked for.
+        // A run ends at n h, which may round to just past the end of the truth.
         let last = self.truth.horizon * (1.0 + 4.0 * f64::EPSILON);
         let within = kept.t.iter().skip(1).filter(|t| **t <= last);
         let times: Vec<f64> = within.map(|t| t.min(self.truth.horizon)).collect();
@@ -114,8 +116,9 @@ impl<'a> Setup<'a> {
         Some((times, states))
     }
 
-    /// How far a run is from the truth, m: over the horizon, and at its last instant within. None without a
-    /// truth, or where no instant lies within its horizon, or too far away for a number.
+    /// The distance of a run from the truth, m: the largest over the horizon, and that at the last instant
+    /// within it. None without a truth, without an instant within its horizon, or where the distance is not
+    /// finite.
     fn errors(&self, kept: &Samples) -> Option<(f64, f64)> {
         let (times, states) = self.truth_beside(kept)?;
         let distance = |k: usize| farthest(kept.states.x(k + 1), states.x(k));
@@ -138,8 +141,8 @@ impl<'a> Setup<'a> {
         Some(worst / scale).filter(|error| error.is_finite())
     }
 
-    /// The settings of a solver, coarse to fine, and more where targets, m, lie between them. Those that can only
-    /// be worse are left out, unless they were named.
+    /// Runs the settings of a solver, coarse to fine, and more where targets, m, lie between them. Settings that can
+    /// only be worse are left out, unless they were given by name.
     pub fn sweep(&self, sweep: &Sweep, targets: &[f64]) -> Curve {
         let mut curve = Curve::default();
         for setting in &sweep.settings {
@@ -154,8 +157,8 @@ impl<'a> Setup<'a> {
         }
         let targets = if self.named { &[] } else { targets };
         for &target in targets {
-            for _ in 0..ATTEMPTS {
-                let Some(setting) = curve.toward(target) else {
+            for _ in 0..MAX_ATTEMPTS {
+                let Some(setting) = curve.setting_near(target) else {
                     break;
                 };
                 curve.insert(setting, self.run(&sweep.solver, &setting));
@@ -164,7 +167,7 @@ impl<'a> Setup<'a> {
         curve
     }
 
-    /// One run and what came of it.
+    /// Runs one setting: its point, its states and its counts.
     fn run(&self, solver: &Solver, setting: &Setting) -> (CostPoint, Samples, Counts) {
         let mut run = match solver.start(self.scene, self.system, setting) {
             Ok(run) => run,
@@ -173,7 +176,7 @@ impl<'a> Setup<'a> {
                 return (point, Samples::default(), Counts::default());
             }
         };
-        let mut sampler = Sampler::new(setting, self.room);
+        let mut sampler = Sampler::new(setting, self.max_instants);
         let ended = run.finish(&self.limits, &mut sampler, &|_| {});
         let counts = run.counts();
         let (status, reason) = match ended {
@@ -210,7 +213,7 @@ impl<'a> Setup<'a> {
         (point, samples, counts)
     }
 
-    /// Times every point that completed, one run after the other: for when nothing else runs.
+    /// Times every point that completed, one run after the other. Nothing else may run meanwhile.
     pub fn time(&self, sweep: &Sweep, curve: &mut Curve) {
         for (setting, point) in curve.settings.iter().zip(&mut curve.points) {
             if point.status == Status::Completed {
@@ -221,7 +224,7 @@ impl<'a> Setup<'a> {
     }
 
     fn wall(&self, solver: &Solver, setting: &Setting) -> Option<WallTime> {
-        // Seconds of one run, of so many run one after the other.
+        // Mean seconds of a run, over so many runs one after the other.
         let sample = |batch: usize| {
             let make = |_| solver.start(self.scene, self.system, setting).ok();
             let mut runs: Vec<Run> = (0..batch).map(make).collect::<Option<_>>()?;
@@ -231,13 +234,13 @@ impl<'a> Setup<'a> {
             }
             Some(start.elapsed().as_secs_f64() / batch as f64)
         };
-        // The first is the warm-up, and says how many there are to a sample.
+        // The first run is the warm-up, and decides how many runs make a sample.
         let once = sample(1)?;
-        let batch = ((SAMPLE / once.max(1e-9)).ceil() as usize).clamp(1, MOST);
-        let (mut times, count) = if once > LONG {
-            (vec![once], RUNS_OF_LONG)
+        let batch = ((MIN_SAMPLE_S / once.max(1e-9)).ceil() as usize).clamp(1, MAX_BATCH);
+        let (mut times, count) = if once > LONG_RUN_S {
+            (vec![once], LONG_RUNS)
         } else {
-            (Vec::new(), SAMPLES)
+            (Vec::new(), SHORT_SAMPLES)
         };
         while times.len() < count {
             times.push(sample(batch)?);
@@ -246,19 +249,19 @@ impl<'a> Setup<'a> {
     }
 }
 
-/// One solver's points, coarse to fine, and beside each its setting.
+/// One solver's points, coarse to fine, and the setting of each.
 #[derive(Default)]
 pub struct Curve {
     pub settings: Vec<Setting>,
     pub points: Vec<CostPoint>,
-    /// Beside each point; empty unless the settings were named.
+    /// The states of each point's run; empty unless the settings were given by name.
     pub kept: Vec<Samples>,
-    /// Over all runs: full evaluations, passes over damping alone.
+    /// Full evaluations, and passes over damping alone, summed over all runs.
     counted: [u64; 2],
 }
 
 impl Curve {
-    /// Adds a point where its setting belongs.
+    /// Adds a point at its setting's place in the order.
     fn insert(&mut self, setting: Setting, (point, kept, counts): (CostPoint, Samples, Counts)) {
         let at = self.settings.partition_point(|s| s.is_no_finer(&setting));
         self.settings.insert(at, setting);
@@ -270,7 +273,7 @@ impl Curve {
         self.counted[1] += counts.damping_evaluations.unwrap_or(0);
     }
 
-    /// What hand-written integrators evaluated in all these runs: full, damping alone.
+    /// Evaluations of the hand-written integrators in all these runs: full ones, and those of damping alone.
     pub fn evaluations(all: &[Curve], sweeps: &[Sweep]) -> [u64; 2] {
         let ours = all.iter().zip(sweeps);
         let ours = ours.filter(|(_, sweep)| sweep.solver.kind == SolverKind::Integrator);
@@ -279,7 +282,7 @@ impl Curve {
         })
     }
 
-    /// Whether finer settings can only be worse: rounding or the truth's bar is all that is left.
+    /// Whether finer settings can only be worse: rounding or the truth's error bar is all that is left.
     fn is_spent(&self) -> bool {
         let errors: Vec<f64> = self.points.iter().filter_map(|p| p.error_m).collect();
         let floored = self.points.iter().filter(|p| p.at_floor).count();
@@ -288,36 +291,39 @@ impl Curve {
             return floored > 1;
         };
         let best = before.iter().copied().fold(f64::INFINITY, f64::min);
-        let stopped = one.min(*two) > FALLING * best && best < SMALL * largest;
+        let stopped = one.min(*two) > STALLED * best && best < SMALL * largest;
         floored > 1 || stopped
     }
 
     /// The setting at which the error should be just below the target; None where the target is reached
     /// nowhere, or at the coarsest setting, or to within a few percent.
-    fn toward(&self, target: f64) -> Option<Setting> {
+    fn setting_near(&self, target: f64) -> Option<Setting> {
         let reached = reach(&self.points, target).ok()?;
         let before = reached.checked_sub(1)?;
         let (fine, coarse) = (&self.points[reached], &self.points[before]);
         let ratio = fine.steps as f64 / coarse.steps as f64;
-        let near = fine.error_m.is_some_and(|error| error > NEAR * target);
-        if ratio < CLOSE || near || (fine.at_floor && coarse.at_floor) {
+        let near = fine
+            .error_m
+            .is_some_and(|error| error > CLOSE_ENOUGH * target);
+        if ratio < MIN_STEP_RATIO || near || (fine.at_floor && coarse.at_floor) {
             return None;
         }
         let part = match (coarse.error_m, fine.error_m) {
-            // Within the ends, so that every attempt narrows.
+            // The part stays within the ends, so that every attempt narrows the interval.
             (Some(from), Some(to)) if from > target && to > 0.0 => {
                 ((from / (AIM * target)).ln() / (from / to).ln()).clamp(0.1, 0.9)
             }
-            // Unstable there: halfway.
+            // The coarse setting is unstable: the next one is halfway.
             (None, _) => 0.5,
             _ => return None,
         };
-        along(&self.settings[before], &self.settings[reached], part)
+        between(&self.settings[before], &self.settings[reached], part)
     }
 }
 
-/// So far from one setting to a finer one, both logarithmic.
-fn along(coarse: &Setting, fine: &Setting, part: f64) -> Option<Setting> {
+/// The setting at this part of the way from one to a finer one, on a logarithmic scale; None where no step
+/// count lies between.
+fn between(coarse: &Setting, fine: &Setting, part: f64) -> Option<Setting> {
     let mean = |from: f64, to: f64| from * (to / from).powf(part);
     let steps = mean(coarse.steps() as f64, fine.steps() as f64).round() as u64;
     match (coarse, fine) {
@@ -343,7 +349,7 @@ fn along(coarse: &Setting, fine: &Setting, part: f64) -> Option<Setting> {
     }
 }
 
-/// Why a pair was stopped.
+/// Why a pair was stopped early.
 fn exhausted(run: &Run) -> String {
     let (steps, t) = (run.taken(), run.state().t);
     format!(

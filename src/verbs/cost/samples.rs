@@ -1,11 +1,11 @@
-//! What is kept of a run: few enough states for every run of a sweep to be kept.
+//! The states a run keeps: few enough that every run of a sweep can keep them.
 
 use crate::physics::{State, Work};
 use crate::solvers::Setting;
 use crate::trajectory::Observer;
 use crate::truth::States;
 
-/// States of a run at some instants, the start and the end among them.
+/// States of a run at some instants, with the start and the end.
 #[derive(Debug, Clone, Default)]
 pub struct Samples {
     /// Seconds, ascending.
@@ -22,7 +22,7 @@ impl Samples {
         self.work.push(state.work);
     }
 
-    /// Every other instant, beginning with the first.
+    /// Keeps every other instant, beginning with the first.
     fn halve(&mut self) {
         let dim = self.states.dim;
         let left = self.t.len().div_ceil(2);
@@ -47,19 +47,19 @@ pub struct Sampler {
     stride: u64,
     /// The last step; None where the solver chooses its steps.
     last: Option<u64>,
-    /// Instants at most, where the last step is not known.
-    room: usize,
+    /// The most instants kept where the last step is not known.
+    max_instants: usize,
     pub samples: Samples,
 }
 
 impl Sampler {
-    /// For about `room` states, at least two.
-    pub fn new(setting: &Setting, room: u64) -> Self {
+    /// Keeps about `max_instants` states, at least two.
+    pub fn new(setting: &Setting, max_instants: u64) -> Self {
         let known = setting.tolerance().is_none().then(|| setting.steps());
         Self {
-            stride: known.map_or(1, |steps| steps.div_ceil(room - 1).max(1)),
+            stride: known.map_or(1, |steps| steps.div_ceil(max_instants - 1).max(1)),
             last: known,
-            room: room as usize,
+            max_instants: max_instants as usize,
             samples: Samples::default(),
         }
     }
@@ -75,10 +75,9 @@ impl Observer for Sampler {
         }
     }
 
-    /// Where there is no more room, every other state kept is dropped, and from then on every other one
-    /// kept.
+    /// When no more states may be kept, every other one is dropped and the stride doubles.
     fn observe(&mut self, step: u64, state: &State) {
-        if self.last.is_none() && self.samples.t.len() == self.room {
+        if self.last.is_none() && self.samples.t.len() == self.max_instants {
             self.samples.halve();
             self.stride *= 2;
         }

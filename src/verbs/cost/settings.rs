@@ -1,5 +1,5 @@
-//! The plan of a sweep: the settings each solver is tried at, evenly spaced in ln h, from where it becomes stable
-//! to where its share of the budget ends.
+//! The plan of a sweep: the settings of each solver, evenly spaced in ln h, from where it becomes stable to where
+//! its part of the budget ends.
 
 use super::CostChoice;
 use crate::integrators::Stable;
@@ -8,10 +8,10 @@ use crate::physics::{ParticleSystem, System};
 use crate::scene::{Scene, limits};
 use crate::solvers::{Setting, Solver, SolverKind};
 
-/// A solver and the settings it is planned to run at: one line of the diagram.
+/// A solver and its planned settings: one curve of the diagram.
 pub struct Sweep {
     pub solver: Solver,
-    /// Order on this scene; None where nothing is stated.
+    /// The stated order on this scene; None where none is stated.
     pub order: Option<u32>,
     /// Coarse to fine.
     pub settings: Vec<Setting>,
@@ -27,16 +27,16 @@ impl Sweep {
 
     /// Nominal microseconds of the runs that are timed.
     pub fn of_timing(&self, setting: &Setting) -> u64 {
-        (1e-3 * (TIMED * self.run(setting)).max(TIMED_LEAST)) as u64
+        (1e-3 * (TIMED_RUNS * self.run(setting)).max(MIN_TIMED_NS)) as u64
     }
 
-    /// Nominal microseconds of all.
+    /// Nominal microseconds of all runs.
     pub fn work(&self) -> u64 {
         let each = |setting| self.of_error(setting) + self.of_timing(setting);
         self.settings.iter().map(each).sum()
     }
 
-    /// Nanoseconds.
+    /// Nominal nanoseconds of one run.
     fn run(&self, setting: &Setting) -> f64 {
         self.each * setting.steps() as f64
     }
@@ -44,22 +44,22 @@ impl Sweep {
 
 /// The sweeps of all solvers, in the order of the curves.
 pub fn plan(scene: &Scene, system: &ParticleSystem, choice: &CostChoice) -> Vec<Sweep> {
-    // Pairs choose their own steps: with steps named there is nothing to sweep.
+    // Pairs choose their own steps: where timesteps are given there is nothing to sweep.
     let timesteps = choice.timesteps.as_deref();
-    let swept = |solver: &&Solver| timesteps.is_none() || solver.as_pair().is_none();
-    let solvers: Vec<&Solver> = choice.solvers.iter().filter(swept).collect();
-    let share = choice.budget_s / solvers.len().max(1) as f64;
+    let is_swept = |solver: &&Solver| timesteps.is_none() || solver.as_pair().is_none();
+    let solvers: Vec<&Solver> = choice.solvers.iter().filter(is_swept).collect();
+    let budget = choice.budget_s / solvers.len().max(1) as f64;
     let start = ParticleSystem::initial_state(scene);
     let linearised = Linearised::new(system, &start, Effort::BRIEF);
     let sweep = |solver: &Solver| {
         let coarsest = coarsest(scene, &linearised, solver);
-        let each = price_of_step(scene, system, solver, &coarsest);
-        let coarsest = afforded(scene, &linearised, solver, coarsest, each, share);
+        let each = step_cost(scene, system, solver, &coarsest);
+        let coarsest = afforded(scene, &linearised, solver, coarsest, each, budget);
         let count = choice.settings;
         let settings = match (timesteps, solver.as_pair()) {
             (Some(timesteps), _) => named(scene, timesteps),
-            (None, Some(pair)) => tolerances(scene, &linearised, pair.order, each, count, share),
-            (None, None) => spaced(scene, &coarsest, each, count, share),
+            (None, Some(pair)) => tolerances(scene, &linearised, pair.order, each, count, budget),
+            (None, None) => spaced(scene, &coarsest, each, count, budget),
         };
         Sweep {
             order: solver.order(system.kinds().depends_on_velocity()),
@@ -71,26 +71,26 @@ pub fn plan(scene: &Scene, system: &ParticleSystem, choice: &CostChoice) -> Vec<
     solvers.into_iter().map(sweep).collect()
 }
 
-/// h w_max at which a method starts that is stable at no step, and one that is at every step.
+/// h w_max at which a method that is never stable starts, and one that is always stable.
 const NEVER: f64 = 0.2;
 const ALWAYS: f64 = 2.0;
-/// Fewest steps of a run: fewer say nothing of a motion.
-const FEWEST: f64 = 8.0;
-/// Steps where nothing is known of the motion's speed.
-const SLOW: f64 = 50.0;
-/// Tolerances a pair is tried at.
+/// The fewest steps of a run: fewer say nothing about a motion.
+const MIN_STEPS: f64 = 8.0;
+/// Steps of the coarsest run where the motion's speed is not known.
+const DEFAULT_STEPS: f64 = 50.0;
+/// The range of tolerances of a pair.
 const LOOSEST: f64 = 1e-2;
 const TIGHTEST: f64 = 1e-14;
-/// h w of a pair's steps at a tolerance of 1 is about one over this.
+/// A pair's steps at a tolerance of 1 have an h w of about one over this.
 const EFFORT: f64 = 0.2;
-/// Steps a pair may take however small its share.
-const LEAST_STEPS: f64 = 1e4;
+/// Steps a pair may take, however small its budget.
+const MIN_PAIR_STEPS: f64 = 1e4;
 /// The finest run has at least this many times the steps of the coarsest, however small the budget.
-const LEAST_RANGE: f64 = 4.0;
-/// Where even that range is more than the share, fewer settings are tried of it, down to these.
-const LEAST_SETTINGS: usize = 3;
+const MIN_RANGE: f64 = 4.0;
+/// Where even that range takes more than the budget, fewer settings are tried in it, down to this many.
+const MIN_SETTINGS: usize = 3;
 
-/// Exactly these steps, coarse to fine.
+/// Exactly these timesteps, coarse to fine.
 fn named(scene: &Scene, timesteps: &[f64]) -> Vec<Setting> {
     let mut timesteps = timesteps.to_vec();
     timesteps.sort_by(|a, b| b.total_cmp(a));
@@ -102,27 +102,27 @@ fn named(scene: &Scene, timesteps: &[f64]) -> Vec<Setting> {
     timesteps.iter().map(setting).collect()
 }
 
-/// Where an engine starts: just inside its limit, or at the loosest tolerance.
+/// The coarsest setting of an engine: just inside its stability limit, or at the loosest tolerance.
 fn coarsest(scene: &Scene, linearised: &Linearised, solver: &Solver) -> Setting {
     if let Some(pair) = solver.as_pair() {
         return tolerance(scene, rate(linearised), pair.order, LOOSEST, 1);
     }
-    let steps = (scene.duration / start(scene, linearised, solver)).max(FEWEST);
+    let steps = (scene.duration / largest_step(scene, linearised, solver)).max(MIN_STEPS);
     Setting::divided(scene.duration, steps.min(limits::STEPS) as u64 + 1)
 }
 
-/// The same, coarser where three settings from there on would take more than the share: an engine that is
-/// stable at every step can be tried at larger ones, one that is not cannot.
+/// The coarsest setting, made coarser where three settings from there on would take more than the budget. Only
+/// an engine that is stable at every step can start at a larger one.
 fn afforded(
     scene: &Scene,
     linearised: &Linearised,
     solver: &Solver,
     coarsest: Setting,
     each: f64,
-    share_s: f64,
+    budget_s: f64,
 ) -> Setting {
-    let runs = (1.0 + TIMED) * least_runs(LEAST_SETTINGS);
-    let most = (1e9 * share_s / each / runs).max(FEWEST);
+    let runs = (1.0 + TIMED_RUNS) * least_runs(MIN_SETTINGS);
+    let most = (1e9 * budget_s / each / runs).max(MIN_STEPS);
     let always = match solver.follows {
         None => solver.kind == SolverKind::Rapier,
         Some(method) => {
@@ -137,33 +137,33 @@ fn afforded(
     }
 }
 
-/// What all runs over the least range take, in units of the coarsest.
+/// The cost of all runs over the least range, in units of the coarsest run.
 fn least_runs(settings: usize) -> f64 {
-    let ratio = LEAST_RANGE.powf(1.0 / (settings - 1) as f64);
-    (LEAST_RANGE * ratio - 1.0) / (ratio - 1.0)
+    let ratio = MIN_RANGE.powf(1.0 / (settings - 1) as f64);
+    (MIN_RANGE * ratio - 1.0) / (ratio - 1.0)
 }
 
-/// `settings` of them from the coarsest on, or fewer where whole numbers of steps coincide or the least
-/// range takes more than the share. `each` is what a step takes, nominal ns; `share_s` what all runs of this
-/// engine may take, nominal seconds.
+/// Evenly spaced settings from the coarsest on: `settings` of them, or fewer where whole numbers of steps coincide
+/// or the least range takes more than the budget. `each` is the cost of a step, nominal ns; `budget_s` that of all
+/// runs of this engine, nominal seconds.
 fn spaced(
     scene: &Scene,
     coarsest: &Setting,
     each: f64,
     settings: usize,
-    share_s: f64,
+    budget_s: f64,
 ) -> Vec<Setting> {
     let duration = scene.duration;
     let first = coarsest.steps() as f64;
     let step = 1e-9 * each;
     let at_most = limits::STEPS.max(first);
-    let settings = affordable(settings.max(2), first * step, share_s);
-    let share = share_s - 1e-9 * TIMED_LEAST * settings as f64;
+    let settings = affordable(settings.max(2), first * step, budget_s);
+    let budget = budget_s - 1e-9 * MIN_TIMED_NS * settings as f64;
     // Runs grow by a factor r from one to the next: together they are r / (r - 1) times the finest.
     let finest = |ratio: f64| {
-        let all = (1.0 + TIMED) * ratio / (ratio - 1.0);
-        (share.max(0.0) / all / step)
-            .max(LEAST_RANGE * first)
+        let all = (1.0 + TIMED_RUNS) * ratio / (ratio - 1.0);
+        (budget.max(0.0) / all / step)
+            .max(MIN_RANGE * first)
             .min(at_most)
     };
     // The factor depends on the range, which depends, a little, on the factor.
@@ -183,36 +183,36 @@ fn spaced(
         .collect()
 }
 
-/// How many settings over the least range fit into the share, s, if the coarsest run takes so many seconds;
-/// no more than asked for, and not below the fewest.
-fn affordable(asked: usize, coarsest: f64, share_s: f64) -> usize {
+/// How many settings over the least range fit into the budget, s, if the coarsest run takes `coarsest` seconds;
+/// no more than wanted, and no fewer than the minimum.
+fn affordable(wanted: usize, coarsest: f64, budget_s: f64) -> usize {
     let takes = |settings: usize| {
         let runs = least_runs(settings);
-        (1.0 + TIMED) * coarsest * runs + 1e-9 * TIMED_LEAST * settings as f64
+        (1.0 + TIMED_RUNS) * coarsest * runs + 1e-9 * MIN_TIMED_NS * settings as f64
     };
-    let fewer = (LEAST_SETTINGS..asked).rev();
-    let fits = |settings: &usize| takes(*settings) <= share_s;
-    if fits(&asked) {
-        return asked;
+    let fewer = (MIN_SETTINGS..wanted).rev();
+    let fits = |settings: &usize| takes(*settings) <= budget_s;
+    if fits(&wanted) {
+        return wanted;
     }
     fewer
         .into_iter()
         .find(fits)
-        .unwrap_or(asked.min(LEAST_SETTINGS))
+        .unwrap_or(wanted.min(MIN_SETTINGS))
 }
 
-/// The fastest the scene moves, 1/s; 0 where nothing is known.
+/// The largest frequency or damping rate of the scene, 1/s; 0 where neither is known.
 fn rate(linearised: &Linearised) -> f64 {
     let omega = linearised.omega_max().unwrap_or(0.0);
     omega.max(linearised.damping_max())
 }
 
-/// A pair's setting. It takes about as many steps as its error per unit step, (h w)^order, makes it.
+/// A pair's setting, with the steps estimated from its error per unit step, (h w)^order.
 fn tolerance(scene: &Scene, rate: f64, order: u32, tolerance: f64, max_steps: u64) -> Setting {
     let rate = if rate > 0.0 {
         rate
     } else {
-        SLOW / scene.duration
+        DEFAULT_STEPS / scene.duration
     };
     let steps = EFFORT * scene.duration * rate * tolerance.powf(-1.0 / f64::from(order));
     Setting::Tolerance {
@@ -223,7 +223,7 @@ fn tolerance(scene: &Scene, rate: f64, order: u32, tolerance: f64, max_steps: u6
     }
 }
 
-/// Tolerances evenly spaced in their logarithm, down to what the share allows. `each` and `share_s` as in
+/// Tolerances evenly spaced in their logarithm, as tight as the budget allows. `each` and `budget_s` are as in
 /// [`spaced`].
 fn tolerances(
     scene: &Scene,
@@ -231,13 +231,13 @@ fn tolerances(
     order: u32,
     each: f64,
     settings: usize,
-    share_s: f64,
+    budget_s: f64,
 ) -> Vec<Setting> {
     let rate = rate(linearised);
     let settings = settings.max(2);
-    let share = share_s - 1e-9 * TIMED_LEAST * settings as f64;
-    // One run must not take all that was meant for a dozen and their timing.
-    let most = (1e9 * share.max(0.0) / each / (1.0 + TIMED)).max(LEAST_STEPS) as u64;
+    let budget = budget_s - 1e-9 * MIN_TIMED_NS * settings as f64;
+    // One run must not take the budget of a dozen and their timing.
+    let most = (1e9 * budget.max(0.0) / each / (1.0 + TIMED_RUNS)).max(MIN_PAIR_STEPS) as u64;
     let at = |tightest: f64, k: usize| {
         let part = k as f64 / (settings - 1) as f64;
         let own = LOOSEST * (tightest / LOOSEST).powf(part);
@@ -245,23 +245,23 @@ fn tolerances(
     };
     let takes = |tightest: f64| {
         let all = (0..settings).map(|k| at(tightest, k).steps() as f64);
-        all.sum::<f64>() * each * 1e-9 * (1.0 + TIMED)
+        all.sum::<f64>() * each * 1e-9 * (1.0 + TIMED_RUNS)
     };
     let mut tightest = TIGHTEST;
-    while takes(tightest) > share && tightest < LOOSEST * 1e-2 {
+    while takes(tightest) > budget && tightest < LOOSEST * 1e-2 {
         tightest *= 10.0;
     }
     (0..settings).map(|k| at(tightest, k)).collect()
 }
 
 /// The largest step worth trying, s.
-fn start(scene: &Scene, linearised: &Linearised, solver: &Solver) -> f64 {
+fn largest_step(scene: &Scene, linearised: &Linearised, solver: &Solver) -> f64 {
     let rate = rate(linearised);
     let over = |z: f64| {
         if rate > 0.0 {
             z / rate
         } else {
-            scene.duration / SLOW
+            scene.duration / DEFAULT_STEPS
         }
     };
     let Some(method) = solver.follows else {
@@ -278,39 +278,34 @@ fn start(scene: &Scene, linearised: &Linearised, solver: &Solver) -> f64 {
     }
 }
 
-/// Nanoseconds on the nominal machine. A step beside its forces, and each particle in it:
+/// Nanoseconds on the nominal machine: a step without its forces, and each particle in it.
 const STEP: f64 = 30.0;
 const PARTICLE: f64 = 4.0;
-/// An evaluation beside its members, and each particle and spring in it:
+/// An evaluation without its members, and each particle and spring in it.
 const CALL: f64 = 35.0;
 const EVALUATION: f64 = 4.0;
 const SPRING: f64 = 10.0;
-/// A linear solve of n free particles, n^1.5 of these while it is small and dense, n of the others:
+/// A linear solve of n free particles: n^1.5 of the first while it is small and dense, else n of the second.
 const DENSE: f64 = 280.0;
 const SPARSE: f64 = 2_500.0;
-/// A step of rapier, each body and joint in it, and in each of its substeps:
+/// A step of rapier, each body and joint in it, and each of these again in every substep.
 const WORLD: f64 = 1_000.0;
 const BODY: f64 = 250.0;
-const SWEPT: f64 = 90.0;
-/// Steps the counts are taken from.
+const SUBSTEP: f64 = 90.0;
+/// Steps that are run to take the counts.
 const SAMPLE: u64 = 4;
 
-/// Runs a timing takes, and the least time it takes, ns.
-const TIMED: f64 = 3.5;
-const TIMED_LEAST: f64 = 1.2e7;
+/// A timing takes as long as this many runs, and at least this long, ns.
+const TIMED_RUNS: f64 = 3.5;
+const MIN_TIMED_NS: f64 = 1.2e7;
 
-/// What a step is expected to take on the nominal machine, ns, from what it counts: the same on every machine,
-/// so that all sweep the same settings.
-fn price_of_step(
-    scene: &Scene,
-    system: &ParticleSystem,
-    solver: &Solver,
-    setting: &Setting,
-) -> f64 {
+/// The expected cost of a step on the nominal machine, ns, from its counts. It is the same on every machine, so
+/// that all try the same settings.
+fn step_cost(scene: &Scene, system: &ParticleSystem, solver: &Solver, setting: &Setting) -> f64 {
     let (particles, springs) = (scene.particles.len() as f64, scene.springs.len() as f64);
     if solver.kind == SolverKind::Rapier {
         let substeps = f64::from(solver.substeps);
-        return WORLD + (particles + springs) * (BODY + SWEPT * substeps);
+        return WORLD + (particles + springs) * (BODY + SUBSTEP * substeps);
     }
     let Ok(mut run) = solver.start(scene, system, setting) else {
         return STEP;

@@ -5,8 +5,8 @@ use crate::measure::EnergyClass;
 use crate::report::svg::Figure;
 use crate::report::svg::palette::{self, look};
 use crate::report::svg::{
-    Axis, Chart, FAINT, HUGE, INK, Key, Line, Look, Mark, Panel, Scale, Shape, Stroke, Symbol,
-    TRUTH_NAME, WHITE, heading, padded, range, shortened, tamed,
+    Chart, ChartAxis, FAINT, HUGE, INK, LegendEntry, Look, Mark, Panel, Polyline, Scale, Stroke,
+    Symbol, SymbolShape, TRUTH_NAME, WHITE, heading, padded, range, shortened, tamed,
 };
 use crate::report::{svg, words};
 use crate::solvers::{SolverKind, Status};
@@ -70,16 +70,16 @@ fn by_timestep(
 impl Runs<'_> {
     /// The lines of the truth, which have no outcome, then those of every run in the order they are painted. A
     /// run that ended early has a cross at its end.
-    fn lines(&self, report: &Report) -> Vec<(Option<&Outcome>, Line)> {
+    fn lines(&self, report: &Report) -> Vec<(Option<&Outcome>, Polyline)> {
         let truth = self.truth.iter().cloned();
-        let truth = truth.map(|path| (None, Line::new(path, palette::TRUTH)));
+        let truth = truth.map(|path| (None, Polyline::new(path, palette::TRUTH)));
         let mut runs: Vec<&(&Outcome, Paths)> = self.runs.iter().collect();
         runs.sort_by_key(|(outcome, _)| layer(report, outcome));
         let runs = runs.into_iter().flat_map(|(outcome, paths)| {
             let stroke = stroke(report, outcome);
             let cross = Symbol::cross(stroke.colour);
             paths.iter().map(move |path| {
-                let mut line = Line::new(path.clone(), stroke);
+                let mut line = Polyline::new(path.clone(), stroke);
                 line.wild = is_wild(outcome);
                 line.end = (outcome.status != Status::Completed).then_some(cross);
                 (Some(*outcome), line)
@@ -123,17 +123,18 @@ fn curves(
     report: &Report,
     [title, y_title]: [&str; 2],
     panels: Vec<Runs>,
-    axis: impl Fn(&Runs) -> Axis,
+    axis: impl Fn(&Runs) -> ChartAxis,
 ) -> Chart {
     let height = if panels.len() > 1 { 230.0 } else { 340.0 };
     let panels = panels.iter().map(|panel| {
         let marks = panel.lines(report).into_iter().map(|(outcome, mut line)| {
             let text = outcome.map_or(TRUTH_NAME.to_owned(), name);
-            line.label = (!line.points.is_empty()).then(|| Key::new(text, Look::Line(line.stroke)));
+            line.label =
+                (!line.points.is_empty()).then(|| LegendEntry::new(text, Look::Line(line.stroke)));
             Mark::Line(line)
         });
         let times = range(panel.spans(0).flat_map(|(_, span)| span));
-        let axes = [Axis::linear(times.unwrap_or([0.0, 1.0])), axis(panel)];
+        let axes = [ChartAxis::linear(times.unwrap_or([0.0, 1.0])), axis(panel)];
         Panel::new(panel.title.clone(), height, axes, marks.collect())
     });
     Chart {
@@ -153,7 +154,7 @@ fn plot(report: &Report) -> Option<Chart> {
     let titles = [&format!("{label} over time"), label.as_str()];
     Some(curves(report, titles, panels, |panel| {
         let y_range = stated.y_range.filter(|[lo, hi]| lo < hi);
-        Axis::linear(y_range.unwrap_or_else(|| padded(panel.shown(1, None), 0.05)))
+        ChartAxis::linear(y_range.unwrap_or_else(|| padded(panel.shown(1, None), 0.05)))
     }))
 }
 
@@ -173,7 +174,7 @@ fn energy(report: &Report) -> Option<Chart> {
 }
 
 /// A symmetric-logarithmic axis where the panel shows a small bounded oscillation beside a large growth.
-fn energy_axis(panel: &Runs) -> Axis {
+fn energy_axis(panel: &Runs) -> ChartAxis {
     let size = |[lo, hi]: [f64; 2]| f64::max(-lo, hi);
     let finished = panel
         .spans(1)
@@ -190,11 +191,11 @@ fn energy_axis(panel: &Runs) -> Axis {
     let ends = spans.into_iter().flatten().chain([0.0]);
     let [lo, hi] = range(ends).unwrap_or_default();
     let Some(linear) = linear_part(&sizes) else {
-        return Axis::linear(padded([lo, hi], 0.06));
+        return ChartAxis::linear(padded([lo, hi], 0.06));
     };
     // Half a decade of room on each side.
     let beyond = |end: f64| 3.0 * end.abs().clamp(0.2 * linear, HUGE / 3.0);
-    Axis {
+    ChartAxis {
         scale: Scale::SymLog { linear },
         range: [-beyond(lo), beyond(hi)],
     }
@@ -225,13 +226,13 @@ fn trajectories(report: &Report) -> Option<Chart> {
     let titles = series
         .plane
         .map(|axis| ["x (m)", "y (m)", "z (m)"][axis.min(2)]);
-    let start = Symbol::new(Shape::Disc, WHITE, INK);
-    let end = |colour| Symbol::new(Shape::Disc, colour, WHITE);
-    let still = Symbol::new(Shape::Square, INK, INK);
+    let start = Symbol::new(SymbolShape::Disc, WHITE, INK);
+    let end = |colour| Symbol::new(SymbolShape::Disc, colour, WHITE);
+    let still = Symbol::new(SymbolShape::Square, INK, INK);
     let panel = |panel: &Runs| {
         let axes = [0, 1].map(|axis| {
             let fixed = range(series.fixed.iter().map(|p| p[axis]));
-            Axis::linear(padded(panel.shown(axis, fixed), 0.06))
+            ChartAxis::linear(padded(panel.shown(axis, fixed), 0.06))
         });
         let lines = panel.lines(report).into_iter().map(|(outcome, mut line)| {
             let arrived = outcome.map(|_| end(line.stroke.colour));
@@ -245,8 +246,11 @@ fn trajectories(report: &Report) -> Option<Chart> {
 
         let look = |o: &Outcome| Look::Line(stroke(report, o));
         let truth = series.truth.as_ref();
-        let truth = truth.map(|_| Key::new(TRUTH_NAME, Look::Line(palette::TRUTH)));
-        let runs = panel.runs.iter().map(|(o, _)| Key::new(name(o), look(o)));
+        let truth = truth.map(|_| LegendEntry::new(TRUTH_NAME, Look::Line(palette::TRUTH)));
+        let runs = panel
+            .runs
+            .iter()
+            .map(|(o, _)| LegendEntry::new(name(o), look(o)));
         let mut ends = panel.runs.iter().map(|(o, _)| o.status);
         let early = ends.any(|status| status != Status::Completed);
         let symbols = [
@@ -256,7 +260,7 @@ fn trajectories(report: &Report) -> Option<Chart> {
             (early, "ended early", Symbol::cross(FAINT)),
         ];
         let symbols = symbols.into_iter().filter(|(shown, ..)| *shown);
-        let symbols = symbols.map(|(_, text, symbol)| Key::new(text, Look::Symbol(symbol)));
+        let symbols = symbols.map(|(_, text, symbol)| LegendEntry::new(text, Look::Symbol(symbol)));
         let marks = lines.chain(marks).collect();
         Panel {
             equal_scales: true,

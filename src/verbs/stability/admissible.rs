@@ -1,10 +1,10 @@
-//! The picture of a stiff spring: from where one step does not enlarge its force.
+//! The admissible region of a stiff spring: the starts from which one step does not enlarge its force.
 //!
 //! Two free particles on a line, at rest, x1 and x2 apart by l, on a spring of rest length L. Explicit
 //! Euler's first step moves nothing; after its second the particles have moved by h² f/m. Where
 //! h² k (1/m1 + 1/m2) is at most 2 the force |k (l - L)| is nowhere larger than it was; beyond, it is
-//! larger almost everywhere, and what is left of the plane shrinks to the line l = L and to places
-//! from where the ends pass through each other and happen to land well.
+//! larger almost everywhere, and the region shrinks to the line l = L and to places from where the
+//! ends pass through each other and happen to land well.
 
 use crate::integrators::{self, Integrator, Settings};
 use crate::physics::{ParticleSystem, State};
@@ -13,14 +13,14 @@ use crate::solvers::advance;
 use crate::verbs::stability::{Admissible, AdmissiblePanel, StabilityError};
 use rayon::prelude::*;
 
-/// The method the picture is about.
+/// The method that takes the steps.
 const METHOD: &str = "explicit_euler";
-/// Places along x1 and along x2. Of k + 1/2 cells of one and of the other none are equally far along,
-/// since one number is even and the other odd: no place has l = 0, where the spring has no direction.
-const PLACES: [usize; 2] = [192, 193];
-/// The picture reaches so many rest lengths to either side.
-const REACH: f64 = 3.0;
-/// What rounding may add to a force that stays as it is, relative to the spring's force at l = 0.
+/// Cells along x1 and along x2. One number is even and the other odd, so no middle along x1 equals one
+/// along x2: no place has l = 0, where the spring has no direction.
+const GRID: [usize; 2] = [192, 193];
+/// Rest lengths from the middle of the picture to either side.
+const HALF_WIDTH: f64 = 3.0;
+/// Rounding may add this much to a force that stays equal, relative to the spring's force at l = 0.
 const ROUNDING: f64 = 1e-12;
 
 /// One panel for each stiffness, N/m, at a timestep in seconds.
@@ -36,7 +36,7 @@ pub fn draw(
     };
     let method = integrators::find(METHOD).ok_or_else(|| refuse("no such method"))?;
     let rest = spring.rest_length;
-    let [x1, x2] = PLACES.map(|places| axis(places, rest));
+    let [x1, x2] = GRID.map(|cells| axis(cells, rest));
     let panel = |&stiffness: &f64| {
         let mut scene = scene.clone();
         for spring in &mut scene.springs {
@@ -73,7 +73,7 @@ pub fn draw(
     })
 }
 
-/// What a scene has that the picture is not about.
+/// Refuses a scene with anything but two free particles on one spring, and says what it has.
 fn check(scene: &Scene) -> Result<(), String> {
     let (particles, springs) = (scene.particles.len(), scene.springs.len());
     if particles != 2 || springs != 1 {
@@ -90,10 +90,10 @@ fn check(scene: &Scene) -> Result<(), String> {
     other.map_or(Ok(()), |(row, _)| Err(format!("{} acts too", row.id)))
 }
 
-/// The middles of so many cells over the reach.
-fn axis(places: usize, rest: f64) -> Vec<f64> {
-    let middle = |i: usize| (2.0 * (i as f64 + 0.5) / places as f64 - 1.0) * REACH * rest;
-    (0..places).map(middle).collect()
+/// The middles of these cells over the width of the picture.
+fn axis(cells: usize, rest: f64) -> Vec<f64> {
+    let middle = |i: usize| (2.0 * (i as f64 + 0.5) / cells as f64 - 1.0) * HALF_WIDTH * rest;
+    (0..cells).map(middle).collect()
 }
 
 /// Whether two steps from rest leave the spring's force no larger than it was.
@@ -105,7 +105,7 @@ fn admits(
     rest: f64,
 ) -> bool {
     let mut state = State::new(vec![x1, 0.0, 0.0, x2, 0.0, 0.0], vec![0.0; 6]);
-    // The stiffness stands on both sides and cancels.
+    // The stiffness is on both sides and cancels.
     let strain = |state: &State| {
         let apart = |axis: usize| state.x[3 + axis] - state.x[axis];
         let length = (0..3).map(|axis| apart(axis).powi(2)).sum::<f64>().sqrt();

@@ -64,17 +64,17 @@ pub struct Args {
     output: Output,
 }
 
-/// What shortens this verb.
+/// The flags that shorten a run of this verb.
 const SHORTER: &str = "--integrators A,B, --engines none, --budget, fewer values or steps";
 
-/// A row has no answer.
+/// The exit code where a row has no answer.
 const UNANSWERED: u8 = 1;
 
 /// Runs the verb.
 pub fn stability(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let scene = read(args)?;
     let plan = plan(args, &scene)?;
-    // Before anything runs, so that a budget that cannot be kept leaves no folder behind.
+    // The estimate comes before anything runs, so that a budget that is too small leaves no folder behind.
     let place = args.output.place(&args.scene);
     let estimates = estimates(&plan)?;
     let expected = terminal::expected(&estimates);
@@ -85,7 +85,7 @@ pub fn stability(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     args.output
         .print_one(&report, place.as_ref(), next, otherwise)?;
     let mut rows = report.stability().into_iter().flat_map(|s| &s.rows);
-    // A limit, or why this engine has none.
+    // An unsupported engine has no limit; its reason is the answer.
     let answered = rows.all(|row| row.limit().is_some() || row.unsupported);
     Ok(ExitCode::from(if answered { 0 } else { UNANSWERED }))
 }
@@ -145,7 +145,7 @@ fn within(value: f64, quantity: limits::Bounds) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A whole number, also as `4e7`.
+/// Reads a whole number, also as `4e7`.
 fn count(text: &str) -> Result<u64, String> {
     let number = text.parse::<f64>().ok();
     let whole = number.filter(|n| (1.0..=1e15).contains(n) && n.fract() == 0.0);
@@ -163,7 +163,7 @@ fn estimates(plan: &StabilityPlan) -> anyhow::Result<Vec<TimeEstimate>> {
         solvers: plan.solvers.clone(),
         ..Choice::default_for(plan.scene)
     };
-    // A case for each solver: none has a timestep of its own here.
+    // There is one case for each solver: none has a timestep of its own here.
     let mut runs = Plan::new(plan.scene, &choice);
     for (case, steps) in runs.cases.iter_mut().zip(by_row) {
         case.label.steps = steps + of_map;
@@ -171,7 +171,7 @@ fn estimates(plan: &StabilityPlan) -> anyhow::Result<Vec<TimeEstimate>> {
     Ok(runs.estimate())
 }
 
-/// A map worth drawing, or after a map a run at a step that is well inside.
+/// The command to run next: a map, or after a map a run at a step well inside the limit.
 fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
     let path = output::quoted(&args.scene)?;
     if args.vary.is_none() {

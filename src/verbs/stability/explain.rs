@@ -1,4 +1,4 @@
-//! The sentences of a row: what prediction and measurement say, and why they differ.
+//! The remarks of a row: what prediction and measurement say, and why they differ.
 
 use super::Shared;
 use crate::integrators::{Amplification, Stage};
@@ -6,10 +6,10 @@ use crate::measure::stability::{Limit, MeasuredLimit, Prediction};
 use crate::solvers::Solver;
 use crate::verbs::stability::StabilityRow;
 
-/// Limits are found to this part of themselves.
+/// The relative resolution of limits.
 const RESOLUTION: f64 = 1e-3;
 
-/// What there is to say of one row.
+/// The remarks of one row, sentence by sentence.
 pub fn remarks(
     shared: &Shared,
     solver: &Solver,
@@ -46,7 +46,7 @@ pub fn remarks(
     remarks
 }
 
-/// Where along the way the limit is below that of the start.
+/// The tightest predicted limit along the trajectory, where it is below that of the start.
 fn tightest(shared: &Shared, row: &StabilityRow) -> Option<String> {
     let tightest = row.tightest.as_ref()?;
     let method = shared.path.method?;
@@ -59,7 +59,7 @@ fn tightest(shared: &Shared, row: &StabilityRow) -> Option<String> {
     })
 }
 
-/// Whether the measured limit, or all of what it lies between, is below the predicted one.
+/// Whether the measured limit, or its whole bracket, is below the predicted one.
 fn lower(predicted: &Limit, measured: &Limit) -> bool {
     match (predicted, measured) {
         (Limit::At(p), Limit::At(m)) => *m < p * (1.0 - RESOLUTION),
@@ -68,7 +68,7 @@ fn lower(predicted: &Limit, measured: &Limit) -> bool {
     }
 }
 
-/// What a state that moves away from where it was linearised does to a limit.
+/// How the limits differ because the state moves away from where it was linearised.
 fn difference(predicted: &Limit, measured: &Limit) -> Option<String> {
     let text = match (predicted, measured) {
         _ if lower(predicted, measured) => {
@@ -98,7 +98,7 @@ fn difference(predicted: &Limit, measured: &Limit) -> Option<String> {
     Some(text.to_owned())
 }
 
-/// By more than the search's own grain on top of what is to be shown.
+/// Whether the limits differ by more than twice the resolution: the search's own on top of one to be shown.
 fn differ(predicted: &Limit, measured: &Limit) -> bool {
     match (predicted, measured) {
         (Limit::At(p), Limit::At(m)) => (m / p - 1.0).abs() > 2.0 * RESOLUTION,
@@ -108,11 +108,11 @@ fn differ(predicted: &Limit, measured: &Limit) -> bool {
     }
 }
 
-/// Where a step is a linear map they must agree.
+/// The remark where the limits differ although a step is a linear map.
 const FAULT: &str = "prediction and measurement disagree although a step here is a linear map: one of \
                      them is wrong";
 
-/// On linear forces, of a method whose step is no linear map.
+/// The remark on linear forces for a method whose step is no linear map.
 fn turning(amplification: Option<Amplification>) -> String {
     let why = match amplification {
         Some(Amplification::MaterialImplicit) => {
@@ -124,9 +124,9 @@ fn turning(amplification: Option<Amplification>) -> String {
     format!("its step is not linear, though every force is{why}")
 }
 
-/// Damping over a backward substep grows by e to this much at the limit: whatever the forward ones
-/// left as rounding is as large as what they started from.
-const DROWNED: f64 = 36.0;
+/// A backward substep multiplies damped velocities by e to at most this: beyond, the rounding that forward
+/// substeps leave grows as large as what they started from.
+const MAX_UNDONE_DAMPING: f64 = 36.0;
 
 const BACKWARD: &str = "beyond the measured limit its substeps backward in time undo more damping than \
                         doubles hold: they multiply what rounding left of the forward ones, which \
@@ -144,5 +144,5 @@ fn undoes(shared: &Shared, amplification: Option<Amplification>, measured: &Limi
     let (Limit::At(h) | Limit::Between(_, h)) = measured else {
         return false;
     };
-    most * h * shared.linearised.damping_max() > DROWNED
+    most * h * shared.linearised.damping_max() > MAX_UNDONE_DAMPING
 }

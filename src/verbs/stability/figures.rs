@@ -1,41 +1,42 @@
-//! How large a step may be: the map of what becomes of runs, and the places from where a step does not
-//! enlarge the force of a stiff spring.
+//! The figures of `stability`: the map of how runs end, and the places from where a step does not enlarge
+//! the force of a stiff spring.
 
 use crate::measure::stability::Cell;
 use crate::report::svg::Figure;
 use crate::report::svg::{
-    Axis, Chart, Key, Look, Mark, Panel, Stroke, cells, heading, palette, panel_title, shortened,
+    Chart, ChartAxis, LegendEntry, Look, Mark, Panel, Stroke, cells, heading, palette, panel_title,
+    shortened,
 };
 use crate::report::words;
 use crate::verbs::Report;
 use crate::verbs::stability::{MapPanel, StabilityMap};
 
-/// The places where the spring is as long as it wants to be.
+/// The line of the places where the spring has its rest length.
 const REST: Stroke = Stroke::new("#d55e00", "5 3", 1.4);
 
-/// The stability map: one panel an engine, timestep against the quantity varied, the predicted limit
-/// over it.
+/// The stability map: each engine has a panel of timestep against the varied quantity, with the predicted
+/// limit over it.
 fn map(report: &Report) -> Option<Chart> {
     let map = report.stability()?.map.as_ref()?;
     if map.engines.is_empty() || map.values.is_empty() || map.timesteps_s.is_empty() {
         return None;
     }
-    let cells = CELLS.map(|(_, name, colour)| Key::new(name, Look::Fill(colour)));
+    let cells = CELLS.map(|(_, name, colour)| LegendEntry::new(name, Look::Fill(colour)));
     let mut legend = Vec::from(cells);
     let predicts = |engine: &MapPanel| engine.predicted_limit_s.iter().flatten().any(|h| *h > 0.0);
     if map.engines.iter().any(predicts) {
         let line = Look::Line(palette::BOUNDARY[1]);
-        legend.push(Key::new("predicted limit", line));
+        legend.push(LegendEntry::new("predicted limit", line));
     }
     let steps = words::count(map.steps_per_cell);
     let remark = format!("at most {steps} steps a cell");
-    legend.push(Key::new(remark, Look::Remark));
+    legend.push(LegendEntry::new(remark, Look::Remark));
 
     let columns = map.engines.len().min(4);
-    // Few panels are larger, but no larger than legible.
+    // Fewer panels are larger, up to a size that is easy to read.
     let height = f64::min(224.0, 524.0 / columns as f64);
     let panels = map.engines.iter().map(|engine| {
-        let axes = [&map.values, &map.timesteps_s].map(|middles| Axis::of_cells(middles));
+        let axes = [&map.values, &map.timesteps_s].map(|middles| ChartAxis::of_cells(middles));
         let title = panel_title(&report.header, &engine.engine);
         Panel {
             width: 320.0,
@@ -56,7 +57,7 @@ fn map(report: &Report) -> Option<Chart> {
     })
 }
 
-fn map_marks(map: &StabilityMap, engine: &MapPanel, axes: [Axis; 2]) -> Vec<Mark> {
+fn map_marks(map: &StabilityMap, engine: &MapPanel, axes: [ChartAxis; 2]) -> Vec<Mark> {
     let counts = [map.values.len(), map.timesteps_s.len()];
     let at = |i: usize, j: usize| engine.cells.get(i)?.get(j).copied().flatten();
     let areas = CELLS.map(|(cell, _, colour)| {
@@ -69,7 +70,7 @@ fn map_marks(map: &StabilityMap, engine: &MapPanel, axes: [Axis; 2]) -> Vec<Mark
         .collect();
     let mut marks: Vec<Mark> = areas.into();
     for stroke in palette::BOUNDARY {
-        // A stretch between two values without a limit is no line.
+        // The line breaks at values without a limit.
         let stretches = limits.split(Option::is_none);
         let lines = stretches.map(|points| Mark::line(points.iter().copied().flatten(), stroke));
         marks.extend(lines);
@@ -77,8 +78,8 @@ fn map_marks(map: &StabilityMap, engine: &MapPanel, axes: [Axis; 2]) -> Vec<Mark
     marks
 }
 
-/// The classic picture of a stiff spring: from where a step from rest does not enlarge its force, one
-/// panel a stiffness.
+/// The admissible region of a stiff spring: each stiffness has a panel of the places from where a step
+/// from rest does not enlarge the force.
 fn admissible(report: &Report) -> Option<Chart> {
     let admissible = report.stability()?.admissible.as_ref()?;
     if admissible.panels.is_empty() {
@@ -92,7 +93,7 @@ fn admissible(report: &Report) -> Option<Chart> {
         words::short(length)
     );
     let [holds, fails] = palette::HOLDS;
-    let axes = [&admissible.x1_m, &admissible.x2_m].map(|middles| Axis::of_cells(middles));
+    let axes = [&admissible.x1_m, &admissible.x2_m].map(|middles| ChartAxis::of_cells(middles));
     let counts = [admissible.x1_m.len(), admissible.x2_m.len()];
     let panels = admissible.panels.iter().map(|stiffness| {
         let admitted = |i: usize, j: usize| {
@@ -119,10 +120,10 @@ fn admissible(report: &Report) -> Option<Chart> {
     Some(Chart {
         title: heading(&report.header, "where a step does not enlarge the force"),
         legend: vec![
-            Key::new("no larger", Look::Fill(holds)),
-            Key::new("larger", Look::Fill(fails)),
-            Key::new("at rest: |x2 − x1| = L", Look::Line(REST)),
-            Key::new(facts, Look::Remark),
+            LegendEntry::new("no larger", Look::Fill(holds)),
+            LegendEntry::new("larger", Look::Fill(fails)),
+            LegendEntry::new("at rest: |x2 − x1| = L", Look::Line(REST)),
+            LegendEntry::new(facts, Look::Remark),
         ],
         titles: ["x1 (m)", "x2 (m)"].map(str::to_owned),
         panels: panels.collect(),
@@ -131,7 +132,8 @@ fn admissible(report: &Report) -> Option<Chart> {
     })
 }
 
-/// What becomes of a run, from light to dark: told apart in grey and by colour-blind readers alike.
+/// The kinds of cells with their names and colours, from light to dark: they can be told apart in grey and
+/// by colour-blind readers.
 const CELLS: [(Cell, &str, &str); 4] = [
     (Cell::Stable, "stable", "#e3eef6"),
     (Cell::Dissipating, "dissipating", "#8fbfe0"),

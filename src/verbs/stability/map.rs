@@ -1,4 +1,4 @@
-//! Timestep against one quantity of the scene: what becomes of a run in each cell.
+//! The stability map: timestep against one quantity of the scene, with the outcome of a run in each cell.
 
 use super::rows::{as_keys, predicted, start};
 use super::vary::{COUNT, Range, Vary};
@@ -11,16 +11,16 @@ use crate::verbs::stability::{MapPanel, StabilityError, StabilityMap};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Steps times particles of a whole map, unless the caller says otherwise: some seconds.
+/// Steps times particles of a whole map where no budget is given: some seconds.
 const BUDGET: u64 = 40_000_000;
-/// A cell of fewer steps tells nothing.
-pub(super) const FEWEST: u64 = 100;
-/// A map of a large scene takes this many where nobody sets a budget.
-const USUAL: u64 = 256;
-/// The steps over which a run is called stable: more are not needed.
-const MOST: u64 = 20_000;
+/// The fewest steps of a cell: fewer tell nothing.
+pub(super) const MIN_STEPS: u64 = 100;
+/// Steps of a cell in a large scene where no budget is given.
+const DEFAULT_STEPS: u64 = 256;
+/// The most steps of a cell: a run bounded over these is stable.
+const MAX_STEPS: u64 = 20_000;
 
-/// What a map is to show.
+/// The axes and the budget of a map.
 #[derive(Debug, Clone)]
 pub struct MapPlan {
     pub vary: Vary,
@@ -35,29 +35,29 @@ impl MapPlan {
     /// The cells of a map with this many panels, and the steps each may take.
     ///
     /// # Errors
-    /// A budget that leaves them too few.
+    /// The budget leaves each cell too few steps.
     pub fn cells(&self, scene: &Scene, panels: usize) -> Result<[u64; 2], StabilityError> {
         let columns = self.timesteps.map_or(COUNT, |range| range.count);
         let cells = (panels.max(1) * self.vary.values.len() * columns) as u64;
         let particles = scene.particles.len().max(1) as u64;
         let each = cells.saturating_mul(particles).max(1);
         let steps = match self.budget {
-            Some(budget) if budget / each < FEWEST => {
+            Some(budget) if budget / each < MIN_STEPS => {
                 return Err(StabilityError::Budget {
                     budget,
                     cells,
                     steps: budget / each,
                     particles,
-                    needed: each.saturating_mul(FEWEST),
+                    needed: each.saturating_mul(MIN_STEPS),
                 });
             }
             Some(budget) => budget / each,
-            None => (BUDGET / each).max(USUAL),
+            None => (BUDGET / each).max(DEFAULT_STEPS),
         };
-        Ok([cells, steps.min(MOST)])
+        Ok([cells, steps.min(MAX_STEPS)])
     }
 
-    /// A panel for each solver; `steps_per_cell` as [`cells`](Self::cells) has them.
+    /// Runs all cells: a panel for each solver. `steps_per_cell` comes from [`cells`](Self::cells).
     pub fn run(
         &self,
         scene: &Scene,
@@ -70,7 +70,7 @@ impl MapPlan {
         let scenes = values.iter().map(|value| self.vary.apply(scene, *value));
         let scenes: Vec<Scene> = scenes.collect();
         let linearised: Vec<Linearised> = scenes.par_iter().map(linearised).collect();
-        // By solver, then by value.
+        // Indexed by solver, then by value.
         let limits: Vec<Vec<(Option<f64>, bool)>> = solvers
             .par_iter()
             .map(|solver| {
@@ -131,8 +131,8 @@ fn linearised(scene: &Scene) -> Linearised {
     Linearised::new(&system, &start, Effort::FULL)
 }
 
-/// From a decade below to a decade above the limits most methods have: of each value the median over
-/// the engines that have one. Without any, around 2/ω, and without that around the scene's own step.
+/// Timesteps, s, from a decade below to a decade above the typical limits. The typical limit at a value is
+/// the median over the engines that have one, else 2/ω; without any it is the scene's own step.
 fn decades(
     scene: &Scene,
     linearised: &[Linearised],

@@ -1,5 +1,5 @@
-//! How large a step may be: of every chosen engine predicted and measured, along the trajectory, and
-//! as a map.
+//! How large a step may be: the limit of every chosen engine, predicted and measured, predicted again
+//! along the trajectory, and as a map.
 
 mod admissible;
 mod args;
@@ -31,39 +31,39 @@ use crate::verbs::{Body, Report, SeriesState, facts};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// What is asked of one scene.
+/// The question about one scene: the solvers whose limits to find, and the pictures to draw.
 #[derive(Debug, Clone)]
 pub struct StabilityPlan<'a> {
     pub scene: &'a Scene,
-    /// In the order of the rows. A timestep of their own is not looked at: the step is what is searched.
+    /// In the order of the rows. A timestep of their own is ignored: the step is searched for.
     pub solvers: Vec<Solver>,
-    /// Where growth is taken, seconds.
+    /// The timestep at which growth is taken, seconds.
     pub timestep: f64,
     pub map: Option<MapPlan>,
-    /// Stiffnesses, N/m, of the pictures of where a step does not enlarge a spring's force; empty for
-    /// none.
+    /// Stiffnesses, N/m, at which to draw where a step does not enlarge a spring's force; empty for no
+    /// picture.
     pub admissible: Vec<f64>,
 }
 
-/// What all rows share.
+/// The linearised scene and its path, which all rows use.
 pub struct Shared<'a> {
     pub plan: &'a StabilityPlan<'a>,
     pub system: ParticleSystem,
-    /// The scene about its start.
+    /// The scene linearised about its start.
     pub linearised: Linearised,
     /// Whether every force is linear.
     pub linear: bool,
     pub path: path::Path,
-    /// What integrators evaluated, over all runs.
+    /// Evaluations of the integrators, over all runs.
     pub tally: Arc<Tally>,
 }
 
 impl StabilityPlan<'_> {
-    /// Rows, map and picture, in parallel; the same bits on any number of threads. What cannot be
-    /// answered is a row with its reason.
+    /// Finds rows, map and picture in parallel, with the same bits on any number of threads. An engine
+    /// without an answer is a row with its reason.
     ///
     /// # Errors
-    /// Before anything runs: a budget that leaves the map's cells too few steps, or a picture of a
+    /// Before anything runs: the budget leaves the map's cells too few steps, or a picture is wanted of a
     /// scene that is not two free particles on one spring.
     pub fn execute(&self, session: &dyn Session) -> Result<Report, StabilityError> {
         let scene = self.scene;
@@ -119,10 +119,11 @@ impl StabilityPlan<'_> {
         })
     }
 
-    /// Steps that may be taken at most: what a progress bar counts against, and times are guessed from.
+    /// The most steps that may be taken. The progress bar counts towards them, and times are estimated from
+    /// them.
     ///
     /// # Errors
-    /// A budget that leaves the map's cells too few steps.
+    /// The budget leaves the map's cells too few steps.
     pub fn steps(&self) -> Result<u64, StabilityError> {
         let [cells, each] = self.cells()?;
         let rows: u64 = self.steps_by_row().iter().sum();
@@ -135,9 +136,9 @@ impl StabilityPlan<'_> {
         self.map.as_ref().map_or(Ok([0, 0]), cells)
     }
 
-    /// Of each row's search, in the order of the rows: what it mostly takes.
+    /// The steps each row's search usually takes, in the order of the rows.
     pub fn steps_by_row(&self) -> Vec<u64> {
-        let usual = |solver| rows::usual(self.scene, solver, self.timestep);
+        let usual = |solver| rows::usual_steps(self.scene, solver, self.timestep);
         self.solvers.iter().map(usual).collect()
     }
 }
@@ -149,7 +150,7 @@ pub enum StabilityError {
     #[error(
         "a budget of {budget} leaves each of {cells} cells {steps} steps of {particles} particles, and \
          fewer than {} tell nothing: {needed} would do, or fewer values, steps or engines",
-        map::FEWEST
+        map::MIN_STEPS
     )]
     Budget {
         budget: u64,
@@ -158,7 +159,7 @@ pub enum StabilityError {
         particles: u64,
         needed: u64,
     },
-    /// A scene the picture is not about, and what it has instead.
+    /// A scene the picture cannot be drawn for, and what it has instead.
     #[error(
         "the admissible region is a picture of two free particles and one spring with a rest length, \
          and of nothing else that acts: {0}"

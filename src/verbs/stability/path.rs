@@ -1,4 +1,4 @@
-//! States along a trajectory, where limits are taken again.
+//! States along a trajectory at which limits are predicted again.
 
 use super::StabilityPlan;
 use crate::integrators::Method;
@@ -8,24 +8,24 @@ use crate::solvers::{Setting, Solver};
 use crate::trajectory::Observer;
 use crate::verbs::facts;
 
-/// States kept of a path.
+/// The most states kept of a path.
 const STATES: u64 = 100;
-/// Steps times particles the path may take; what a scene of a few particles needs many times over.
-const REACH: u64 = 20_000_000;
+/// The most steps times particles of the path: many times what a scene of a few particles needs.
+const MAX_WORK: u64 = 20_000_000;
 
-/// A trajectory as far as it was followed.
+/// A trajectory, as far as it was followed.
 pub struct Path {
-    /// Linearised at some of its states, the start left out; None where every state has the same
-    /// limits.
+    /// The scene linearised at some of its states, without the start; None where every state has the
+    /// same limits.
     pub along: Option<LinearisedTrajectory>,
     /// When it ends, s.
     pub until: f64,
-    /// Whose trajectory it is.
+    /// The method that computed it.
     pub method: Option<&'static Method>,
 }
 
-/// The trajectory of the first method whose step is predicted to be stable, the scene's own coming
-/// first: one that explodes would show limits of places nothing really gets to.
+/// The trajectory of the first method whose step is predicted to be stable; the scene's own is tried
+/// first. One that explodes would show limits at places the motion never reaches.
 pub fn of(
     plan: &StabilityPlan,
     system: &ParticleSystem,
@@ -34,30 +34,33 @@ pub fn of(
 ) -> Path {
     let scene = plan.scene;
     let h = scene.solver.timestep;
-    let calm = |method: &&'static Method| linearised.predict(method, h).limit.allows(h);
+    let is_stable = |method: &&'static Method| linearised.predict(method, h).limit.allows(h);
     let candidates = crate::solvers::methods(&scene.solver.method);
     let candidates: Vec<&Method> = candidates.iter().filter_map(Solver::as_method).collect();
-    let chosen = candidates.iter().find(|m| calm(m)).or(candidates.first());
-    let nowhere = Path {
+    let chosen = candidates
+        .iter()
+        .find(|m| is_stable(m))
+        .or(candidates.first());
+    let start_only = Path {
         along: None,
         until: scene.duration,
         method: None,
     };
     let (false, Some(&method)) = (linear, chosen) else {
-        return nowhere;
+        return start_only;
     };
     let particles = scene.particles.len().max(1) as u64;
-    let steps = scene.steps(h).min((REACH / particles).max(STATES));
+    let steps = scene.steps(h).min((MAX_WORK / particles).max(STATES));
     let setting = Setting::Steps { timestep: h, steps };
     let Ok(mut run) = Solver::method(method).start(scene, system, &setting) else {
-        return nowhere;
+        return start_only;
     };
-    let mut kept = Kept {
+    let mut kept = KeptStates {
         every: steps.div_ceil(STATES).max(1),
         states: Vec::new(),
     };
     run.finish(&facts::limits(scene, system), &mut kept, &|_| {});
-    // Where it ended early, what it ended in is no place to linearise about.
+    // A run that ended early ends in states that cannot be linearised about.
     kept.states.retain(State::is_finite);
     Path {
         until: run.state().t.min(scene.duration),
@@ -66,12 +69,12 @@ pub fn of(
     }
 }
 
-struct Kept {
+struct KeptStates {
     every: u64,
     states: Vec<State>,
 }
 
-impl Observer for Kept {
+impl Observer for KeptStates {
     fn next(&self, from: u64) -> Option<u64> {
         Some(from.max(1).next_multiple_of(self.every))
     }

@@ -1,4 +1,4 @@
-//! How large a step may be, as data.
+//! The result of `stability`: how large a step may be, as data.
 
 use crate::measure::stability::{Cell, TightestLimit};
 use crate::solvers::SolverKind;
@@ -7,23 +7,24 @@ use serde::{Deserialize, Serialize};
 /// How large a step may be, on this scene.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Stability {
-    /// Of the scene linearised about its start; null where nothing oscillates.
+    /// The largest frequency of the scene linearised about its start; null where nothing oscillates.
     pub omega_max_rad_s: Option<f64>,
-    /// `omega_max_rad_s` is null because nobody knows it.
+    /// Whether `omega_max_rad_s` is null because it could not be found.
     pub unsure: bool,
-    /// Up to when the trajectory was searched for the tightest limit, s; the whole duration where
+    /// The trajectory was searched for the tightest limit up to here, s. It is the whole duration where
     /// every force is linear, since the limit is then the same everywhere.
     pub horizon_s: f64,
-    /// The step at which growth is taken, and whose place beside the limits is told, s.
+    /// The timestep at which growth is taken and which is compared with the limits, s.
     pub timestep_s: f64,
-    /// Every force is linear: a limit depends on no state, and prediction and measurement must agree.
+    /// Whether every force is linear: then limits do not depend on the state, and prediction and
+    /// measurement must agree.
     pub linear: bool,
     /// Modes left out of the prediction, in words.
     pub excluded: Vec<String>,
     pub rows: Vec<StabilityRow>,
-    /// Timestep against a quantity of the scene; null where none was asked for.
+    /// Timestep against a quantity of the scene; null without one.
     pub map: Option<StabilityMap>,
-    /// Where a step does not enlarge the force of a spring; null where it was not asked for.
+    /// Where a step does not enlarge the force of a spring; null without the picture.
     pub admissible: Option<Admissible>,
 }
 
@@ -32,39 +33,39 @@ pub struct Stability {
 pub struct StabilityRow {
     pub engine: String,
     pub kind: SolverKind,
-    /// The engine does not take the scene: `reason` says why, and nothing was searched.
+    /// Whether the engine refuses the scene: `reason` says why, and nothing was searched.
     pub unsupported: bool,
-    /// About the start; 0 where no step is stable; null where every step is (`unconditional`) and
-    /// where none is known (`reason`).
+    /// The predicted limit about the start, s: 0 where no step is stable; null where every step is
+    /// (`unconditional`), or where it is not known (`reason`).
     pub predicted_limit_s: Option<f64>,
-    /// By running; 0 and null likewise.
+    /// The limit found by running, s; 0 and null mean the same.
     pub measured_limit_s: Option<f64>,
-    /// Where the search ended before it knew better: the largest step found stable and the smallest
-    /// found unstable, s; null where the limit was found, or nothing was.
+    /// The bracket where the search ended early: the largest step found stable and the smallest found
+    /// unstable, s; null where the limit was found, or no bracket was.
     pub measured_between_s: Option<[f64; 2]>,
-    /// Stable at every step: predicted.
+    /// Whether every step is predicted stable.
     pub unconditional: bool,
-    /// Stable at every step tried.
+    /// Whether every step tried was stable.
     pub measured_unconditional: bool,
     /// ln(spectral radius) / h of the amplitude at `timestep_s`, predicted; null where stable.
     pub growth_per_s: Option<f64>,
-    /// The same, measured.
+    /// The measured growth; null where stable.
     pub measured_growth_per_s: Option<f64>,
     /// Where nothing oscillates: the largest step, s, at which every mode decays without changing
     /// sign, predicted and measured; null where something oscillates in truth.
     pub smooth_below_s: Option<f64>,
     pub measured_smooth_below_s: Option<f64>,
-    /// Along the trajectory.
+    /// The tightest predicted limit along the trajectory.
     pub tightest: Option<TightestLimit>,
-    /// What there is to say, sentence after sentence.
+    /// All remarks as one text.
     pub reason: Option<String>,
-    /// The same sentences one by one, for reports that say equal ones once.
+    /// The remarks one by one, for reports that group equal ones.
     pub remarks: Vec<String>,
 }
 
 impl StabilityRow {
-    /// The limit to go by, seconds: measured, else predicted. Infinite where every step is stable;
-    /// None where neither is known. Of a bracket its lower end.
+    /// The best known limit, seconds: measured (of a bracket the lower end), else predicted. Infinite where
+    /// every step is stable; None where neither is known.
     pub fn limit(&self) -> Option<f64> {
         let endless = |yes: bool| yes.then_some(f64::INFINITY);
         self.measured_limit_s
@@ -74,7 +75,7 @@ impl StabilityRow {
             .or(endless(self.unconditional))
     }
 
-    /// Whether a step, s, is stable with all smaller ones; None where no limit is known.
+    /// Whether a step, s, and all smaller ones are stable; None where no limit is known.
     pub fn holds(&self, timestep: f64) -> Option<bool> {
         if let Some([low, high]) = self.measured_between_s
             && (low..high).contains(&timestep)
@@ -86,18 +87,18 @@ impl StabilityRow {
     }
 }
 
-/// What becomes of a run at each of several timesteps, as one quantity of the scene varies.
+/// The outcomes of runs at several timesteps, as one quantity of the scene varies.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct StabilityMap {
     /// The key that varies, such as `springs.stiffness` or `particles[1].mass`.
     pub vary: String,
-    /// Of the values.
+    /// The unit of the values.
     pub unit: String,
     /// Ascending.
     pub values: Vec<f64>,
     /// Ascending, s.
     pub timesteps_s: Vec<f64>,
-    /// Steps each cell may take, as the budget has it.
+    /// Steps each cell may take within the budget.
     pub steps_per_cell: u64,
     /// In the order of the rows.
     pub engines: Vec<MapPanel>,
@@ -107,35 +108,35 @@ pub struct StabilityMap {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct MapPanel {
     pub engine: String,
-    /// By value, then by timestep; null where the engine does not take the scene.
+    /// Indexed by value, then by timestep; null where the engine refuses the scene.
     pub cells: Vec<Vec<Option<Cell>>>,
-    /// By value: about the varied scene's start; 0 where no step is stable, null where every step is
-    /// or no limit is known.
+    /// The limit about the varied scene's start, for each value; 0 where no step is stable, null where
+    /// every step is or no limit is known.
     pub predicted_limit_s: Vec<Option<f64>>,
 }
 
-/// Of two free particles on one spring, let go at rest: from where one step does not enlarge the
-/// spring's force.
+/// The admissible region of two free particles on one spring: the places at rest from where one step does
+/// not enlarge the spring's force.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Admissible {
-    /// The method, whose first two steps are taken: the first moves nothing.
+    /// The method. Its first two steps are taken, since the first moves nothing.
     pub engine: String,
     pub timestep_s: f64,
     pub masses_kg: [f64; 2],
     pub rest_length_m: f64,
-    /// Positions along the line, m, ascending; the two axes share no difference that is 0 or the rest
+    /// Positions along the line, m, ascending; no difference between the two axes is 0 or the rest
     /// length, where nothing moves.
     pub x1_m: Vec<f64>,
     pub x2_m: Vec<f64>,
     pub panels: Vec<AdmissiblePanel>,
 }
 
-/// One stiffness.
+/// The region at one stiffness.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct AdmissiblePanel {
     pub stiffness_n_m: f64,
-    /// Of all places, 0 to 1.
+    /// The admitted fraction of all places, 0 to 1.
     pub share: f64,
-    /// By x2, a character for each x1: `1` where the force does not grow, else `0`.
+    /// A line for each x2 with a character for each x1: `1` where the force does not grow, else `0`.
     pub admitted: Vec<String>,
 }

@@ -10,55 +10,56 @@ use crate::verbs::session::Session;
 use crate::verbs::stability::StabilityRow;
 use std::sync::Arc;
 
-/// Work the search for one limit may take, in particles passed over: some ten seconds. A probe takes
-/// 20,000 steps and a search some twenty probes, so small scenes never meet it; large ones get shorter
-/// probes, and in the end a bracket.
-const PATIENCE: u64 = 350_000_000;
-/// But never fewer steps than this.
-const LEAST: u64 = 2_000;
-/// What a search mostly takes.
-const USUAL: u64 = 300_000;
-/// Steps a price is taken from.
-const SAMPLE: u64 = 4;
-/// What a step costs beside its forces, and what a pass over damping alone (a vector of a Krylov
-/// space, to be kept orthogonal to all others), a linear solve (of a small scene its particles), and a
-/// step of an engine that does not count, in passes over all particles.
-const BESIDE: u64 = 10;
+/// Budget of the search for one limit, in particles passed over: some ten seconds. A probe takes 20,000
+/// steps and a search some twenty probes, so small scenes never reach it. Large ones get shorter probes,
+/// and in the end a bracket.
+const SEARCH_BUDGET: u64 = 350_000_000;
+/// The smallest budget of a search, steps.
+const MIN_STEPS: u64 = 2_000;
+/// Steps a search usually takes.
+const USUAL_STEPS: u64 = 300_000;
+/// Steps that are run to take the counts.
+const SAMPLE_STEPS: u64 = 4;
+/// Costs in passes over all particles: a step without its forces; a pass over damping alone (a vector of a
+/// Krylov space, which is kept orthogonal to all others); a linear solve (at most one pass per particle);
+/// a step of an engine that does not count.
+const STEP: u64 = 10;
 const DAMPING: u64 = 5;
 const SOLVE: u64 = 100;
 const UNCOUNTED: u64 = 150;
 
-/// Passes over all particles a step takes, from a few steps of the scene: counted, not timed, so that
-/// every machine searches alike.
-fn price(scene: &Scene, solver: &Solver, timestep: f64, tally: &Arc<Tally>) -> u64 {
+/// The cost of a step, in passes over all particles, from a few steps of the scene. It is counted, not
+/// timed, so that every machine searches alike.
+fn passes_per_step(scene: &Scene, solver: &Solver, timestep: f64, tally: &Arc<Tally>) -> u64 {
     let Ok(mut run) = start(solver, scene, timestep, tally) else {
-        return BESIDE;
+        return STEP;
     };
     // A step that fails ends the sample.
-    let _ = run.advance(SAMPLE);
+    let _ = run.advance(SAMPLE_STEPS);
     let counts = run.counts();
     let solve = SOLVE.min(scene.particles.len() as u64);
     let Some(forces) = counts.force_evaluations else {
-        return BESIDE + UNCOUNTED.min(10 * scene.particles.len() as u64);
+        return STEP + UNCOUNTED.min(10 * scene.particles.len() as u64);
     };
     let work = forces
         + DAMPING * counts.damping_evaluations.unwrap_or(0)
         + solve * counts.linear_solves.unwrap_or(0);
-    BESIDE + work / run.taken().max(1)
+    STEP + work / run.taken().max(1)
 }
 
 /// Steps the search for one limit may take.
-fn patience(scene: &Scene, solver: &Solver, timestep: f64, tally: &Arc<Tally>) -> u64 {
-    let each = scene.particles.len().max(1) as u64 * price(scene, solver, timestep, tally);
-    (PATIENCE / each).max(LEAST)
+fn budget(scene: &Scene, solver: &Solver, timestep: f64, tally: &Arc<Tally>) -> u64 {
+    let each =
+        scene.particles.len().max(1) as u64 * passes_per_step(scene, solver, timestep, tally);
+    (SEARCH_BUDGET / each).max(MIN_STEPS)
 }
 
-/// Steps it mostly takes.
-pub fn usual(scene: &Scene, solver: &Solver, timestep: f64) -> u64 {
-    patience(scene, solver, timestep, &Arc::default()).min(USUAL)
+/// Steps the search for one limit usually takes.
+pub fn usual_steps(scene: &Scene, solver: &Solver, timestep: f64) -> u64 {
+    budget(scene, solver, timestep, &Arc::default()).min(USUAL_STEPS)
 }
 
-/// A fresh run of a scene at a step, s, counted with the others where it is an integrator's.
+/// A new run of a scene at a timestep, s. An integrator's evaluations are added to the tally.
 pub fn start(
     solver: &Solver,
     scene: &Scene,
@@ -73,7 +74,7 @@ pub fn start(
     })
 }
 
-/// The method whose step a solver takes, as often as this in one timestep.
+/// The method whose step a solver takes, and how often in one timestep.
 fn follows(solver: &Solver) -> Option<(&'static Method, f64)> {
     Some((solver.follows?, f64::from(solver.substeps)))
 }
@@ -104,7 +105,7 @@ pub fn row(shared: &Shared, solver: &Solver, session: &dyn Session) -> Stability
         reason: None,
         remarks: Vec::new(),
     };
-    // Asked before anything is searched: what cannot run has no limit to be found.
+    // An engine that cannot run the scene has no limit to search for.
     if let Err(unsupported) = start(scene, timestep) {
         row.unsupported = true;
         let why = format!("unsupported: {}", unsupported.reason);
@@ -113,17 +114,9 @@ pub fn row(shared: &Shared, solver: &Solver, session: &dyn Session) -> Stability
         let along = row.tightest.as_ref().map(|tightest| tightest.limit_s);
         let near = [predicted_limit_s, along].into_iter().flatten();
         let near = near.filter(|h| *h > 0.0).reduce(f64::min);
-        let patience = patience(scene, solver, timestep, &shared.tally);
+        let budget = budget(scene, solver, timestep, &shared.tally);
         let tick = |steps| session.progress(steps);
-        let measured = measure(
-            scene,
-            &shared.system,
-            &start,
-            timestep,
-            near,
-            patience,
-            &tick,
-        );
+        let measured = measure(scene, &shared.system, &start, timestep, near, budget, &tick);
         (row.measured_limit_s, row.measured_unconditional) = as_keys(&measured.limit);
         if let Limit::Between(low, high) = measured.limit {
             row.measured_between_s = Some([low, high]);
@@ -136,7 +129,7 @@ pub fn row(shared: &Shared, solver: &Solver, session: &dyn Session) -> Stability
     row
 }
 
-/// What the method it follows does to the linearised scene, at its own substep.
+/// The prediction for the method a solver follows, at the solver's substep; limits are of a whole step.
 pub fn predicted(linearised: &Linearised, solver: &Solver, timestep: f64) -> Option<Prediction> {
     let (method, substeps) = follows(solver)?;
     let mut prediction = linearised.predict(method, timestep / substeps);
@@ -144,7 +137,7 @@ pub fn predicted(linearised: &Linearised, solver: &Solver, timestep: f64) -> Opt
         *limit *= substeps;
     }
     if substeps > 1.0 {
-        // Signs that change twice within a step are not seen.
+        // A sign that changes twice within a step is not seen.
         prediction.smooth_below_s = None;
     }
     Some(prediction)
@@ -157,7 +150,7 @@ fn tightest(shared: &Shared, solver: &Solver) -> Option<TightestLimit> {
     (limit_s.is_finite() && t_s.is_finite()).then_some(TightestLimit { limit_s, t_s })
 }
 
-/// Limit and whether there is none, as the report's keys have it.
+/// A limit as two keys of the report: the number, s, and whether every step is stable.
 pub fn as_keys(limit: &Limit) -> (Option<f64>, bool) {
     match limit {
         Limit::Never => (Some(0.0), false),
@@ -167,7 +160,7 @@ pub fn as_keys(limit: &Limit) -> (Option<f64>, bool) {
     }
 }
 
-/// Growth is stated where there is some.
+/// A growth rate, where it is finite and positive.
 fn growth(per_s: Option<f64>) -> Option<f64> {
     finite(per_s).filter(|rate| *rate > 0.0)
 }

@@ -1,4 +1,4 @@
-//! `springs.stiffness=1e2..1e8:24`: what a map varies, from where to where, in how many values.
+//! `springs.stiffness=1e2..1e8:24`: the quantity a map varies, its range, and the number of values.
 
 use crate::scene::limits::Bounds;
 use crate::scene::model::{PARTICLES, PARTS, Part, Row, ValueKind};
@@ -7,12 +7,12 @@ use crate::scene::{Scene, Value};
 use std::fmt;
 use std::str::FromStr;
 
-/// Values where the text does not say how many.
+/// The number of values where the text does not give one.
 pub const COUNT: usize = 24;
-/// More than this would be a picture nobody can read.
-const MOST: usize = 200;
+/// The most values: a picture of more cannot be read.
+const MAX_COUNT: usize = 200;
 
-/// Why a text varies nothing.
+/// Why a text is not a range of one quantity of the scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct VaryError(String);
@@ -22,9 +22,9 @@ pub struct VaryError(String);
 pub struct Range {
     /// The first value.
     pub low: f64,
-    /// The last.
+    /// The last value.
     pub high: f64,
-    /// Values from end to end.
+    /// The number of values, with both ends.
     pub count: usize,
 }
 
@@ -48,15 +48,21 @@ impl FromStr for Range {
             return Err(VaryError(message));
         }
         let count = count.map_or(Ok(COUNT), |count| {
-            let parsed = count.trim().parse().ok().filter(|n| (2..=MOST).contains(n));
-            parsed.ok_or_else(|| VaryError(format!("expected 2 to {MOST} values, found `{count}`")))
+            let parsed = count
+                .trim()
+                .parse()
+                .ok()
+                .filter(|n| (2..=MAX_COUNT).contains(n));
+            parsed.ok_or_else(|| {
+                VaryError(format!("expected 2 to {MAX_COUNT} values, found `{count}`"))
+            })
         })?;
         Ok(Self { low, high, count })
     }
 }
 
 impl Range {
-    /// Evenly spaced in their logarithm where both ends are positive, else evenly; the ends exactly.
+    /// Values evenly spaced in their logarithm where both ends are positive, else evenly. The ends are exact.
     pub fn values(&self) -> Vec<f64> {
         let last = self.count.saturating_sub(1).max(1);
         let at = |i: usize| {
@@ -74,20 +80,20 @@ impl Range {
     }
 }
 
-/// A number of the scene that has a say in the motion, of one member of its part or of all.
+/// A number of the scene that acts on the motion, in one member of its part or in all.
 #[derive(Debug, Clone, Copy)]
-struct Key {
+struct VariedKey {
     part: &'static Part,
     row: &'static Row,
     quantity: Bounds,
     member: Option<usize>,
 }
 
-/// Every key there is, of all members.
-fn keys() -> impl Iterator<Item = Key> {
+/// Every key, for all members at once.
+fn keys() -> impl Iterator<Item = VariedKey> {
     let of = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
     let number = |(part, row): (_, &'static Row)| match row.kind {
-        ValueKind::Number(quantity) if row.flat.is_some() => Some(Key {
+        ValueKind::Number(quantity) if row.flat.is_some() => Some(VariedKey {
             part,
             row,
             quantity,
@@ -98,9 +104,9 @@ fn keys() -> impl Iterator<Item = Key> {
     PARTS.into_iter().flat_map(of).filter_map(number)
 }
 
-impl Key {
-    /// `springs.stiffness`; `springs[3].stiffness` is the same of one member, where there is a list.
-    fn find(id: &str) -> Result<Key, VaryError> {
+impl VariedKey {
+    /// Reads `springs.stiffness`, or `springs[3].stiffness` for one member where there is a list.
+    fn find(id: &str) -> Result<VariedKey, VaryError> {
         let (list, rest) = id.split_once('[').unwrap_or((id, ""));
         let (index, field) = rest.split_once(']').unwrap_or(("", rest));
         let plain = format!("{list}{field}");
@@ -108,7 +114,7 @@ impl Key {
         let found = keys().find(|key| {
             key.to_string() == plain && (plain == id || key.part.list && member.is_some())
         });
-        found.map(|key| Key { member, ..key }).ok_or_else(|| {
+        found.map(|key| VariedKey { member, ..key }).ok_or_else(|| {
             let known: Vec<String> = keys().map(|key| key.to_string()).collect();
             let words: Vec<&str> = known.iter().map(String::as_str).collect();
             let hint = nearest(&plain, &words).map(|near| format!(" (did you mean `{near}`?)"));
@@ -121,23 +127,23 @@ impl Key {
         })
     }
 
-    /// Whether it means anything of this member: what is fixed neither has inertia nor drags.
+    /// Whether the key acts on this member: a fixed particle has neither inertia nor drag.
     fn free(&self, scene: &Scene, at: usize) -> bool {
         self.part.key != PARTICLES.key || scene.particles.get(at).is_some_and(|p| !p.fixed)
     }
 }
 
-impl fmt::Display for Key {
-    /// As the command line writes it: `springs.stiffness`, `particles[1].mass`.
+impl fmt::Display for VariedKey {
+    /// The key as the command line writes it: `springs.stiffness`, `particles[1].mass`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.part.path(self.member, self.row.key))
     }
 }
 
-/// One quantity of a scene and the values it takes.
+/// One quantity of a scene and its values.
 #[derive(Debug, Clone)]
 pub struct Vary {
-    key: Key,
+    key: VariedKey,
     /// Ascending.
     pub values: Vec<f64>,
 }
@@ -146,14 +152,14 @@ impl Vary {
     /// Reads `KEY=A..B[:N]` for this scene.
     ///
     /// # Errors
-    /// [`VaryError`] when the key is unknown, the scene has no such member, or the values leave what
-    /// a scene file may say.
+    /// [`VaryError`] when the key is unknown, the scene has no such member, or the values leave the bounds
+    /// of a scene file.
     pub fn parse(text: &str, scene: &Scene) -> Result<Self, VaryError> {
         let (id, range) = text
             .split_once('=')
             .ok_or_else(|| VaryError(format!("expected KEY=A..B or KEY=A..B:N, found `{text}`")))?;
         let refused = |why: String| VaryError(format!("{id}: {why}"));
-        let key = Key::find(id)?;
+        let key = VariedKey::find(id)?;
         let count = (key.part.count)(scene);
         match key.member {
             Some(at) if at >= count => {
@@ -179,19 +185,19 @@ impl Vary {
         Ok(Self { key, values })
     }
 
-    /// As the command line writes it: `springs.stiffness`, `particles[1].mass`.
+    /// The key as the command line writes it: `springs.stiffness`, `particles[1].mass`.
     pub fn id(&self) -> String {
         self.key.to_string()
     }
 
-    /// Of the values.
+    /// The unit of the values.
     pub fn unit(&self) -> &'static str {
         self.key.quantity.unit
     }
 
     /// The scene with this value, in the one member or in all that are free.
     pub fn apply(&self, scene: &Scene, value: f64) -> Scene {
-        let Key {
+        let VariedKey {
             part, row, member, ..
         } = self.key;
         let members = member.map_or(0..(part.count)(scene), |at| at..at + 1);

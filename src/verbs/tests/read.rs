@@ -1,7 +1,7 @@
 //! What was written reads back, and whatever else is read does no harm.
 
 use super::all;
-use crate::report::json::{self, ReadError, Tool};
+use crate::report::json::{self, ReportReadError, Tool};
 use crate::report::{terminal, verdict::verdict};
 use crate::verbs::formats::FORMATS;
 use crate::verbs::series;
@@ -72,7 +72,7 @@ fn what_is_no_report_is_refused() {
     let good = written(&all()[4..5]);
     for cut in (0..good.len() - 2).step_by(97) {
         let found = json::read::<Report>(&good.as_bytes()[..cut]);
-        assert!(matches!(found, Err(ReadError::Truncated(_))), "{cut}");
+        assert!(matches!(found, Err(ReportReadError::Truncated(_))), "{cut}");
     }
     let read = |value: &Value| json::read::<Report>(value.to_string().as_bytes());
     let whole: Value = serde_json::from_str(&good).unwrap();
@@ -83,21 +83,24 @@ fn what_is_no_report_is_refused() {
     };
     let older = json!({"schema_version": 1, "scene": {}});
     for older in [json!([older.clone(), older.clone()]), older] {
-        assert!(matches!(read(&older), Err(ReadError::Older)));
+        assert!(matches!(read(&older), Err(ReportReadError::Older)));
     }
     for later in [json!(3), json!(u64::MAX), json!(1e300)] {
         let found = with("schema_version", later);
-        assert!(matches!(found, Err(ReadError::Later(_))));
+        assert!(matches!(found, Err(ReportReadError::Later(_))));
     }
     for odd in [json!(0), json!(-1), json!("2"), json!(null), json!([2])] {
         let found = with("schema_version", odd);
-        assert!(matches!(found, Err(ReadError::NoReport)));
+        assert!(matches!(found, Err(ReportReadError::NoReport)));
     }
     for other in [json!(null), json!([]), json!({}), json!(7), json!("report")] {
-        assert!(matches!(read(&other), Err(ReadError::NoReport)));
+        assert!(matches!(read(&other), Err(ReportReadError::NoReport)));
     }
     for odd in [json!(null), json!({}), json!("")] {
-        assert!(matches!(with("reports", odd), Err(ReadError::NoReport)));
+        assert!(matches!(
+            with("reports", odd),
+            Err(ReportReadError::NoReport)
+        ));
     }
     for odd in [json!([1]), json!([{}]), json!([{"verb": "dance"}])] {
         let found = with("reports", odd).unwrap_err().to_string();
@@ -106,7 +109,7 @@ fn what_is_no_report_is_refused() {
     assert!(with("reports", json!([])).is_ok());
     assert!(matches!(
         json::read::<Report>(b"\xff"),
-        Err(ReadError::NoJson(_))
+        Err(ReportReadError::NoJson(_))
     ));
     let deep = "[".repeat(100_000);
     assert!(json::read::<Report>(deep.as_bytes()).is_err());

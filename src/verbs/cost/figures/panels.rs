@@ -1,16 +1,16 @@
-//! The classic picture: one panel an engine, one line a timestep, the truth in black, and below it the
-//! difference to the truth on an axis of its own.
+//! The picture of a few steps: each engine has a panel with a line for each timestep and the truth in
+//! black; below it the difference to the truth has an axis of its own.
 
 use crate::report::svg::{
-    Axis, Chart, Key, Line, Look, Mark, Panel, Stroke, Symbol, TRUTH_NAME, heading, padded,
-    palette, panel_title, range, shortened, span, tamed,
+    Chart, ChartAxis, LegendEntry, Look, Mark, Panel, Polyline, Stroke, Symbol, TRUTH_NAME,
+    heading, padded, palette, panel_title, range, shortened, span, tamed,
 };
 use crate::report::words;
 use crate::solvers::Status;
 use crate::verbs::Report;
 use crate::verbs::cost::{CostLine, CostPanel, CostPanels};
 
-/// Heights of the curves' part and of the differences', pixels.
+/// Heights of the panels of curves and of differences, pixels.
 const CURVES: f64 = 110.0;
 const DIFFERENCES: f64 = 70.0;
 
@@ -26,9 +26,10 @@ pub fn chart(report: &Report) -> Option<Chart> {
         let place = timesteps.iter().position(|other| *other == h);
         palette::timestep(place.unwrap_or(0))
     };
-    let key = |h: &f64| Key::new(format!("h = {} s", words::short(*h)), Look::Line(look(*h)));
+    let key =
+        |h: &f64| LegendEntry::new(format!("h = {} s", words::short(*h)), Look::Line(look(*h)));
     let differs = !shown.truth.is_empty();
-    let truth = differs.then(|| Key::new(TRUTH_NAME, Look::Line(palette::TRUTH_LINE)));
+    let truth = differs.then(|| LegendEntry::new(TRUTH_NAME, Look::Line(palette::TRUTH_LINE)));
     let legend = truth.into_iter().chain(timesteps.iter().map(key));
 
     let [x, y] = ranges(shown);
@@ -39,7 +40,7 @@ pub fn chart(report: &Report) -> Option<Chart> {
         let curves = [truth].into_iter().chain(curves).collect();
         let differences = panel.lines.iter().map(|line| draw(line, &line.difference));
         let title = panel_title(&report.header, &panel.engine);
-        let [above, below] = [y, difference(panel, y)].map(|y| [x, y].map(Axis::linear));
+        let [above, below] = [y, difference(panel, y)].map(|y| [x, y].map(ChartAxis::linear));
         let mut above = Panel::new(title, CURVES, above, curves);
         let mut below = Panel::new(String::new(), DIFFERENCES, below, differences.collect());
         (above.width, below.width, below.joined) = (420.0, 420.0, true);
@@ -67,14 +68,14 @@ fn lines(shown: &CostPanels) -> impl Iterator<Item = &CostLine> {
 /// One line of a run, with a cross where the run ended early.
 fn draw(line: &CostLine, points: &[[f64; 2]], stroke: Stroke) -> Mark {
     let early = line.status != Status::Completed;
-    Mark::Line(Line {
+    Mark::Line(Polyline {
         wild: true,
         end: early.then_some(Symbol::cross(stroke.colour)),
-        ..Line::new(points.to_vec(), stroke)
+        ..Polyline::new(points.to_vec(), stroke)
     })
 }
 
-/// Time and coordinate all panels share: what the truth spans, and a little of what leaves it.
+/// The ranges of time and coordinate of all panels: those of the truth, and a little of what leaves it.
 fn ranges(shown: &CostPanels) -> [[f64; 2]; 2] {
     let curves = || lines(shown).map(|line| &line.curve);
     let times = curves()
@@ -91,7 +92,7 @@ fn ranges(shown: &CostPanels) -> [[f64; 2]; 2] {
     [times, padded(shown, 0.05)]
 }
 
-/// What the differences of one panel span; those larger than what the curves' axis shows are cut.
+/// The range of the differences of one panel, cut at half of what the curves' axis shows.
 fn difference(panel: &CostPanel, shown: [f64; 2]) -> [f64; 2] {
     let most = shown[1] / 2.0 - shown[0] / 2.0;
     let spans = panel.lines.iter().filter_map(|line| {

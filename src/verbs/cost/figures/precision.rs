@@ -1,10 +1,10 @@
-//! Work-precision diagrams: error over cost, both axes logarithmic, one line an engine with a point a
-//! setting.
+//! Work-precision diagrams: error over cost, both axes logarithmic. Each engine is a line with a point for
+//! each setting.
 
 use crate::report::svg::palette::{COLOURS, SHAPES, look};
 use crate::report::svg::{
-    self, Axis, Chart, FAINT, Key, Look, Mark, Panel, Shape, Stroke, Symbol, WHITE, engine,
-    heading, palette, range, shortened,
+    self, Chart, ChartAxis, FAINT, LegendEntry, Look, Mark, Panel, Stroke, Symbol, SymbolShape,
+    WHITE, engine, heading, palette, range, shortened,
 };
 use crate::solvers::{SolverKind, Status};
 use crate::verbs::Report;
@@ -12,7 +12,7 @@ use crate::verbs::cost::diagram::Diagram;
 use crate::verbs::cost::text::{is_timed, metres};
 use crate::verbs::cost::{Cost, CostCurve, CostPoint};
 
-/// What an axis may hold: nothing overflows within.
+/// The values an axis may hold: nothing overflows within.
 const SMALLEST: f64 = 1e-250;
 const LARGEST: f64 = 1e250;
 
@@ -35,12 +35,12 @@ pub fn energy(report: &Report) -> Option<Chart> {
 }
 
 /// One engine's part of a diagram.
-struct Line<'a> {
+struct EngineLine<'a> {
     curve: &'a CostCurve,
-    look: (Stroke, Shape),
-    /// Cost and error of each setting with both, and which of the curve's points it is.
+    look: (Stroke, SymbolShape),
+    /// Index into the curve's points, and cost and error, of each setting that has both.
     points: Vec<(usize, [f64; 2])>,
-    /// What runs that ended early would have cost.
+    /// The costs that runs which ended early would have had.
     ended: Vec<f64>,
 }
 
@@ -48,12 +48,16 @@ struct Line<'a> {
 fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
     let cost = report.cost()?;
     let looks = marked(report, &cost.curves);
-    let lines = cost.curves.iter().zip(looks).map(|(curve, look)| Line {
-        curve,
-        look,
-        points: points(curve, diagram),
-        ended: ended(curve, diagram),
-    });
+    let lines = cost
+        .curves
+        .iter()
+        .zip(looks)
+        .map(|(curve, look)| EngineLine {
+            curve,
+            look,
+            points: points(curve, diagram),
+            ended: ended(curve, diagram),
+        });
     let (mut lines, silent): (Vec<_>, Vec<_>) = lines.partition(|line| !line.points.is_empty());
     if lines.is_empty() {
         return None;
@@ -70,7 +74,7 @@ fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
     let legend = legend(diagram, &lines);
 
     let mut marks = levels(cost, &targets, axes, diagram);
-    // The scene's own last: its line lies over the others.
+    // The scene's own comes last, so that its line lies over the others.
     lines.sort_by_key(|line| report.header.is_own(&line.curve.engine));
     marks.extend(lines.iter().flat_map(|line| line.marks(axes, diagram)));
     let silent = silent.iter().map(|line| engine(&line.curve.engine));
@@ -107,8 +111,8 @@ fn points(curve: &CostCurve, diagram: Diagram) -> Vec<(usize, [f64; 2])> {
     placed.collect()
 }
 
-/// What runs that diverged or failed would have cost, by the nearest finer one that completed: a step
-/// costs the same.
+/// The costs that runs which diverged or failed would have had. Each is scaled from the nearest finer run
+/// that completed: a step costs the same.
 fn ended(curve: &CostCurve, diagram: Diagram) -> Vec<f64> {
     let cost = |(at, point): (usize, &CostPoint)| {
         let early = matches!(point.status, Status::Diverged | Status::Failed);
@@ -123,29 +127,30 @@ fn ended(curve: &CostCurve, diagram: Diagram) -> Vec<f64> {
     curve.points.iter().enumerate().filter_map(cost).collect()
 }
 
-/// Half a decade more than the values span, at most; a lone value in the middle of a decade.
-fn axis(values: impl Iterator<Item = f64>) -> Axis {
+/// The axis of these values, with at most half a decade of room on both sides; a lone value stands in the
+/// middle of a decade.
+fn axis(values: impl Iterator<Item = f64>) -> ChartAxis {
     let positive = values.filter(|v| *v > 0.0);
     let [lo, hi] = range(positive).unwrap_or([1.0, 1.0]);
     let [lo, hi] = [lo, hi].map(|end| end.clamp(SMALLEST, LARGEST));
     let room = 10_f64.powf((0.04 * (hi.log10() - lo.log10())).clamp(0.05, 0.5));
     let room = if hi < 2.0 * lo { 3.0 } else { room };
-    Axis::logarithmic([lo / room, hi * room])
+    ChartAxis::logarithmic([lo / room, hi * room])
 }
 
-impl Line<'_> {
-    fn marks(&self, [x, y]: [Axis; 2], diagram: Diagram) -> Vec<Mark> {
+impl EngineLine<'_> {
+    fn marks(&self, [x, y]: [ChartAxis; 2], diagram: Diagram) -> Vec<Mark> {
         let (stroke, shape) = self.look;
         let solid = Symbol::new(shape, stroke.colour, stroke.colour);
         // An error of 0 lies on the lower edge.
         let points = self.points.iter();
         let points = points.map(|(at, [cost, error])| (*at, [*cost, error.max(y.range[0])]));
-        let mut line = svg::Line::new(points.clone().map(|(_, point)| point), stroke);
+        let mut line = svg::Polyline::new(points.clone().map(|(_, point)| point), stroke);
         let slope = self.curve.observed_order;
         let slope = slope.filter(|slope| diagram.judged && slope.abs() < 99.5);
         let slope = slope.map_or(String::new(), |slope| format!(", slope {slope:.2}"));
         let name = engine(&self.curve.engine);
-        line.label = Some(Key::new(name + &slope, Look::Marked(stroke, solid)));
+        line.label = Some(LegendEntry::new(name + &slope, Look::Marked(stroke, solid)));
 
         let mut marks = vec![Mark::Line(line)];
         for (at, point) in points {
@@ -153,7 +158,7 @@ impl Line<'_> {
             if let Some(wall) = wall.filter(|_| diagram.timed) {
                 let ends = [wall.min, wall.median + wall.mad.unwrap_or(0.0)];
                 let ends = ends.map(|end| end.max(SMALLEST));
-                // Within the symbol itself a whisker says nothing.
+                // A whisker shorter than the symbol would not show.
                 if x.place(ends[1]) - x.place(ends[0]) > 0.02 {
                     let thin = Stroke::new(stroke.colour, "", 1.0);
                     marks.push(Mark::line(ends.map(|end| [end, point[1]]), thin));
@@ -170,8 +175,8 @@ impl Line<'_> {
     }
 }
 
-/// Grey from the floor down, and a line for each target.
-fn levels(cost: &Cost, targets: &[f64], [x, y]: [Axis; 2], diagram: Diagram) -> Vec<Mark> {
+/// A grey area below the floor, and a line for each target.
+fn levels(cost: &Cost, targets: &[f64], [x, y]: [ChartAxis; 2], diagram: Diagram) -> Vec<Mark> {
     let [[left, right], [bottom, _]] = [x.range, y.range];
     let mut marks = Vec::new();
     let floor = cost
@@ -189,25 +194,25 @@ fn levels(cost: &Cost, targets: &[f64], [x, y]: [Axis; 2], diagram: Diagram) -> 
     marks
 }
 
-/// What the symbols mean.
-fn legend(diagram: Diagram, lines: &[Line]) -> Vec<Key> {
-    let disc = |fill| Look::Symbol(Symbol::new(Shape::Disc, fill, FAINT));
+/// The legend of the symbols.
+fn legend(diagram: Diagram, lines: &[EngineLine]) -> Vec<LegendEntry> {
+    let disc = |fill| Look::Symbol(Symbol::new(SymbolShape::Disc, fill, FAINT));
     let front = "none of its settings beats it in error and evaluations";
     let early = "diverged or failed, at what all its steps would cost";
     let mut legend = Vec::new();
     if diagram.judged {
-        legend.push(Key::new(front, disc(FAINT)));
-        legend.push(Key::new("beaten", disc(WHITE)));
+        legend.push(LegendEntry::new(front, disc(FAINT)));
+        legend.push(LegendEntry::new("beaten", disc(WHITE)));
     }
     if lines.iter().any(|line| !line.ended.is_empty()) {
-        legend.push(Key::new(early, Look::Symbol(Symbol::cross(FAINT))));
+        legend.push(LegendEntry::new(early, Look::Symbol(Symbol::cross(FAINT))));
     }
     legend
 }
 
-/// Looks of lines whose points are marked: what shares a colour differs in its marks, so that only
-/// what is no integrator is dashed.
-fn marked(report: &Report, curves: &[CostCurve]) -> Vec<(Stroke, Shape)> {
+/// The stroke and the symbol of each curve. Integrators of one colour differ in their symbols, so that only
+/// reference engines are dashed.
+fn marked(report: &Report, curves: &[CostCurve]) -> Vec<(Stroke, SymbolShape)> {
     let look = |(at, curve): (usize, &CostCurve)| {
         let before = curves.iter().take(at);
         let place = before.filter(|other| other.kind == curve.kind).count();

@@ -1,6 +1,6 @@
 //! Laws on made-up curves: their answers are known by construction.
 
-use super::{Misses, pareto, reach, slope, target};
+use super::{Unreached, pareto, reach, slope, target};
 use crate::solvers::{SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use crate::verbs::cost::{CostCurve, CostPoint};
@@ -52,7 +52,7 @@ fn curve(engine: &str, kind: SolverKind, points: Vec<CostPoint>) -> CostCurve {
     }
 }
 
-/// What a plain minimum would answer: the mutant of the reach rule.
+/// The answer of a plain minimum: the mutant of the reach rule.
 fn coarsest_near(points: &[CostPoint], target: f64) -> Option<usize> {
     let near = |p: &CostPoint| p.error_m.is_some_and(|e| e <= target);
     points.iter().position(near)
@@ -60,7 +60,7 @@ fn coarsest_near(points: &[CostPoint], target: f64) -> Option<usize> {
 
 #[test]
 fn a_lucky_zero_crossing_is_not_credited() {
-    // Second order, and at the second setting the error happens to change its sign.
+    // The order is 2, and at the second setting the error happens to change its sign.
     let lucky = points(&[Some(1e-1), Some(1e-9), Some(6e-3), Some(1.5e-3), Some(4e-4)]);
     assert_eq!(reach(&lucky, 1e-3), Ok(4));
     assert_eq!(coarsest_near(&lucky, 1e-3), Some(1), "the mutant is fooled");
@@ -70,13 +70,13 @@ fn a_lucky_zero_crossing_is_not_credited() {
 #[test]
 fn what_reaches_nothing_says_why() {
     let falling = points(&[Some(1e-1), Some(1e-2), Some(1e-3)]);
-    assert_eq!(reach(&falling, 1e-4), Err(Misses::Nearest(1e-3)));
-    // Rounding grows again at the finest.
+    assert_eq!(reach(&falling, 1e-4), Err(Unreached::Nearest(1e-3)));
+    // Rounding makes the error grow again at the finest setting.
     let rising = points(&[Some(1e-1), Some(1e-5), Some(2e-4)]);
-    assert_eq!(reach(&rising, 1e-4), Err(Misses::Unsettled(2e-4)));
-    assert_eq!(reach(&[], 1.0), Err(Misses::Nothing));
+    assert_eq!(reach(&rising, 1e-4), Err(Unreached::Unsettled(2e-4)));
+    assert_eq!(reach(&[], 1.0), Err(Unreached::Nothing));
     let ended = points(&[Some(1e-3), None]);
-    assert_eq!(reach(&ended, 1.0), Err(Misses::Ended));
+    assert_eq!(reach(&ended, 1.0), Err(Unreached::Ended));
     let late = points(&[None, Some(1e-3)]);
     assert_eq!(reach(&late, 1.0), Ok(1), "coarse ones may diverge");
 }
@@ -84,7 +84,7 @@ fn what_reaches_nothing_says_why() {
 #[test]
 fn nothing_on_the_front_is_beaten_and_all_else_is() {
     let mut all = points(&[Some(1.0), Some(2.0), Some(0.5), None, Some(0.5), Some(0.1)]);
-    // One that costs as much as its neighbour and is worse.
+    // One point costs as much as its neighbour and is worse.
     all.push(point(all[2].steps, Some(0.6)));
     let front = pareto(&all);
     assert_eq!(front, [0, 2, 5]);
@@ -95,7 +95,7 @@ fn nothing_on_the_front_is_beaten_and_all_else_is() {
 #[test]
 fn the_slope_is_the_order_between_plateau_and_floor() {
     for order in [1, 2, 4, 8] {
-        // A plateau where nothing is followed, then the order, then a floor of noise.
+        // A plateau where the motion is not resolved, then the order, then a floor of noise.
         let error = |n: f64| (n / 40.0).powi(-order).min(0.7) + 1e-14 * (1.0 + (n * 0.7).sin());
         let mut all: Vec<CostPoint> = (0..14)
             .map(|k| point(10 << k, Some(error(f64::from(10 << k)))))
@@ -133,7 +133,7 @@ fn the_slope_is_the_order_between_plateau_and_floor() {
 
 #[test]
 fn targets_rank_integrators_and_only_list_the_engine() {
-    // Order 2 at one and at three times the price, order 1, and rapier, cheaper than all.
+    // Curves of order 2 at one and at three times the cost, of order 1, and rapier's, cheaper than all.
     let second = |price: u64| {
         let errors = (0..10).map(|k| point((10 << k) * price, Some(0.1 / f64::from(1 << (2 * k)))));
         errors.collect::<Vec<_>>()
@@ -155,7 +155,7 @@ fn targets_rank_integrators_and_only_list_the_engine() {
     assert_eq!(ratios[0], Some(1.0));
     assert!((ratios[1].expect("reached") - 3.0).abs() < 1e-12);
     assert_eq!(ratios[2..], [None, None]);
-    // Order 1 and 2e-4 at the finest: a factor 2 in steps is missing.
+    // The curve has order 1 and an error of 2e-4 at its finest: a factor 2 in steps is missing.
     let slow = &answer.ranking[2];
     assert!(
         slow.reason
@@ -164,7 +164,7 @@ fn targets_rank_integrators_and_only_list_the_engine() {
     );
     let more = slow.more_steps.expect("a slope");
     assert!((more - 0.1 / 512.0 / 1e-4).abs() < 1e-9, "{more}");
-    // Its finest has 5,120 steps, the cheapest 320.
+    // Its finest setting has 5,120 steps, the cheapest 320.
     let dear = slow.extrapolated_wall_ratio.expect("both are timed");
     assert!((dear - 16.0 * more).abs() < 1e-6, "{dear}");
     assert_eq!(

@@ -1,5 +1,5 @@
-//! The answer for one target as a paragraph: who reaches it cheapest, how much dearer the others are,
-//! and who does not reach it.
+//! The answer for one target as a paragraph: which engine reaches it cheapest, how many times the cost of
+//! the others is, and which do not reach it.
 
 use super::{evaluations, metres, price, ratio, setting};
 use crate::report::words::{self, grouped, listed};
@@ -20,8 +20,8 @@ pub fn reached(reached: &CostReached) -> String {
     )
 }
 
-/// What there is to say of each target, labels first; targets that share a reason not to be judged are
-/// one paragraph.
+/// A label and a paragraph for each target. Targets that cannot be judged for the same reason have one
+/// paragraph.
 pub fn paragraphs(cost: &Cost) -> Vec<(String, String)> {
     let said = cost.targets.iter().enumerate().map(|(at, target)| {
         let alone = target.reason.is_none().then_some(at);
@@ -33,7 +33,7 @@ pub fn paragraphs(cost: &Cost) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Everything there is to say of one target, without its label.
+/// The paragraph of one target, without its label.
 fn paragraph(target: &CostTarget) -> String {
     let mut clauses = Vec::new();
     if let Some(reason) = &target.reason {
@@ -43,21 +43,21 @@ fn paragraph(target: &CostTarget) -> String {
     let first = there.next().and_then(|rank| rank.reached.as_ref());
     if let Some(first) = first {
         clauses.push(reached(first));
-        let rest = there.filter_map(|rank| dearer(rank, first));
+        let rest = there.filter_map(|rank| cost_ratio(rank, first));
         clauses.extend(rest);
         clauses.extend(fewest(target, first));
         clauses.extend(extrapolated(target));
     }
     let missing = misses(&target.ranking, true);
-    let nobody = "no integrator reaches it";
+    let unreached = "no integrator reaches it";
     clauses.extend(match (first, &target.reason) {
-        (None, None) if missing.is_empty() => Some(nobody.to_owned()),
-        (None, None) => Some(format!("{nobody}: {missing}")),
+        (None, None) if missing.is_empty() => Some(unreached.to_owned()),
+        (None, None) => Some(format!("{unreached}: {missing}")),
         _ => not_reached(missing),
     });
     let beside = target.reference.iter().filter_map(|rank| {
-        let dear = rank.wall_ratio.map(|r| format!(", {}", ratio(r)));
-        Some(reached(rank.reached.as_ref()?) + &dear.unwrap_or_default())
+        let times = rank.wall_ratio.map(|r| format!(", {}", ratio(r)));
+        Some(reached(rank.reached.as_ref()?) + &times.unwrap_or_default())
     });
     let beside: Vec<String> = beside.collect();
     if !beside.is_empty() {
@@ -67,12 +67,12 @@ fn paragraph(target: &CostTarget) -> String {
     clauses.join("; ")
 }
 
-/// `velocity_verlet 18x`; by evaluations where the clock did not run.
-fn dearer(rank: &CostRank, first: &CostReached) -> Option<String> {
+/// `velocity_verlet 18x`: the ratio of times, or of evaluations where nothing was timed.
+fn cost_ratio(rank: &CostRank, first: &CostReached) -> Option<String> {
     let found = rank.reached.as_ref()?;
     let name = words::one_line(&rank.engine);
-    if let Some(dear) = rank.wall_ratio {
-        return Some(format!("{name} {}", ratio(dear)));
+    if let Some(times) = rank.wall_ratio {
+        return Some(format!("{name} {}", ratio(times)));
     }
     let untimed = first.wall_median_s.or(found.wall_median_s).is_none();
     Some(match (first.force_evaluations, found.force_evaluations) {
@@ -83,7 +83,7 @@ fn dearer(rank: &CostRank, first: &CostReached) -> Option<String> {
     })
 }
 
-/// Who evaluates least, where that is not who is fastest.
+/// The engine with the fewest evaluations, where that is not the fastest.
 fn fewest(target: &CostTarget, first: &CostReached) -> Option<String> {
     let fewest = target.fewest_evaluations.as_ref()?;
     if fewest.engine == first.engine {
@@ -98,11 +98,11 @@ fn fewest(target: &CostTarget, first: &CostReached) -> Option<String> {
     ))
 }
 
-/// Who would reach it at finer settings than were tried, and at what price.
+/// The engines that would reach the target at finer settings than were tried, and at what cost.
 fn extrapolated(target: &CostTarget) -> Option<String> {
     let would = target.ranking.iter().filter_map(|rank| {
-        let dear = ratio(rank.extrapolated_wall_ratio?);
-        Some(format!("{} {dear}", words::one_line(&rank.engine)))
+        let times = ratio(rank.extrapolated_wall_ratio?);
+        Some(format!("{} {times}", words::one_line(&rank.engine)))
     });
     let would = would.collect::<Vec<_>>().join(", ");
     (!would.is_empty()).then(|| format!("not reached, but by their slopes about: {would}"))
@@ -112,10 +112,10 @@ fn not_reached(by: String) -> Option<String> {
     (!by.is_empty()).then(|| format!("not reached by {by}"))
 }
 
-/// Who does not reach it and why. Equal reasons are said once, and of those that differ in a number
-/// alone only the number, after the first.
+/// The engines that do not reach the target, and why. Equal reasons stand once. Where a reason differs
+/// from the one before in a number alone, only the number stands.
 fn misses(ranks: &[CostRank], ranked: bool) -> String {
-    // Of integrators with a price by their slope, that is said instead.
+    // Integrators with an extrapolated cost are left out: `extrapolated` names them.
     let priced = |rank: &&CostRank| rank.extrapolated_wall_ratio.is_some() && ranked;
     let missing = ranks.iter().filter(|rank| rank.reached.is_none());
     let said = grouped(missing.filter(|rank| !priced(rank)).map(|rank| {

@@ -1,4 +1,4 @@
-//! What `cost` found, for people: how settings, prices and ratios are written.
+//! The result of `cost` in words: how settings, costs and ratios are written.
 
 mod answer;
 mod notes;
@@ -30,7 +30,7 @@ const LEGEND: &str = "\
   purpose.
 ";
 
-/// What the terminal and the page say.
+/// The parts that the terminal and the page have in common.
 pub fn view<'a>(report: &'a Report, cost: &Cost) -> View<'a> {
     View {
         header: &report.header,
@@ -43,7 +43,7 @@ pub fn view<'a>(report: &'a Report, cost: &Cost) -> View<'a> {
     }
 }
 
-/// The page.
+/// The page in Markdown.
 pub fn page(report: &Report, cost: &Cost, view: &View) -> String {
     let mut more = vec![("duration", format!("{} s", words::short(cost.duration_s)))];
     more.extend(facts(report, cost));
@@ -65,7 +65,7 @@ pub fn page(report: &Report, cost: &Cost, view: &View) -> String {
     .concat()
 }
 
-/// The table of engines, in the terminal, where it also has the targets, and in Markdown.
+/// The table of engines, in the terminal and in Markdown; in the terminal it also has the targets.
 fn table<'a>(report: &Report, cost: &'a Cost) -> Table<'a, CostCurve> {
     let header = &report.header;
     let timed = is_timed(cost);
@@ -105,7 +105,7 @@ pub fn metres(value: f64) -> String {
     words::sci(value).replacen(".0e", "e", 1)
 }
 
-/// `h = 0.02 s`, or the tolerance of an adaptive pair and the steps it comes to.
+/// `h = 0.02 s`, or an adaptive pair's tolerance and mean step.
 fn setting(timestep: f64, tolerance: Option<f64>) -> String {
     let h = words::short(timestep);
     match tolerance {
@@ -114,7 +114,7 @@ fn setting(timestep: f64, tolerance: Option<f64>) -> String {
     }
 }
 
-/// The same in few characters, for tables: `0.02`, `tol 1e-8`.
+/// The setting in few characters, for tables: `0.02`, `tol 1e-8`.
 fn brief(timestep: f64, tolerance: Option<f64>) -> String {
     match tolerance {
         Some(tolerance) => format!("tol {}", metres(tolerance)),
@@ -126,7 +126,7 @@ fn evaluations(count: u64) -> String {
     words::plural(count, "evaluation")
 }
 
-/// `0.10 ms (1,000 evaluations)`, or what is known of it.
+/// `0.10 ms (1,000 evaluations)`, or as much of it as is known.
 fn price(reached: &CostReached) -> String {
     let count = reached.force_evaluations.map(evaluations);
     match (reached.wall_median_s, count) {
@@ -137,7 +137,7 @@ fn price(reached: &CostReached) -> String {
     }
 }
 
-/// How many times as dear, two digits: `1.3x`, `18x`, `6,200x`.
+/// A ratio of costs, two digits: `1.3x`, `18x`, `6,200x`.
 fn ratio(value: f64) -> String {
     if !value.is_finite() {
         return NOTHING.into();
@@ -147,7 +147,7 @@ fn ratio(value: f64) -> String {
         v if v < 0.995 => format!("{v:.2}x"),
         v if v < 9.95 => format!("{v:.1}x"),
         v => {
-            // Below a million, so exact.
+            // The value is below a million, so this is exact.
             let power = 10_f64.powf(v.log10().floor() - 1.0);
             let rounded = (v / power).round() * power;
             format!("{}x", words::count(rounded.round() as u64))
@@ -168,7 +168,7 @@ fn smallest(curve: &CostCurve, value: fn(&CostPoint) -> Option<f64>) -> Option<&
     points.min_by(|a, b| size(a).total_cmp(&size(b)))
 }
 
-/// The smallest error, `floor` where nothing below it could be told from the truth.
+/// The smallest error, or `floor` where it could not be told from the truth's own.
 fn nearest_error(curve: &CostCurve) -> Option<String> {
     let point = nearest(curve)?;
     let floor = point.at_floor.then(|| "floor".to_owned());
@@ -199,7 +199,7 @@ pub fn is_timed(cost: &Cost) -> bool {
     points.any(|point| point.wall_s.is_some())
 }
 
-/// What holds of the whole answer, line by line: label and text.
+/// The facts about the whole answer, line by line: label and text.
 fn facts(report: &Report, cost: &Cost) -> Vec<(&'static str, String)> {
     let errors = cost.horizon_s.map(|horizon| {
         let all = words::short(cost.duration_s);

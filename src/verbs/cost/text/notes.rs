@@ -1,4 +1,4 @@
-//! What is to be said of single engines: why a reference's line is what it is, and which settings
+//! The notes on single engines: why a reference engine's curve lies where it does, and which settings
 //! have no error.
 
 use crate::report::Note;
@@ -6,10 +6,10 @@ use crate::report::words::{self, listed};
 use crate::solvers::Status;
 use crate::verbs::cost::{Cost, CostCurve, CostPoint};
 
-/// More settings than this are given by their first and last.
+/// The most settings that are listed one by one; more are given by their first and last.
 const NAMED: usize = 4;
 
-/// What each engine has to say, in the order of the curves.
+/// The notes on each engine, in the order of the curves.
 pub fn notes(cost: &Cost) -> Vec<Note> {
     let said = cost.curves.iter().flat_map(|curve| {
         let name = words::one_line(&curve.engine);
@@ -20,7 +20,7 @@ pub fn notes(cost: &Cost) -> Vec<Note> {
 }
 
 fn sentences(curve: &CostCurve) -> Vec<String> {
-    // What takes the scene at no setting has no line to explain.
+    // An engine that takes the scene at no setting has no curve to explain.
     let mut points = curve.points.iter();
     let runs = points.any(|point| point.status != Status::Unsupported);
     let explanation = curve.explanation.as_deref().filter(|_| runs);
@@ -30,8 +30,8 @@ fn sentences(curve: &CostCurve) -> Vec<String> {
     explanation.into_iter().chain(endings).collect()
 }
 
-/// `diverged at h = 0.2 and 0.1 s`; with the reason unless that is a divergence, which says the same of
-/// each step in other numbers.
+/// `diverged at h = 0.2 and 0.1 s`, with the reason. A divergence goes without one: it says the same of each
+/// step in other numbers.
 fn ending(curve: &CostCurve, status: Status) -> Option<String> {
     let ended = curve.points.iter().filter(|point| point.status == status);
     let ended: Vec<&CostPoint> = ended.collect();

@@ -1,20 +1,21 @@
-//! The work-precision diagram in characters: one letter a setting, both axes logarithmic.
+//! The work-precision diagram in characters: each setting is its engine's letter, both axes are
+//! logarithmic.
 
 use super::{answer, is_timed};
-use crate::report::svg::{Axis, Scale, range};
+use crate::report::svg::{ChartAxis, Scale, range};
 use crate::report::terminal::{Tone, WIDTH, clip, mark, wrap};
 use crate::report::words;
 use crate::verbs::Report;
 use crate::verbs::cost::diagram::Diagram;
 use crate::verbs::cost::{Cost, CostCurve};
 
-/// Characters of the field.
+/// Width and height of the field, characters.
 const COLUMNS: usize = 80;
 const LINES: usize = 22;
-/// Before the field: a label and the axis.
+/// Width of the labels left of the field, characters.
 const LABEL: usize = 7;
-/// Characters from one label below the axis to the next, at least.
-const APART: f64 = 10.0;
+/// The fewest characters from one label below the axis to the next.
+const MIN_LABEL_GAP: f64 = 10.0;
 
 /// One engine's letter and its settings as logarithms of cost and error.
 struct Engine {
@@ -25,24 +26,24 @@ struct Engine {
 }
 
 /// Whole decades around logarithms; the axis is linear in them.
-fn decades(logarithms: impl Iterator<Item = f64>) -> Option<Axis> {
+fn decades(logarithms: impl Iterator<Item = f64>) -> Option<ChartAxis> {
     let [lo, hi] = range(logarithms)?;
     let first = lo.floor();
-    Some(Axis {
+    Some(ChartAxis {
         scale: Scale::Linear,
         range: [first, hi.ceil().max(first + 1.0)],
     })
 }
 
-/// The place of a logarithm among `count`; None outside.
-fn place(axis: Axis, logarithm: f64, count: usize) -> Option<usize> {
+/// The cell of a logarithm among `count` along the axis; None outside.
+fn place(axis: ChartAxis, logarithm: f64, count: usize) -> Option<usize> {
     let part = axis.place(logarithm);
     let inside = (0.0..=1.0).contains(&part);
     inside.then(|| (part * (count - 1) as f64).round() as usize)
 }
 
 /// Every n-th decade, so that they stand at least `apart` of `count` characters from each other.
-fn labelled(axis: Axis, count: usize, apart: f64) -> impl Iterator<Item = i32> {
+fn labelled(axis: ChartAxis, count: usize, apart: f64) -> impl Iterator<Item = i32> {
     let [first, last] = axis.range.map(|end| end as i32);
     let each = (count - 1) as f64 / f64::from(last - first);
     let every = (apart / each).ceil().max(1.0) as i32;
@@ -52,9 +53,9 @@ fn labelled(axis: Axis, count: usize, apart: f64) -> impl Iterator<Item = i32> {
 /// The characters of the diagram with their tones, the highest row first.
 struct Field {
     rows: [[(char, Option<Tone>); COLUMNS]; LINES],
-    /// What stands beside each row.
+    /// The label beside each row.
     beside: [String; LINES],
-    axes: [Axis; 2],
+    axes: [ChartAxis; 2],
 }
 
 impl Field {
@@ -62,7 +63,7 @@ impl Field {
         Some(LINES - 1 - place(self.axes[1], error, LINES)?)
     }
 
-    /// A line across the field with a label, unless another has one there.
+    /// Draws a line across the field. A row keeps its first label.
     fn level(&mut self, error: f64, symbol: char, label: String) {
         if let Some(row) = self.row(error.log10()).filter(|_| error > 0.0) {
             self.rows[row] = [(symbol, Some(Tone::Dim)); COLUMNS];
@@ -72,7 +73,7 @@ impl Field {
         }
     }
 
-    /// A letter, unless another stands there.
+    /// Draws a letter, unless another stands there.
     fn point(&mut self, [cost, error]: [f64; 2], engine: &Engine) {
         if let Some(column) = place(self.axes[0], cost, COLUMNS)
             && let Some(row) = self.row(error)
@@ -84,7 +85,7 @@ impl Field {
         }
     }
 
-    /// The rows with the axis of errors, equal tones in one mark.
+    /// The rows with the axis of errors. Neighbours of equal tone are one mark.
     fn lines(&self) -> impl Iterator<Item = String> {
         let mut labels = [const { String::new() }; LINES];
         for decade in labelled(self.axes[1], LINES, 2.0) {
@@ -146,8 +147,8 @@ pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
     lines
 }
 
-/// Every engine with something to show: the scene's own first, then as listed; integrators have small
-/// letters, references capitals.
+/// Every engine with points to show: the scene's own first, then as listed. Integrators have small letters,
+/// reference engines capitals.
 fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
     let own = |curve: &CostCurve| report.header.is_own(&curve.engine);
     let mut curves: Vec<&CostCurve> = cost.curves.iter().collect();
@@ -166,7 +167,7 @@ fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
             false => (capital.next(), Some(Tone::Warn)),
         };
         Some(Engine {
-            // More than 26 of a kind share the last.
+            // More than 26 of a kind are all `0`.
             letter: letter.unwrap_or('0'),
             name: words::one_line(&curve.engine),
             tone,
@@ -177,16 +178,16 @@ fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
 }
 
 /// The rule below the field and its labels.
-fn rule(x: Axis, timed: bool) -> [String; 2] {
+fn rule(x: ChartAxis, timed: bool) -> [String; 2] {
     let mut rule = vec!['─'; COLUMNS];
     let mut labels = String::new();
-    for decade in labelled(x, COLUMNS, APART) {
+    for decade in labelled(x, COLUMNS, MIN_LABEL_GAP) {
         let Some(column) = place(x, f64::from(decade), COLUMNS) else {
             continue;
         };
         rule[column] = '┴';
         let label = power(decade, timed);
-        // Centred on its tick, as far as the one before leaves room.
+        // The label is centred on its tick, as far as the one before leaves room.
         let middle = (LABEL + 1 + column).saturating_sub(label.chars().count() / 2);
         let gap = middle.saturating_sub(labels.chars().count());
         labels += &" ".repeat(gap);
@@ -196,7 +197,7 @@ fn rule(x: Axis, timed: bool) -> [String; 2] {
     [format!("{:>LABEL$}└{rule}", ""), clip(&labels, WIDTH)]
 }
 
-/// A power of ten of seconds or of evaluations.
+/// The label of a power of ten, in seconds or evaluations.
 fn power(decade: i32, timed: bool) -> String {
     let unit = match decade.div_euclid(3) {
         -3 => "ns",

@@ -1,4 +1,4 @@
-//! The rankings and every setting as GitHub shows them.
+//! The rankings and every setting, in Markdown.
 
 use super::{answer, metres, ratio, tried};
 use crate::report::markdown::section;
@@ -8,7 +8,7 @@ use crate::verbs::Report;
 use crate::verbs::clock::WallTime;
 use crate::verbs::cost::{Cost, CostCurve, CostPoint, CostRank, CostTarget};
 
-/// One target's: the places, then those without one.
+/// The ranking of one target: integrators by place, then those without one, then reference engines.
 pub fn ranking(report: &Report, target: &CostTarget) -> String {
     let header = &report.header;
     let places = target.ranking.iter().enumerate().map(|(at, rank)| {
@@ -34,7 +34,7 @@ pub fn ranking(report: &Report, target: &CostTarget) -> String {
     table.markdown("time", |(_, rank)| {
         rank.reached.as_ref()?.wall_median_s.map(words::seconds)
     });
-    table.markdown("ratio", |(_, rank)| dear(rank));
+    table.markdown("ratio", |(_, rank)| cost_ratio(rank));
     table.markdown("force evaluations", |(_, rank)| {
         rank.reached.as_ref()?.force_evaluations.map(words::count)
     });
@@ -45,10 +45,10 @@ pub fn ranking(report: &Report, target: &CostTarget) -> String {
     section(&title, table.in_markdown())
 }
 
-/// How many times as dear, by the slope where no setting tried reaches the target.
-fn dear(rank: &CostRank) -> Option<String> {
+/// The time in units of the cheapest, extrapolated by the slope where no setting reaches the target.
+fn cost_ratio(rank: &CostRank) -> Option<String> {
     let guessed = rank.extrapolated_wall_ratio;
-    let guessed = guessed.map(|dear| format!("about {} by its slope", ratio(dear)));
+    let guessed = guessed.map(|times| format!("about {} by its slope", ratio(times)));
     rank.wall_ratio.map(ratio).or(guessed)
 }
 

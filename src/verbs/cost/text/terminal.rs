@@ -1,4 +1,4 @@
-//! The answers, the table of engines, and the diagram in characters.
+//! The terminal's part of `cost`: the answers, the table of engines, and the diagram in characters.
 
 use super::{answer, brief, evaluations, scatter, table, tried};
 use crate::report::terminal::{Tone, WIDTH, mark, wrap};
@@ -6,7 +6,7 @@ use crate::report::words::{self, NOTHING};
 use crate::verbs::Report;
 use crate::verbs::cost::{Cost, CostCurve, CostRank, CostTarget};
 
-/// What stands below the facts.
+/// The lines below the facts.
 pub fn lines(report: &Report, cost: &Cost) -> Vec<String> {
     let mut lines = answers(cost);
     lines.push(String::new());
@@ -15,7 +15,7 @@ pub fn lines(report: &Report, cost: &Cost) -> Vec<String> {
     lines
 }
 
-/// One paragraph a target.
+/// One paragraph for each target.
 fn answers(cost: &Cost) -> Vec<String> {
     let mut lines = Vec::new();
     for (label, text) in answer::paragraphs(cost) {
@@ -57,7 +57,7 @@ fn legend(cost: &Cost, left_out: &[String]) -> String {
     legend
 }
 
-/// Setting and price at which a curve reaches the target; the cheapest in green.
+/// The setting at which a curve reaches the target and its cost; the cheapest is green.
 pub fn cell(target: &CostTarget, curve: &CostCurve, timed: bool) -> (String, Option<Tone>) {
     let mut ranks = target.ranking.iter().chain(&target.reference);
     let of_curve = |rank: &&CostRank| rank.engine == curve.engine;

@@ -1,4 +1,4 @@
-//! The sentence that says what to use.
+//! The verdict of `cost`: which integrator to use.
 
 use super::{answer, metres, ratio};
 use crate::report::verdict::Clause;
@@ -6,11 +6,11 @@ use crate::report::words::{self, listed};
 use crate::verbs::Report;
 use crate::verbs::cost::{Cost, CostReached, CostTarget};
 
-/// For each target the cheapest, beside the hardest somebody reaches what the scene's own integrator
-/// takes, and last the targets nobody reaches.
+/// One clause for the cheapest integrator of each target, hardest first. The first is followed by what the
+/// scene's own integrator takes. The targets that no integrator reaches come last.
 pub fn clauses(report: &Report, cost: &Cost) -> Vec<Clause> {
     let mut clauses: Vec<Clause> = Vec::new();
-    // The hardest first: what is left out for width is the easy end.
+    // The hardest come first, so that easy ones are left out for width.
     let mut hardest: Vec<&CostTarget> = cost.targets.iter().collect();
     hardest.sort_by(|a, b| a.error_m.total_cmp(&b.error_m));
     for target in hardest {
@@ -21,11 +21,11 @@ pub fn clauses(report: &Report, cost: &Cost) -> Vec<Clause> {
         clauses.push(clause);
         clauses.extend(own(report, target).filter(|_| leads));
     }
-    let nobody = |target: &&CostTarget| first(target).is_none();
+    let unreached = |target: &&CostTarget| first(target).is_none();
     let (open, unreached): (Vec<_>, Vec<_>) = cost
         .targets
         .iter()
-        .filter(nobody)
+        .filter(unreached)
         .partition(|target| target.reason.is_some());
     clauses.extend(group("no integrator reaches", &unreached).map(|text| vec![text]));
     if let Some(reason) = open.first().and_then(|target| target.reason.as_ref()) {
@@ -47,7 +47,7 @@ pub fn clauses(report: &Report, cost: &Cost) -> Vec<Clause> {
     clauses
 }
 
-/// Who leads a target's ranking.
+/// The first setting in a target's ranking.
 fn first(target: &CostTarget) -> Option<&CostReached> {
     target.ranking.iter().find_map(|rank| rank.reached.as_ref())
 }
@@ -78,9 +78,9 @@ fn own(report: &Report, target: &CostTarget) -> Option<Clause> {
     let name = words::one_line(&rank.engine);
     let [long, short] = match (&rank.reached, rank.wall_ratio) {
         (None, _) => ["does not reach it".to_owned(), "does not".to_owned()],
-        (Some(_), Some(dear)) if dear > 1.0 => {
-            let dear = ratio(dear);
-            [format!("takes {dear} the time"), dear]
+        (Some(_), Some(times)) if times > 1.0 => {
+            let times = ratio(times);
+            [format!("takes {times} the time"), times]
         }
         _ => return None,
     };

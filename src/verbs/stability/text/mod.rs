@@ -1,4 +1,4 @@
-//! What `stability` found, for people: how limits and growth are written, and who says what.
+//! The result of `stability` in words: how limits and growth are written.
 
 mod terminal;
 mod verdict;
@@ -32,7 +32,7 @@ left their range. Growth too slow to show over these steps is not seen. The line
 is stable everywhere, at no step, or is not predicted.
 ";
 
-/// What the terminal and the page say.
+/// The parts that the terminal and the page have in common.
 pub fn view<'a>(report: &'a Report, stability: &'a Stability) -> View<'a> {
     let all = stability.rows.len();
     let said = stability.rows.iter().flat_map(|row| {
@@ -53,7 +53,7 @@ pub fn view<'a>(report: &'a Report, stability: &'a Stability) -> View<'a> {
     }
 }
 
-/// The page.
+/// The page in Markdown.
 pub fn page(report: &Report, stability: &Stability, view: &View) -> String {
     let step = format!("{} s", words::short(stability.timestep_s));
     let mut more = vec![("timestep asked about", step)];
@@ -71,7 +71,7 @@ pub fn page(report: &Report, stability: &Stability, view: &View) -> String {
     .concat()
 }
 
-/// What the picture of admissible places shows, and how much of them there is.
+/// The legend of the picture of admissible places, and their fraction at each stiffness.
 fn admissible(stability: &Stability) -> Option<String> {
     let admissible = stability.admissible.as_ref()?;
     let mut table = Table::new(&admissible.panels);
@@ -107,7 +107,7 @@ fn table<'a>(report: &Report, stability: &'a Stability) -> Table<'a, StabilityRo
             tightest(row).map(|tightest| words::short(tightest.t_s))
         });
     }
-    // The terminal drops it by itself where nobody has one.
+    // The terminal leaves the column out by itself where no row has a number.
     let smooth = any(|row| row.smooth_below_s.or(row.measured_smooth_below_s).is_some());
     let below = if smooth { "smooth below (s)" } else { "" };
     table.right("smooth\nbelow (s)", below, 4, |row| {
@@ -143,7 +143,7 @@ fn limit(limit: Option<f64>, unconditional: bool) -> String {
     }
 }
 
-/// What running found: a limit, or what it lies between.
+/// The measured limit, or its bracket.
 fn measured(row: &StabilityRow) -> String {
     match row.measured_between_s {
         Some([low, high]) => format!("{}..{}", digits(low), digits(high)),
@@ -169,13 +169,13 @@ fn digits(value: f64) -> String {
 fn ratio(row: &StabilityRow) -> Option<String> {
     let [predicted, measured] = [row.predicted_limit_s?, row.measured_limit_s?];
     (predicted > 0.0 && measured > 0.0).then(|| match measured / predicted {
-        // As many decimals above 1 as below.
+        // Four decimals, above 1 as below.
         ratio if (0.1..10.0).contains(&ratio) => format!("{ratio:.4}"),
         ratio => digits(ratio),
     })
 }
 
-/// Where the step stands: inside the limit, or how many times beyond.
+/// The place of the step: inside the limit, or how many times beyond.
 fn place(row: &StabilityRow, timestep: f64) -> String {
     match (row.holds(timestep), row.limit()) {
         (Some(true), _) => "inside".into(),
@@ -187,7 +187,7 @@ fn place(row: &StabilityRow, timestep: f64) -> String {
     }
 }
 
-/// What holds of the whole scene, line by line: label and text.
+/// The facts about the whole scene, line by line: label and text.
 fn facts(stability: &Stability) -> Vec<(&'static str, String)> {
     let fastest = match stability.omega_max_rad_s {
         Some(omega) => format!("fastest mode {} rad/s", digits(omega)),
@@ -208,7 +208,7 @@ fn facts(stability: &Stability) -> Vec<(&'static str, String)> {
     facts
 }
 
-/// What the map shows and how long each cell ran.
+/// The heading of the map: its size, its quantity and the steps of a cell.
 fn map_heading(stability: &Stability) -> Option<String> {
     let map = stability.map.as_ref()?;
     Some(format!(

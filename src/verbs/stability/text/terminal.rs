@@ -1,4 +1,4 @@
-//! The table of limits and a map in characters.
+//! The terminal's part of `stability`: the table of limits and a map in characters.
 
 use super::{digits, map_heading, table};
 use crate::measure::stability::Cell;
@@ -7,12 +7,12 @@ use crate::report::words;
 use crate::verbs::Report;
 use crate::verbs::stability::{MapPanel, Stability, StabilityMap};
 
-/// Values a map in characters has room for, one column each and its axis.
+/// The most values of a map in characters: each takes a column.
 const COLUMNS: usize = 80;
-/// Lines it may take.
+/// The most timesteps: each takes a line.
 const LINES: usize = 40;
 
-/// What stands below the facts.
+/// The lines below the facts.
 pub fn lines(report: &Report, stability: &Stability) -> Vec<String> {
     let mut lines = vec![String::new()];
     lines.extend(table(report, stability).in_terminal(", ", |_| {
@@ -42,7 +42,7 @@ fn cell(cell: Option<Cell>) -> (&'static str, Option<Tone>) {
     }
 }
 
-/// The scene's own integrator's panel, or the first, where it fits.
+/// The panel of the scene's own integrator, or the first, where it fits.
 fn map(report: &Report, stability: &Stability) -> Vec<String> {
     let (Some(map), Some(heading)) = (&stability.map, map_heading(stability)) else {
         return Vec::new();
@@ -61,7 +61,7 @@ fn map(report: &Report, stability: &Stability) -> Vec<String> {
     lines
 }
 
-/// One line a timestep, the largest on top, one character a value.
+/// The panel in characters: a line for each timestep, the largest on top, and a column for each value.
 fn drawn(map: &StabilityMap, panel: &MapPanel) -> Vec<String> {
     let mut lines = Vec::new();
     let labelled = |at: usize| at == 0 || at + 1 == map.timesteps_s.len();

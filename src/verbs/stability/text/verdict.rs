@@ -1,4 +1,4 @@
-//! The sentence that says the most important thing about limits.
+//! The verdict of `stability`: the most important facts about limits.
 
 use super::limit;
 use crate::report::verdict::Clause;
@@ -6,8 +6,8 @@ use crate::report::words::{self, listed};
 use crate::verbs::Report;
 use crate::verbs::stability::{Stability, StabilityRow};
 
-/// The scene's own integrator first, then who is beyond its limit at the step asked about, who is
-/// never stable, who always, and who has no answer.
+/// The scene's own integrator comes first, then the engines that are beyond their limit at the timestep,
+/// never stable, always stable, and without an answer.
 pub fn clauses(report: &Report, stability: &Stability) -> Vec<Clause> {
     let h = stability.timestep_s;
     let rows = stability.rows.iter();
@@ -62,7 +62,7 @@ fn first(row: &StabilityRow, h: f64) -> Option<Clause> {
     Some(vec![text])
 }
 
-/// By name, by number, not at all.
+/// The engines of one group: by name, by number, or left out.
 fn group(label: &str, names: Vec<String>) -> Option<Clause> {
     let mut forms = vec![format!("{} {label}", names.len()), String::new()];
     if names.len() <= 4 {
@@ -71,7 +71,7 @@ fn group(label: &str, names: Vec<String>) -> Option<Clause> {
     (!names.is_empty()).then_some(forms)
 }
 
-/// The smallest limit of those that are inside.
+/// The engine with the smallest limit of those that are inside.
 fn least<'a>(rows: impl Iterator<Item = &'a StabilityRow>) -> Option<String> {
     let limits = rows.filter_map(|row| Some((row, row.limit()?)));
     let finite = limits.filter(|(_, h)| *h > 0.0 && h.is_finite());
