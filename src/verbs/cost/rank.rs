@@ -178,7 +178,12 @@ pub fn target(curves: &[CostCurve], error: f64, reason: Option<String>) -> CostT
     let reached = answer.ranking.iter().filter_map(|r| r.reached.as_ref());
     answer.cheapest = reached.clone().next().cloned();
     let counted = reached.filter(|r| r.force_evaluations.is_some());
-    answer.fewest_evaluations = counted.min_by_key(|r| r.force_evaluations).cloned();
+    // Of equal counts the most accurate, so that the clock has no say.
+    let fewest = counted.min_by(|one, other| {
+        let counts = one.force_evaluations.cmp(&other.force_evaluations);
+        counts.then(one.error_m.total_cmp(&other.error_m))
+    });
+    answer.fewest_evaluations = fewest.cloned();
     let least = answer.cheapest.as_ref().and_then(|c| c.wall_median_s);
     for rank in answer.ranking.iter_mut().chain(&mut answer.reference) {
         let own = rank.reached.as_ref().and_then(|r| r.wall_median_s);

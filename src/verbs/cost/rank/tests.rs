@@ -178,3 +178,22 @@ fn targets_rank_integrators_and_only_list_the_engine() {
     assert!(nobody.cheapest.is_none() && nobody.ranking.is_empty());
     assert_eq!(nobody.reason.as_deref(), Some("no truth"));
 }
+
+#[test]
+fn of_equal_counts_the_clock_chooses_nobody() {
+    let timed = |engine, error, wall: f64| {
+        let mut points = vec![point(10, Some(error))];
+        points[0].wall_s = Some(WallTime {
+            min: wall,
+            median: wall,
+            mad: None,
+        });
+        curve(engine, SolverKind::Integrator, points)
+    };
+    for [one, other] in [[1e-3, 2e-3], [2e-3, 1e-3]] {
+        let curves = [timed("rough", 1e-4, one), timed("fine", 1e-6, other)];
+        let answer = target(&curves, 1e-3, None);
+        let fewest = answer.fewest_evaluations.expect("both reach it");
+        assert_eq!(fewest.engine, "fine");
+    }
+}
