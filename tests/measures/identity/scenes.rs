@@ -4,7 +4,7 @@ use super::*;
 use crate::testkit::part;
 use crate::testkit::scenes::{all_shipped, folders, shipped};
 use springcheck::integrators::fixed;
-use springcheck::measure::identify::Sameness;
+use springcheck::measure::identify::Undecided;
 use std::collections::BTreeSet;
 
 fn course(number: u32) -> Scene {
@@ -19,13 +19,13 @@ fn class(scene: &Scene, method: &str) -> Result<BTreeSet<String>, String> {
     let mut class: BTreeSet<String> = identity.equivalent.iter().cloned().collect();
     class.insert(identity.method.clone());
     class.retain(|id| integrators::find(id).is_some());
-    let settled = match identity.same {
-        Sameness::Alone => identity.decisive,
-        Sameness::Mathematically => !identity.decisive && !identity.equivalent.is_empty(),
-        Sameness::TooCoarse | Sameness::NothingFits => false,
+    let settled = match identity.undecided {
+        None => true,
+        Some(Undecided::SameMap) => !identity.equivalent.is_empty(),
+        Some(Undecided::DataTooCoarse | Undecided::Near) => false,
     };
     let whole = identity.substeps == 1 && identity.defect == 0.0;
-    if settled && whole && class.contains(method) && identity.mistake.is_none() {
+    if settled && whole && class.contains(method) && !identity.mistake {
         Ok(class)
     } else {
         Err(format!("{}: {method}: {identity:?}", scene.name))
