@@ -11,6 +11,7 @@ use std::sync::LazyLock;
 pub fn names() -> &'static Names {
     static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
         methods: integrators::ids(integrators::fixed()),
+        aliases: integrators::ALIASES,
         engines: rapier::IDS.to_vec(),
         keys: keys(),
     });
