@@ -6,9 +6,9 @@ use crate::report::json::Tool;
 use crate::scene::Scene;
 use crate::solvers::Solver;
 use crate::solvers::external::{Failure, Program, Recording, Task};
-use crate::trajectory::{self, Expected, Rows, SaveError, limits};
+use crate::trajectory::{self, Expected, Plane, Rows, SaveError, limits};
 use crate::truth::Demand;
-use crate::verbs::cli::flags::{self, demand};
+use crate::verbs::cli::flags::{self, demand, plane};
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::terminal::Terminal;
 use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity};
@@ -24,7 +24,7 @@ use std::sync::Arc;
 #[derive(Debug, clap::Args)]
 #[command(mut_arg("output", |arg| arg.help("Where a report goes. Default: nowhere")))]
 pub struct Args {
-    /// What some program computed: CSV (`t,id,x,y,z[,vx,vy,vz]`), NPZ (`t`, `x`, `v`) or NPY.
+    /// What some program computed: CSV (`t,id,x,y,z[,vx,vy,vz]`, or wide: `t,x0,y0,z0,x1,...`), NPZ (`t`, `x`, `v`) or NPY.
     #[arg(value_name = "FILE")]
     file: PathBuf,
 
@@ -35,6 +35,10 @@ pub struct Args {
     /// The step it took, seconds; rows may lie several of them apart. Default: the scene's.
     #[arg(long, value_name = "H")]
     timestep: Option<f64>,
+
+    /// The axes that two-dimensional data has. Default: data has all three.
+    #[arg(long, value_parser = plane(), value_name = "AXES")]
+    axes: Option<Plane>,
 
     /// What errors are measured against, as in `run`.
     #[arg(long, default_value = "auto", value_parser = demand(), value_name = "KIND")]
@@ -56,7 +60,8 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     let name = args.file.display().to_string();
     let bytes = read(&args.file).with_context(|| format!("cannot read {name}"))?;
-    let rows = trajectory::read(&bytes, &name, None, &Expected::new(&scene, timestep))?;
+    let expected = expected(&scene, timestep, args.axes)?;
+    let rows = trajectory::read(&bytes, &name, None, &expected)?;
     drop(bytes);
     // The file determines the duration.
     scene.duration = rows
@@ -77,6 +82,21 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         args.output.print(&Tool::this(), reports)?;
     }
     Ok(ExitCode::from(code(&report)))
+}
+
+/// What the file has to fit.
+fn expected(scene: &Scene, timestep: f64, plane: Option<Plane>) -> anyhow::Result<Expected> {
+    let expected = Expected::new(scene, timestep);
+    let Some(plane) = plane else {
+        return Ok(expected);
+    };
+    expected.in_plane(plane).map_err(|axis| {
+        anyhow::anyhow!(
+            "--axes {}: the scene moves particles along {axis} as well, so data of that plane alone \
+             cannot be of it; gravity acts along the scene's `up`",
+            plane.name()
+        )
+    })
 }
 
 /// Reads the file, up to one byte more than the parser accepts.

@@ -10,6 +10,9 @@ fn rounded(mut rows: Rows, precision: Precision) -> Rows {
     let round = |c: f64| match precision {
         Precision::Double => c,
         Precision::Single => f64::from(c as f32),
+        Precision::SingleDecimals(d) => format!("{:.*}", d as usize, c as f32)
+            .parse()
+            .expect("a number"),
         Precision::Decimals(d) => format!("{c:.*}", d as usize).parse().expect("a number"),
         Precision::Digits(d) => {
             let text = format!("{c:.*e}", d as usize - 1);

@@ -26,6 +26,7 @@ fn record(engine: &mut dyn Engine, timestep: f64, steps: u64) -> Rows {
         v: None,
         precision: Precision::Double,
         precision_v: Precision::Double,
+        cut: false,
     };
     let mut v = Vec::new();
     for step in 0..=steps {

@@ -54,6 +54,7 @@ fn rows(task: &Task, method: &str, every: u64) -> Rows {
         v: Some(Vec::new()),
         precision: Precision::Double,
         precision_v: Precision::Double,
+        cut: false,
     };
     for step in 0..=task.steps {
         if step > 0 {
