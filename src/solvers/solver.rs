@@ -139,7 +139,11 @@ impl Solver {
         match &self.source {
             Source::Method(method) if method.pair().is_none() => Some((method.id, 1)),
             Source::Method(_) | Source::Own(_) | Source::Program(_) => None,
-            Source::Forces => Some(("symplectic_euler", 1)),
+            // Forces are set once a step and held over its substeps.
+            Source::Forces(_) if self.substeps > 1 => {
+                Some(("forces_held(symplectic_euler)", self.substeps))
+            }
+            Source::Forces(_) => Some(("symplectic_euler", 1)),
             Source::Joints(_) => {
                 let solves =
                     !scene.springs.is_empty() || scene.particles.iter().any(|p| p.drag > 0.0);

@@ -35,7 +35,7 @@ pub use transition::Transition;
 use crate::integrators::{Settings, fixed};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::trajectory::Rows;
+use crate::trajectory::{Precision, Rows};
 use race::{Entry, Race, Ranking, defects_of_all, quantile};
 use same::Comparison;
 use transition::Weighed;
@@ -148,7 +148,9 @@ fn found(question: &Question) -> Option<Found> {
     };
     race.enter(expected(question).into_iter().collect(), None);
     race.enter(plain(1).collect(), None);
-    if !race.decided() {
+    // Digits that are few tell fewer schemes apart, and that is to be said.
+    let coarse = rows.precision != Precision::Double;
+    if coarse || !race.decided() {
         race.enter(
             (2..=MOST_SUBSTEPS).flat_map(plain).collect(),
             Some("substeps"),

@@ -55,6 +55,8 @@ fn largest_ratio(a: &[f64], b: &[f64]) -> f64 {
     ratios.fold(0.0, |most, (a, b)| f64::max(most, a / b))
 }
 
+/// Rows that show whether velocities are differences.
+const DIFFERENCED: usize = 8;
 /// A velocity is found from positions in about this many tries.
 const FIND: u64 = 8;
 /// A step that solves costs as much as this many that do not: 20 to 100, on a chain of 20.
@@ -68,6 +70,8 @@ pub struct Replay<'a> {
     fixed: Vec<Option<f64>>,
     /// The longest rest length, m: forces are rounded by as much even where positions are small.
     length: f64,
+    /// Whether velocities are differences of positions over the step, and round as those do.
+    differenced: bool,
     /// Whether the rows themselves are known no better than an iterative solve's tolerance.
     pub(super) iterated: bool,
     steps: AtomicU64,
@@ -96,6 +100,7 @@ impl<'a> Replay<'a> {
             settings,
             fixed: fixed.map(|(x, w)| (*w == 0.0).then_some(*x)).collect(),
             length: lengths.fold(0.0, f64::max),
+            differenced: is_differenced(rows),
             iterated: false,
             steps: AtomicU64::new(0),
         })
@@ -257,7 +262,7 @@ impl<'a> Replay<'a> {
             let solve = if i < dim { seconds * solve } else { solve };
             // A number that ends near 0 was larger in between.
             let bit = f64::EPSILON * from.abs();
-            self.rows.half_unit(i, value) + bit + solve
+            self.half_unit(transition.to, i, value) + bit + solve
         });
         grown.iter().zip(own).map(|(g, own)| g + own).collect()
     }
@@ -274,12 +279,22 @@ impl<'a> Replay<'a> {
         self.rows.x(transition.from).iter().chain(v).copied()
     }
 
+    /// Half a unit of the last digit that a number of row `k` is given to, or computed to.
+    fn half_unit(&self, k: usize, i: usize, value: f64) -> f64 {
+        let rows = self.rows;
+        let half = rows.half_unit(i, value);
+        match i.checked_sub(rows.dim).filter(|_| self.differenced) {
+            Some(at) => half + f64::EPSILON * rows.x(k)[at].abs() / rows.timestep,
+            None => half,
+        }
+    }
+
     /// The rounding of each recorded number, and of the number it came from.
     fn digits(&self, transition: &Transition) -> Vec<f64> {
         let pairs = self.recorded(transition).zip(self.from(transition));
-        let digits = pairs
-            .enumerate()
-            .map(|(i, (to, from))| self.rows.half_unit(i, to) + f64::EPSILON * from.abs());
+        let digits = pairs.enumerate().map(|(i, (to, from))| {
+            self.half_unit(transition.to, i, to) + f64::EPSILON * from.abs()
+        });
         digits.collect()
     }
 
@@ -373,7 +388,7 @@ impl<'a> Replay<'a> {
             } else if let Some((pattern, roundings)) = nudge {
                 let own = 0.5 * f64::EPSILON * roundings;
                 let row = (k as u64, pattern);
-                let round = [rows.half_unit(i, x[i]), rows.half_unit(dim + i, v[i])];
+                let round = [self.half_unit(k, i, x[i]), self.half_unit(k, dim + i, v[i])];
                 x[i] += sign(row, 2 * i) * (round[0] + own * x[i].abs());
                 v[i] += sign(row, 2 * i + 1) * (round[1] + own * v[i].abs());
             }
@@ -382,4 +397,25 @@ impl<'a> Replay<'a> {
         state.t = rows.time(k);
         state
     }
+}
+
+/// Whether the velocities of some rows are those that positions one or two steps apart give by a division, to
+/// the last bits: a program that steps positions alone computes them so.
+fn is_differenced(rows: &Rows) -> bool {
+    let moving = (1..rows.len().saturating_sub(1)).filter(|&k| {
+        rows.steps[k] == rows.steps[k - 1] + 1 && rows.steps[k + 1] == rows.steps[k] + 1
+    });
+    let moving: Vec<usize> = moving.take(DIFFERENCED).collect();
+    let is = |back: usize, ahead: usize| {
+        moving.iter().all(|&k| {
+            let Some(v) = rows.v(k) else { return false };
+            let (from, to) = (rows.x(k - back), rows.x(k + ahead));
+            let seconds = (back + ahead) as f64 * rows.timestep;
+            let pairs = v.iter().zip(to.iter().zip(from));
+            pairs.into_iter().all(|(v, (to, from))| {
+                (v - (to - from) / seconds).abs() <= 2.0 * f64::EPSILON * v.abs()
+            })
+        })
+    };
+    moving.len() == DIFFERENCED && (is(1, 0) || is(1, 1) || is(0, 1))
 }

@@ -16,6 +16,8 @@ use std::sync::Arc;
 fn scene(model: DampingModel) -> Scene {
     let mut scene = everything(model);
     scene.solver.timestep = 0.01;
+    // One spring pushes.
+    scene.springs[0].rest_length *= 1.5;
     scene
 }
 

@@ -47,7 +47,7 @@ fn honest(identity: &Identity, method: &str, substeps: u32) -> Result<(), String
         Some(Undecided::SameMap | Undecided::DataTooCoarse) => listed && !identity.decisive(),
         Some(Undecided::Near) => false,
     };
-    // Beyond 8 it would not be followed; measured up to 4.3.
+    // Beyond 16 it would not be followed; measured up to 4.3.
     if held && identity.followed == identity.transitions && identity.defect <= 8.0 {
         Ok(())
     } else {
