@@ -4,6 +4,7 @@
 use super::compose::{Around, Rounded};
 use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError};
 use crate::physics::{ParticleSystem, State, System};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Forces that candidates share.
@@ -19,7 +20,7 @@ pub struct Candidate {
     /// Registry id of the method it is, or was meant to be.
     pub meant: &'static str,
     /// What it does, for people, where its name does not say it all.
-    pub says: Option<&'static str>,
+    pub says: Option<Cow<'static, str>>,
     /// Whether it is a known mistake.
     pub mistake: bool,
     /// Its step depends on the state one step before: it can be replayed only from the first state
@@ -73,6 +74,16 @@ pub enum ScaledAt {
     End,
 }
 
+impl ScaledAt {
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Start => "before the kick",
+            Self::Kick => "after the kick",
+            Self::End => "at the end of the step",
+        }
+    }
+}
+
 impl Candidate {
     /// A candidate under these forces, in one step.
     pub fn new(forces: &Forces, scheme: Scheme, meant: &'static str) -> Self {
@@ -102,10 +113,10 @@ impl Candidate {
     }
 
     /// The same under another name.
-    pub fn named(self, id: impl Into<String>, says: &'static str) -> Self {
+    pub fn named(self, id: impl Into<String>, says: impl Into<Cow<'static, str>>) -> Self {
         Self {
             id: id.into(),
-            says: Some(says),
+            says: Some(says.into()),
             ..self
         }
     }
@@ -122,6 +133,15 @@ impl Candidate {
     pub fn under(&self, system: &ParticleSystem) -> Self {
         Self {
             forces: Arc::new(system.clone()),
+            ..self.clone()
+        }
+    }
+
+    /// The same scheme under another candidate's forces, in its steps.
+    pub(super) fn forced_as(&self, other: &Self) -> Self {
+        Self {
+            forces: Arc::clone(&other.forces),
+            stretch: other.stretch,
             ..self.clone()
         }
     }

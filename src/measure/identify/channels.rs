@@ -20,6 +20,8 @@ pub(super) struct Channel {
 enum Change {
     /// Multiplies a number of the scene, of one member or of all.
     Scene(fn(&mut Scene, Option<usize>, f64)),
+    /// Gives all members one number, so many times their mean.
+    Common(fn(&mut Scene, f64)),
     /// Multiplies the length of the step.
     Timestep,
     /// Multiplies velocities once a step.
@@ -60,6 +62,21 @@ const MASS: (&str, Change) = (
     // Accelerations are linear in 1/m, so a fit finds that.
     Change::Scene(|s, at, f| each(&mut s.particles, at, |particle| particle.mass /= f)),
 );
+const ONE_STIFFNESS: (&str, Change) = (
+    "springs.stiffness",
+    Change::Common(|s, f| {
+        let k = f * mean(s.springs.iter().map(|spring| spring.stiffness));
+        each(&mut s.springs, None, |spring| spring.stiffness = k);
+    }),
+);
+const ONE_MASS: (&str, Change) = (
+    "mass",
+    Change::Common(|s, f| {
+        let free = s.particles.iter().filter(|p| !p.fixed);
+        let m = mean(free.map(|p| p.mass)) / f;
+        each(&mut s.particles, None, |particle| particle.mass = m);
+    }),
+);
 const GRAVITY: (&str, Change) = ("gravity", Change::Scene(|s, _, f| s.solver.gravity *= f));
 const WIND: (&str, Change) = (
     "wind",
@@ -73,6 +90,17 @@ const GRAVITATIONAL: (&str, Change) = (
     "gravitational",
     Change::Scene(|s, at, f| each(&mut s.gravitational, at, |pair| pair.g *= f)),
 );
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / f64::max(count, 1.0)
+}
+
+/// Whether these are not all the same.
+fn differ(mut values: impl Iterator<Item = f64>) -> bool {
+    let first = values.next();
+    values.any(|value| Some(value) != first)
+}
 
 /// Whether the scene has what a channel, or a known mistake, changes.
 pub(super) fn has(scene: &Scene, what: &str) -> bool {
@@ -107,8 +135,18 @@ pub(super) fn of_scene(scene: &Scene) -> Vec<Channel> {
         velocity(ScaledAt::Kick),
         velocity(ScaledAt::End),
     ];
-    let there = all.into_iter().filter(|(what, _)| has(scene, what));
+    let mut there: Vec<(&str, Change)> = all
+        .into_iter()
+        .filter(|(what, _)| has(scene, what))
+        .collect();
+    if differ(scene.springs.iter().map(|s| s.stiffness)) {
+        there.push(ONE_STIFFNESS);
+    }
+    if differ(scene.particles.iter().filter(|p| !p.fixed).map(|p| p.mass)) {
+        there.push(ONE_MASS);
+    }
     there
+        .into_iter()
         .map(|(what, change)| Channel {
             what,
             member: None,
@@ -142,17 +180,23 @@ pub(super) fn of_members(scene: &Scene, particles: &[usize]) -> Vec<Channel> {
     channels
 }
 
-/// The scheme with these channels' factors.
-pub(super) fn varied(scene: &Scene, base: &Candidate, factors: &[(&Channel, f64)]) -> Candidate {
+/// The forces of a scene, as some program computes them; None where the scene has nothing for it to get wrong.
+pub(super) type Build = fn(&Scene) -> Option<ParticleSystem>;
+
+/// The scheme with these channels' factors, under the forces that `build` makes of the scene.
+pub(super) fn varied(
+    scene: &Scene,
+    build: Build,
+    base: &Candidate,
+    factors: &[(&Channel, f64)],
+) -> Option<Candidate> {
     let mut wrong = scene.clone();
     let mut altered = false;
     let mut candidate = base.clone();
     for (channel, factor) in factors {
         match channel.change {
-            Change::Scene(change) => {
-                change(&mut wrong, channel.member, *factor);
-                altered = true;
-            }
+            Change::Scene(change) => change(&mut wrong, channel.member, *factor),
+            Change::Common(change) => change(&mut wrong, *factor),
             Change::Timestep => candidate = candidate.stretched(*factor),
             Change::Velocity(at) => {
                 let rates: Arc<[f64]> = vec![*factor; 3 * scene.particles.len()].into();
@@ -160,36 +204,59 @@ pub(super) fn varied(scene: &Scene, base: &Candidate, factors: &[(&Channel, f64)
                 candidate = candidate.scaled(Scaling { factor, rates, at });
             }
         }
+        altered |= matches!(channel.change, Change::Scene(_) | Change::Common(_));
     }
     if altered {
-        candidate = candidate.under(&ParticleSystem::new(&wrong));
+        candidate = candidate.under(&build(&wrong)?);
     }
-    candidate
+    Some(candidate)
 }
 
-/// The scheme with gravity along another axis, either way: with what deviates.
-pub(super) fn turned(scene: &Scene, base: &Candidate) -> Vec<(Candidate, Deviation)> {
-    let axes = [Axis::X, Axis::Y, Axis::Z].into_iter();
-    let others = axes.filter(|axis| scene.solver.gravity != 0.0 && *axis != scene.up);
-    let ways = others.flat_map(|axis| [(axis, 1.0), (axis, -1.0)]);
-    ways.map(|(axis, factor)| {
-        let mut wrong = scene.clone();
-        wrong.up = axis;
-        wrong.solver.gravity *= factor;
-        let name = ["x", "y", "z"][axis.index()];
-        let against = if factor < 0.0 { ", the other way" } else { "" };
-        let deviation = Deviation {
-            what: "axis".to_owned(),
-            factor,
-            place: Some(name.to_owned()),
-            sentence: format!("gravity is along {name}{against}"),
-        };
-        (base.under(&ParticleSystem::new(&wrong)), deviation)
-    })
-    .collect()
+/// The scheme with gravity, or the wind, along another axis, either way: with what deviates.
+pub(super) fn turned(scene: &Scene, build: Build, base: &Candidate) -> Vec<(Candidate, Deviation)> {
+    let mut all = Vec::new();
+    for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
+        for factor in [1.0, -1.0] {
+            let mut along = |what: &str, change: &dyn Fn(&mut Scene)| {
+                let mut wrong = scene.clone();
+                change(&mut wrong);
+                let other = if factor < 0.0 { ", the other way" } else { "" };
+                let deviation = Deviation {
+                    what: if what == "gravity" { "axis" } else { what }.to_owned(),
+                    factor,
+                    place: Some(name.to_owned()),
+                    sentence: format!("{what} is along {name}{other}"),
+                };
+                if wrong != *scene
+                    && let Some(system) = build(&wrong)
+                {
+                    all.push((base.under(&system), deviation));
+                }
+            };
+            if scene.solver.gravity != 0.0 && axis != scene.up {
+                along("gravity", &|wrong| {
+                    wrong.up = axis;
+                    wrong.solver.gravity *= factor;
+                });
+            }
+            along("wind", &|wrong| {
+                if let Some(wind) = &mut wrong.wind {
+                    let size = wind.direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+                    wind.direction = [0.0; 3];
+                    wind.direction[axis.index()] = factor * size;
+                }
+            });
+        }
+    }
+    all
 }
 
 impl Channel {
+    /// Whether a factor of 1 changes the scene.
+    pub(super) fn switches(&self) -> bool {
+        matches!(self.change, Change::Common(_))
+    }
+
     /// Whether it can be told from other forms of the same channel under this scheme.
     pub(super) fn suits(&self, base: &Candidate) -> bool {
         match self.change {
@@ -200,9 +267,8 @@ impl Channel {
 
     pub(super) fn deviation(&self, scene: &Scene, h: f64, factor: f64) -> Deviation {
         let place = match (self.change, self.member) {
-            (Change::Velocity(ScaledAt::Start), _) => Some("before the kick".to_owned()),
-            (Change::Velocity(ScaledAt::Kick), _) => Some("after the kick".to_owned()),
-            (Change::Velocity(ScaledAt::End), _) => Some("at the end of the step".to_owned()),
+            (Change::Velocity(at), _) => Some(at.words().to_owned()),
+            (Change::Common(_), _) => Some("all alike".to_owned()),
             (_, Some(i)) if self.what.starts_with("springs") => Some(format!("spring {i}")),
             (_, Some(i)) => Some(format!("particle {i}")),
             (_, None) => None,
@@ -221,6 +287,27 @@ impl Channel {
     }
 
     fn sentence(&self, scene: &Scene, h: f64, factor: f64, place: Option<&str>) -> String {
+        if let Change::Common(change) = self.change {
+            let mut alike = scene.clone();
+            change(
+                &mut alike,
+                if self.what == MASS.0 {
+                    1.0 / factor
+                } else {
+                    factor
+                },
+            );
+            return if self.what == MASS.0 {
+                let free = alike.particles.iter().find(|p| !p.fixed);
+                format!(
+                    "all particles have a mass of {} kg",
+                    digits(free.map_or(0.0, |p| p.mass))
+                )
+            } else {
+                let k = alike.springs.first().map_or(0.0, |s| s.stiffness);
+                format!("all springs have a stiffness of {} N/m", digits(k))
+            };
+        }
         let times = times(factor);
         let of = place.map_or(String::new(), |place| format!(" of {place}"));
         let one = self.member.is_some();
@@ -237,7 +324,7 @@ impl Channel {
                 }
             },
             "springs.stiffness" if !one => match factor {
-                0.0 => "springs are missing".to_owned(),
+                0.0 => "springs do not pull".to_owned(),
                 -1.0 => "springs push where they should pull".to_owned(),
                 _ => format!("springs act with {times} their stiffness"),
             },
@@ -249,7 +336,10 @@ impl Channel {
                 0.0 => "the rest length of springs is taken for 0".to_owned(),
                 _ => format!("springs have {times} their rest length"),
             },
-            "drag" | "wind" if !one && factor == 0.0 => format!("{} is missing", self.what),
+            "drag" | "wind" | "gravitational" if !one && factor == 0.0 => {
+                format!("{} is missing", self.what)
+            }
+            "springs.cubic" => format!("the cubic part of the springs is {times} the scene's"),
             "velocity" => format!(
                 "velocities are multiplied by {} a step, {}",
                 digits(factor),
@@ -279,8 +369,9 @@ fn times(factor: f64) -> String {
 
 /// Six digits, less trailing zeros.
 fn digits(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    if rounded != 0.0 && (1e-3..1e6).contains(&rounded.abs()) {
+    // No minus before a zero.
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value) + 0.0;
+    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) {
         format!("{rounded}")
     } else {
         format!("{rounded:e}")

@@ -4,13 +4,16 @@
 //! What they apply a method to is a [`System`] of its own: one particle among others that stand still, or
 //! forces that are held over a step.
 
+use super::Identity;
 use super::candidate::{Candidate, Forces, Map, ScaledAt, Scaling, Scheme, Step};
+use super::replay::FIT;
 use crate::integrators::{
     self, Coefficients, DampingTreatment, Integrator, Method, Settings, Splitting, Stage,
     StepError, fixed,
 };
 use crate::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, System};
 use crate::scene::Scene;
+use crate::trajectory::Rows;
 use std::sync::Arc;
 
 /// Applies a step to a state over h, in this many substeps where it has some.
@@ -29,14 +32,12 @@ const STOPPED: [u32; 4] = [2, 3, 4, 5];
 const ORDERS: [(&str, &str, Around); 2] = [
     (
         "in_place",
-        "particles move one after the other, and each sees those that have already moved: compute all \
-         forces before any particle moves",
+        "particles move one after the other, and each sees those that have already moved",
         in_place,
     ),
     (
         "one_by_one",
-        "each particle takes its whole step alone, with its neighbours frozen: take every stage for all \
-         particles at once",
+        "each particle takes its whole step alone, with its neighbours frozen",
         one_by_one,
     ),
 ];
@@ -289,6 +290,7 @@ fn damped(scene: &Scene) -> Vec<Candidate> {
                 let rates = Arc::clone(&rates);
                 let candidate = Candidate::new(&forces, Scheme::Method(method), method.id);
                 let candidate = candidate.scaled(Scaling { factor, rates, at });
+                let says = format!("{says}, {}", at.words());
                 all.push(candidate.named(format!("{}+{id}", method.id), says));
             }
         }
@@ -392,6 +394,45 @@ fn implicit_damping(
         force: Altering::PositionsHeld(state.x.clone()),
     };
     step(&held, h, state)
+}
+
+/// Rows that follow an Euler method of kicks and drifts, but begin half a kick before or after the scene's start,
+/// are those of a leapfrog with staggered velocities.
+pub(super) fn staggered(
+    system: &ParticleSystem,
+    scene: &Scene,
+    rows: &Rows,
+    identity: Identity,
+) -> Identity {
+    let (says, share) = match identity.method.as_str() {
+        "symplectic_euler" => (MAPS[1].1, -0.5),
+        "symplectic_euler_drift_first" => (MAPS[2].1, 0.5),
+        _ => return identity,
+    };
+    let start = ParticleSystem::initial_state(scene);
+    let first = rows.v.as_ref().and_then(|_| rows.v(0));
+    let Some(v) = first.filter(|_| rows.steps.first() == Some(&0) && identity.substeps == 1) else {
+        return identity;
+    };
+    let a = acceleration(system, 0.0, &start.x, &start.v);
+    let kicked = plus(&start.v, share * rows.timestep, &a);
+    let near = |here: &[f64]| {
+        let pairs = here.iter().zip(v).enumerate();
+        pairs.into_iter().all(|(i, (a, b))| {
+            let unit = rows.half_unit(rows.dim + i, *b) + 4.0 * f64::EPSILON * (a.abs() + b.abs());
+            (a - b).abs() <= FIT * unit
+        })
+    };
+    if near(&start.v) || !near(&kicked) {
+        return identity;
+    }
+    Identity {
+        method: "leapfrog_staggered".to_owned(),
+        says: Some(says.into()),
+        equivalent: Vec::new(),
+        undecided: None,
+        ..identity
+    }
 }
 
 fn midpoint_kicked(f: &dyn System, h: f64, _: Option<&State>, s: &mut State) -> Stepped {

@@ -2,15 +2,16 @@
 //! has wrong, fitted through one-step replays.
 
 use super::candidate::Candidate;
-use super::channels::{self, Channel};
-use super::compose::treated;
-use super::mistakes;
+use super::channels::{self, Build, Channel};
+use super::compose::{composed, treated};
+use super::mistakes::{self, MISTAKES, Mistake, Wrong};
 use super::race::{Race, defects_of_all, quantile};
 use super::replay::{FIT, Replay};
 use super::result::{Deviation, Explained, Undecided};
 use super::transition::{Transition, spread};
 use super::{Found, Identity, Question, median_relative};
 use crate::integrators::fixed;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -21,8 +22,21 @@ const FITTED: usize = 8;
 const MOST: usize = 3;
 /// Of the sets of several channels, so many are fitted that the linear model finds best.
 const TRIED: usize = 4;
+/// Methods under whose forces a mistake and a wrong number are looked for together.
+const USUAL: [&str; 6] = [
+    "explicit_euler",
+    "symplectic_euler",
+    "midpoint",
+    "velocity_verlet",
+    "velocity_verlet_predicted_velocity",
+    "rk4",
+];
+/// Substeps that are looked in.
+const FINER: u32 = 5;
 /// Particles that are suspected where one is wrong, or one spring.
 const SUSPECTS: usize = 2;
+/// Of the difference, a factor has to explain more than is left here by the linear model.
+const PROMISING: f64 = 0.9;
 /// Most Gauss-Newton steps.
 const STEPS: usize = 12;
 /// Most times that one of them is halved.
@@ -47,14 +61,14 @@ pub(super) fn of_none(question: &Question, race: &Race, all: &[Transition]) -> F
     }
     let fitted = fitted(question, race);
     if let Some(exact) = fitted.as_ref().filter(|fit| fit.worst <= FIT) {
-        return exact.found(question, race, all);
+        return exact.found(race, all);
     }
-    let plain: Vec<Candidate> = bases(question, race);
+    let plain = fixed()
+        .iter()
+        .map(|m| Candidate::method(question.system, m, 1));
+    let plain: Vec<Candidate> = plain.filter(|c| race.tried(&c.id)).collect();
     near(question, race, all, &plain)
-        .or_else(|| {
-            let rough = fitted.filter(|fit| fit.left <= LEFT);
-            rough.map(|fit| fit.found(question, race, all))
-        })
+        .or_else(|| fitted.map(|fit| fit.found(race, all)))
         .unwrap_or_else(|| unexplained(race, all))
 }
 
@@ -62,22 +76,25 @@ pub(super) fn of_none(question: &Question, race: &Race, all: &[Transition]) -> F
 pub(super) fn of_mistake(scene: &Scene, identity: &Identity) -> Option<Explained> {
     let row = mistakes::mistake(&identity.method).filter(|_| identity.mistake)?;
     let scheme = identity.method.split_once('(');
+    Some(Explained {
+        scheme: scheme.map(|(_, method)| method.trim_end_matches(')').to_owned()),
+        residual: identity.defect,
+        largest_at: None,
+        deviations: deviations_of(scene, row),
+    })
+}
+
+/// What a known mistake changes in this scene.
+fn deviations_of(scene: &Scene, row: &Mistake) -> Vec<Deviation> {
     let deviation = |(what, factor): &(&str, f64)| Deviation {
         what: (*what).to_owned(),
         factor: *factor,
         place: None,
         sentence: row.says.to_owned(),
     };
-    let there = row
-        .deviates
-        .iter()
-        .filter(|(what, _)| channels::has(scene, what));
-    Some(Explained {
-        scheme: scheme.map(|(_, method)| method.trim_end_matches(')').to_owned()),
-        residual: identity.defect,
-        largest_at: None,
-        deviations: there.map(deviation).collect(),
-    })
+    let there = row.deviates.iter();
+    let there = there.filter(|(what, _)| channels::has(scene, what));
+    there.map(deviation).collect()
 }
 
 /// The scheme of rows that no scheme can be told from, since each follows from the one before without any error.
@@ -115,24 +132,78 @@ fn unexplained(race: &Race, all: &[Transition]) -> Found {
     }
 }
 
-/// The schemes that deviations are looked for in, as far as the budget goes, the simplest first.
-fn bases(question: &Question, race: &Race) -> Vec<Candidate> {
-    let mut left = race.budget;
-    let methods = fixed()
-        .iter()
-        .map(|m| Candidate::method(question.system, m, 1))
-        .chain(treated(question.system));
-    let affordable = |candidate: &Candidate| {
-        let first = race.sample.first();
-        let each = first.map_or(0, |t| race.replay.effort(candidate, t));
-        let effort = each.saturating_mul(40 * FITTED as u64);
-        let holds = effort <= left;
-        if holds {
-            left -= effort;
-        }
-        holds
+/// A scheme that deviations are looked for in, and the forces it is meant to have.
+struct Base {
+    scheme: Candidate,
+    build: Build,
+    /// What the forces are that are not the scene's.
+    mistake: Option<&'static Mistake>,
+}
+
+/// Schemes to look in, in turn: of each group all sets of up to so many channels.
+struct Group {
+    bases: Vec<Base>,
+    most: usize,
+    /// Whether single springs and particles are looked at.
+    members: bool,
+}
+
+/// The scene's own forces.
+const OWN: Build = |scene| Some(ParticleSystem::new(scene));
+
+/// The simplest schemes first: explicit methods, implicit ones, composed ones and substeps, and methods under
+/// forces that are a known mistake.
+fn groups(question: &Question, race: &Race) -> Vec<Group> {
+    let (scene, system) = (question.scene, question.system);
+    let own = |scheme| Base {
+        scheme,
+        build: OWN,
+        mistake: None,
     };
-    methods.filter(affordable).collect()
+    let plain = |n: u32| fixed().iter().map(move |m| Candidate::method(system, m, n));
+    let (implicit, explicit): (Vec<_>, Vec<_>) =
+        plain(1).chain(treated(system)).partition(Candidate::solves);
+    let finer = (2..=FINER).flat_map(plain).filter(|c| !c.solves());
+    let composed = composed(scene, system).into_iter().filter(|c| !c.solves());
+    let usual = |c: &&Candidate| USUAL.contains(&c.id.as_str());
+    let mut wrong = Vec::new();
+    for mistake in MISTAKES {
+        let Wrong::Physics(build) = mistake.wrong else {
+            continue;
+        };
+        if let Some(system) = build(scene) {
+            wrong.extend(explicit.iter().filter(usual).map(|scheme| Base {
+                scheme: scheme.under(&system),
+                build,
+                mistake: Some(mistake),
+            }));
+        }
+    }
+    let group = |bases, most, members| Group {
+        bases,
+        most,
+        members,
+    };
+    let mut groups = vec![
+        group(explicit.into_iter().map(own).collect(), MOST, true),
+        group(implicit.into_iter().map(own).collect(), 2, false),
+        group(composed.chain(finer).map(own).collect(), 1, false),
+        group(wrong, 1, false),
+    ];
+    // About so many replays of each fitted transition.
+    let mut left = race.budget;
+    for group in &mut groups {
+        let replays = if group.members { 400 } else { 60 };
+        group.bases.retain(|base| {
+            let first = race.sample.first();
+            let each = first.map_or(0, |t| race.replay.effort(&base.scheme, t));
+            let effort = each.saturating_mul(replays * FITTED as u64);
+            let holds = effort <= left;
+            left -= if holds { effort } else { 0 };
+            holds
+        });
+    }
+    groups
 }
 
 /// The scheme whose steps the trajectory nearly takes.
@@ -149,9 +220,7 @@ fn near(
         .par_iter()
         .filter_map(|scheme| {
             let of_truth = |t: &Transition| part_of_error(race.replay, scheme, &truth, t);
-            let mut parts: Vec<f64> = few.iter().filter_map(of_truth).collect();
-            parts.sort_by(f64::total_cmp);
-            let part = *parts.get(parts.len() / 2)?;
+            let part = median(few.iter().filter_map(of_truth).collect())?;
             let hinted = question.hint.is_some();
             (part <= NEAR || (hinted && part.is_finite())).then_some((scheme, part))
         })
@@ -180,6 +249,11 @@ fn near(
         identity: Some(identity),
         explained: Some(explained),
     })
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 /// The step with the largest defect; None where all fit.
@@ -237,8 +311,20 @@ struct Fit {
 }
 
 impl Fit {
-    fn found(&self, question: &Question, race: &Race, all: &[Transition]) -> Found {
-        let _ = question;
+    /// Whether what it leaves is small against its scheme's own error.
+    fn is_of_its_scheme(&self, question: &Question, race: &Race) -> bool {
+        let Some(truth) = fixed().iter().find(|method| method.id == "rk4") else {
+            return false;
+        };
+        let truth = Candidate::method(question.system, truth, 16).forced_as(&self.candidate);
+        let few = spread(race.sample, FITTED);
+        let parts = few
+            .iter()
+            .filter_map(|t| part_of_error(race.replay, &self.candidate, &truth, t));
+        median(parts.collect()).is_some_and(|part| part <= NEAR)
+    }
+
+    fn found(&self, race: &Race, all: &[Transition]) -> Found {
         let defects = defects_of_all(race.replay, &self.candidate, all);
         Found {
             identity: None,
@@ -256,14 +342,11 @@ impl Fit {
 /// The fewest deviations that reach rounding; where none do, the best single one.
 fn fitted(question: &Question, race: &Race) -> Option<Fit> {
     let whole = channels::of_scene(question.scene);
-    let (implicit, explicit): (Vec<_>, Vec<_>) = bases(question, race)
-        .into_iter()
-        .partition(Candidate::solves);
     let mut best: Option<Fit> = None;
-    // A step that solves costs as much as many that do not.
-    for (bases, most) in [(explicit, MOST), (implicit, 2)] {
+    for group in groups(question, race) {
+        let (most, members) = (group.most, group.members);
         let model = |base| Model::new(question, race, base, &whole);
-        let models: Vec<Model> = bases.into_par_iter().filter_map(model).collect();
+        let models: Vec<Model> = group.bases.into_par_iter().filter_map(model).collect();
         for size in 1..=most {
             let fits: Vec<Vec<Fit>> = models.par_iter().map(|model| model.fits(size)).collect();
             for fits in fits {
@@ -272,25 +355,21 @@ fn fitted(question: &Question, race: &Race) -> Option<Fit> {
                     let others: Vec<String> = exact.map(Fit::sentence).collect();
                     return Some(first.or(&others));
                 }
-                let left = |best: &Fit| best.left;
-                for fit in fits.into_iter().filter(|_| size == 1) {
-                    if best.as_ref().map_or(1.0, left) > fit.left {
-                        best = Some(fit);
-                    }
-                }
+                let left = best.as_ref().map_or(1.0, |best| best.left);
+                let rough = fits.into_iter().filter(|fit| size == 1 && fit.left < left);
+                best = rough.min_by(|a, b| a.left.total_cmp(&b.left)).or(best);
             }
-            if size == 1 {
-                let single: Vec<Option<Fit>> = models
-                    .par_iter()
-                    .map(|model| model.of_one_member(race))
-                    .collect();
+            if size == 1 && members {
+                let single = models.par_iter().map(|model| model.of_one_member(race));
+                let single: Vec<Option<Fit>> = single.collect();
                 if let Some(fit) = single.into_iter().flatten().next() {
                     return Some(fit);
                 }
             }
         }
     }
-    best
+    // What is only near the truth is near no scheme.
+    best.filter(|fit| fit.left <= LEFT && fit.is_of_its_scheme(question, race))
 }
 
 impl Fit {
@@ -323,7 +402,7 @@ impl Fit {
 struct Model<'a> {
     question: &'a Question<'a>,
     replay: &'a Replay<'a>,
-    base: Candidate,
+    base: Base,
     channels: Vec<&'a Channel>,
     at: Vec<Transition>,
     /// Of each transition's numbers.
@@ -340,18 +419,18 @@ impl<'a> Model<'a> {
     fn new(
         question: &'a Question<'a>,
         race: &Race<'a>,
-        base: Candidate,
+        base: Base,
         channels: &'a [Channel],
     ) -> Option<Self> {
         let replay = race.replay;
         let at = spread(race.sample, FITTED);
-        let mut replayer = base.replayer(&replay.settings);
+        let mut replayer = base.scheme.replayer(&replay.settings);
         let units = |t: &Transition| {
             let predicted = replay.predict(&mut replayer, t).ok()?;
             replay.units(&mut replayer, t, &predicted, NUDGES).ok()
         };
         let units: Vec<Vec<f64>> = at.iter().map(units).collect::<Option<_>>()?;
-        let channels: Vec<&Channel> = channels.iter().filter(|c| c.suits(&base)).collect();
+        let channels: Vec<&Channel> = channels.iter().filter(|c| c.suits(&base.scheme)).collect();
         let mut model = Self {
             question,
             replay,
@@ -362,10 +441,15 @@ impl<'a> Model<'a> {
             residuals: DVector::zeros(0),
             slopes: Vec::new(),
         };
-        model.residuals = model.residuals_of(&model.base)?;
+        model.residuals = model.residuals_of(&model.base.scheme)?;
         for k in 0..model.channels.len() {
-            let moved = model.residuals_of(&model.varied(&[(k, 1.0 + STEP)]))?;
-            model.slopes.push((moved - &model.residuals) / STEP);
+            let moved = model.residuals_at(&[(k, 1.0 + STEP)])?;
+            let here = if model.channels[k].switches() {
+                model.residuals_at(&[(k, 1.0)])?
+            } else {
+                model.residuals.clone()
+            };
+            model.slopes.push((moved - here) / STEP);
         }
         Some(model)
     }
@@ -383,16 +467,25 @@ impl<'a> Model<'a> {
         particles.sort_by(|&a, &b| off[b].total_cmp(&off[a]));
         particles.truncate(SUSPECTS);
         let members = channels::of_members(scene, &particles);
-        let model = Model::new(self.question, race, self.base.clone(), &members)?;
+        let base = Base {
+            scheme: self.base.scheme.clone(),
+            ..self.base
+        };
+        let model = Model::new(self.question, race, base, &members)?;
         model.fits(1).into_iter().find(|fit| fit.worst <= FIT)
     }
 
-    fn varied(&self, factors: &[(usize, f64)]) -> Candidate {
-        let factors: Vec<(&Channel, f64)> = factors
+    fn varied(&self, factors: &[(usize, f64)]) -> Option<Candidate> {
+        let factors = factors
             .iter()
-            .map(|&(k, factor)| (self.channels[k], factor))
-            .collect();
-        channels::varied(self.question.scene, &self.base, &factors)
+            .map(|&(k, factor)| (self.channels[k], factor));
+        let factors: Vec<(&Channel, f64)> = factors.collect();
+        let Base { scheme, build, .. } = &self.base;
+        channels::varied(self.question.scene, *build, scheme, &factors)
+    }
+
+    fn residuals_at(&self, factors: &[(usize, f64)]) -> Option<DVector<f64>> {
+        self.residuals_of(&self.varied(factors)?)
     }
 
     /// Predicted minus recorded, in units.
@@ -417,17 +510,23 @@ impl<'a> Model<'a> {
 
     /// Fits with this many factors, in the order of preference: all of one, the most promising of several.
     fn fits(&self, size: usize) -> Vec<Fit> {
+        let alone =
+            |set: &Vec<usize>| size == 1 || !set.iter().any(|&k| self.channels[k].switches());
         let mut sets: Vec<(f64, Vec<usize>)> = sets(self.channels.len(), size)
             .into_iter()
+            .filter(alone)
             .filter_map(|set| Some((self.predicted(&set)?, set)))
             .collect();
+        // Only a number that matters is worth a fit.
+        let matters = |set: &[usize]| set.iter().any(|&k| self.channels[k].switches());
+        sets.retain(|(left, set)| *left <= PROMISING * self.residuals.norm() || matters(set));
         if size > 1 {
             sets.sort_by(|a, b| a.0.total_cmp(&b.0));
             sets.truncate(TRIED);
         }
         let mut fits: Vec<Fit> = sets.iter().filter_map(|(_, set)| self.fit(set)).collect();
         if size == 1 {
-            let turned = channels::turned(self.question.scene, &self.base);
+            let turned = channels::turned(self.question.scene, self.base.build, &self.base.scheme);
             fits.extend(turned.into_iter().filter_map(|(candidate, deviation)| {
                 let residuals = self.residuals_of(&candidate)?;
                 Some(self.result(candidate, vec![deviation], &residuals))
@@ -436,7 +535,7 @@ impl<'a> Model<'a> {
         fits
     }
 
-    /// The sum of squares that the linear model leaves.
+    /// What the linear model leaves.
     fn predicted(&self, set: &[usize]) -> Option<f64> {
         let slopes: Vec<DVector<f64>> = set.iter().map(|&k| self.slopes[k].clone()).collect();
         let step = least_squares(&slopes, &self.residuals)?;
@@ -450,7 +549,7 @@ impl<'a> Model<'a> {
     /// Gauss-Newton from the scene's own numbers.
     fn fit(&self, set: &[usize]) -> Option<Fit> {
         let mut factors: Vec<(usize, f64)> = set.iter().map(|&k| (k, 1.0)).collect();
-        let mut residuals = self.residuals.clone();
+        let mut residuals = self.residuals_at(&factors)?;
         let mut slopes: Vec<DVector<f64>> = set.iter().map(|&k| self.slopes[k].clone()).collect();
         for _ in 0..STEPS {
             let mut step = least_squares(&slopes, &residuals)?;
@@ -458,7 +557,7 @@ impl<'a> Model<'a> {
             for halving in 0..=HALVINGS {
                 let moved = factors.iter().zip(step.iter());
                 let moved: Vec<(usize, f64)> = moved.map(|((k, f), s)| (*k, f - s)).collect();
-                let next = self.residuals_of(&self.varied(&moved));
+                let next = self.residuals_at(&moved);
                 let nearer = next.as_ref().is_some_and(|next| next.norm() <= here);
                 if let (true, Some(next)) = (nearer || halving == HALVINGS, next) {
                     (factors, residuals) = (moved, next);
@@ -474,12 +573,12 @@ impl<'a> Model<'a> {
                 let mut moved = factors.clone();
                 let by = STEP.min(step.amax().max(1e-7));
                 moved[place].1 += by;
-                *slope = (self.residuals_of(&self.varied(&moved))? - &residuals) / by;
+                *slope = (self.residuals_at(&moved)? - &residuals) / by;
             }
         }
         // A number that a person would have written is taken for the one meant, if it does as well.
         let rounded: Vec<(usize, f64)> = factors.iter().map(|&(k, f)| (k, plain(f))).collect();
-        if let Some(plain) = self.residuals_of(&self.varied(&rounded))
+        if let Some(plain) = self.residuals_at(&rounded)
             && plain.amax() <= FIT
         {
             (factors, residuals) = (rounded, plain);
@@ -489,7 +588,7 @@ impl<'a> Model<'a> {
             .iter()
             .map(|&(k, factor)| self.channels[k].deviation(scene, h, factor));
         let deviations: Vec<Deviation> = deviations.collect();
-        let candidate = self.varied(&factors);
+        let candidate = self.varied(&factors)?;
         let finite = deviations.iter().all(|d| d.factor.is_finite());
         finite.then(|| self.result(candidate, deviations, &residuals))
     }
@@ -500,10 +599,14 @@ impl<'a> Model<'a> {
         deviations: Vec<Deviation>,
         residuals: &DVector<f64>,
     ) -> Fit {
+        let of_mistake = self
+            .base
+            .mistake
+            .map(|row| deviations_of(self.question.scene, row));
         Fit {
             candidate,
-            scheme: self.base.label(),
-            deviations,
+            scheme: self.base.scheme.label(),
+            deviations: of_mistake.into_iter().flatten().chain(deviations).collect(),
             worst: residuals.amax(),
             left: residuals.norm() / self.residuals.norm(),
         }

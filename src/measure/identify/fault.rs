@@ -41,7 +41,8 @@ pub fn first_fault(question: &Question, identity: &Identity) -> Option<Fault> {
         return None;
     }
     let named = |c: &Candidate| {
-        (c.id.as_str(), c.substeps, c.says) == (&identity.method, identity.substeps, identity.says)
+        (c.id.as_str(), c.substeps, &c.says)
+            == (&identity.method, identity.substeps, &identity.says)
     };
     let mut all = candidates(question.scene, question.system);
     first_departure(question, &all.find(named)?)
@@ -74,10 +75,12 @@ pub fn first_departure(question: &Question, candidate: &Candidate) -> Option<Fau
     // A closer look at one may find that rounding explains it after all.
     let spot = (0..departures.len())
         .find_map(|k| Spot::new(question, &replay, &followed, &transitions, &departures[k..]))?;
-    Some(match candidate.says.filter(|_| candidate.mistake) {
-        None => spot.explained(),
-        Some(says) => spot.fault(spot.step(), says.to_owned()),
-    })
+    Some(
+        match candidate.says.as_ref().filter(|_| candidate.mistake) {
+            None => spot.explained(),
+            Some(says) => spot.throughout(says.to_string()),
+        },
+    )
 }
 
 /// The transitions between neighbouring rows, wherever a replay can start.

@@ -38,6 +38,7 @@ use crate::scene::Scene;
 use crate::trajectory::{Precision, Rows};
 use race::{Entry, Race, Ranking, defects_of_all, quantile};
 use same::Comparison;
+use std::borrow::Cow;
 use transition::Weighed;
 
 /// Substeps that are tried.
@@ -71,7 +72,7 @@ pub struct Identity {
     /// Steps it takes in a timestep.
     pub substeps: u32,
     /// What it does, where its name does not say it.
-    pub says: Option<&'static str>,
+    pub says: Option<Cow<'static, str>>,
     /// Whether it is a known mistake.
     pub mistake: bool,
     /// Largest distance of a replayed row from the recorded one, in units of what rounding explains,
@@ -171,6 +172,7 @@ fn found(question: &Question) -> Option<Found> {
         if race.exact(ranking.winner) && Some(ranking.winner) != first {
             return Some(explain::of_truth(&identity));
         }
+        let identity = compose::staggered(system, scene, rows, identity);
         let explained = explain::of_mistake(scene, &identity);
         return Some(Found {
             identity: Some(identity),
@@ -209,6 +211,27 @@ fn decide(
     let share = followed as f64 / defects.len().max(1) as f64;
     if share < 0.5 {
         return None;
+    }
+    let candidate = &winner.candidate;
+    let meant = || crate::integrators::find(candidate.meant);
+    if let Some(meant) = meant().filter(|_| candidate.mistake) {
+        // Where the mistake makes no difference, it is none.
+        let right = Candidate::method(question.system, meant, candidate.substeps);
+        if defects_of_all(race.replay, &right, all)
+            .iter()
+            .all(Defect::fits)
+        {
+            return Some(Identity {
+                defect: quantile(&defects_of_all(race.replay, &right, all), 1.0),
+                undecided: Some(Undecided::DataTooCoarse),
+                equivalent: vec![candidate.label()],
+                transitions: all.len(),
+                followed: all.len(),
+                left_out: race.left_out.clone(),
+                steps: race.replay.steps(),
+                ..Identity::of(&right)
+            });
+        }
     }
     let comparison = Comparison::new(question.scene, question.system, race.replay, sample);
     let equals = race.equals(ranking, all, &defects, &comparison);
@@ -266,7 +289,7 @@ impl Identity {
         Self {
             method: candidate.id.clone(),
             substeps: candidate.substeps,
-            says: candidate.says,
+            says: candidate.says.clone(),
             mistake: candidate.mistake,
             defect: f64::INFINITY,
             relative: f64::INFINITY,
@@ -292,7 +315,7 @@ impl Identity {
             Identified {
                 method: self.method.clone(),
                 substeps: self.substeps,
-                says: self.says.map(str::to_owned),
+                says: self.says.clone().map(Cow::into_owned),
                 defect: self.defect,
                 relative: Some(self.relative).filter(|r| r.is_finite()),
                 runner_up: runner_up.map(RunnerUp::label),

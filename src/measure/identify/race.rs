@@ -12,6 +12,10 @@ const CHUNK: usize = 64;
 /// Replays of a transition that a defect takes: the step itself, and once more with every number off by its
 /// rounding.
 const REPLAYS: u64 = 2;
+/// The fraction of transitions whose defects show how large a candidate's are.
+const TYPICAL: f64 = 0.9;
+/// A candidate whose typical defect is beyond this, and so many times that of another, fits by its tolerance alone.
+const LIKELY: f64 = 4.0;
 /// Those that fit the sample as the winner does are compared with it over this many transitions.
 const COMPARED: usize = 256;
 /// Rows from the start to the end of a stretch, in turn.
@@ -135,6 +139,11 @@ impl Race<'_> {
         REPLAYS.saturating_mul(efforts.fold(0, u64::saturating_add))
     }
 
+    /// Whether a candidate of this id was tried.
+    pub(super) fn tried(&self, id: &str) -> bool {
+        self.entries.iter().any(|entry| entry.candidate.id == id)
+    }
+
     /// Whether some candidate follows the whole sample.
     pub(super) fn decided(&self) -> bool {
         self.entries.iter().any(Entry::follows)
@@ -158,7 +167,14 @@ impl Race<'_> {
         }
         let leads = |i: &usize| follows(i) == most;
         let mut class: Vec<usize> = sampled.iter().copied().filter(leads).collect();
-        class.sort_by_key(|&i| (Some(i) != first, i));
+        let typical = |i: usize| self.entries[i].quantile(TYPICAL);
+        let least = class
+            .iter()
+            .map(|&i| typical(i))
+            .fold(f64::INFINITY, f64::min);
+        // Of those that rounding allows, the likely ones come first.
+        let unlikely = |i: usize| typical(i) > f64::max(LIKELY, LIKELY * least);
+        class.sort_by_key(|&i| (Some(i) != first, unlikely(i), i));
         let mut told = Vec::new();
         if whole_states {
             // Over longer stretches of positions alone, the velocity to start from is too uncertain.

@@ -24,7 +24,7 @@ const CLEAR: f64 = 0.25 * FIT;
 /// Nor does one so large: more directions never raise a unit by as much.
 const HOPELESS: f64 = 32.0 * FIT;
 /// Most directions in which inputs and forces are moved by their rounding.
-const NUDGES: u64 = 8;
+const NUDGES: u64 = 16;
 
 /// How far a replay ends from the data.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -210,6 +210,14 @@ impl<'a> Spot<'a> {
         words::how_often(self.span(), self.again(), after)
     }
 
+    /// The fault of a scheme that is wrong in every step.
+    pub(super) fn throughout(&self, says: String) -> Fault {
+        Fault {
+            explanation: says,
+            ..self.fault(self.step(), String::new())
+        }
+    }
+
     /// The fault with this step and explanation; the number of particles that are off is added.
     pub(super) fn fault(&self, step: u64, says: String) -> Fault {
         let at = 3 * self.worst;

@@ -139,7 +139,14 @@ pub fn verdict(report: &Report) -> Option<String> {
     };
     let outcome = outcomes.first()?;
     let name = words::one_line(&outcome.engine);
+    let fault_says = fault.as_ref().map(|fault| {
+        let (step, says) = (fault.step, words::one_line(&fault.explanation));
+        format!("{name}, step {step}: {says}")
+    });
     let Some(found) = &outcome.identified else {
+        if fault_says.is_some() {
+            return fault_says;
+        }
         let Some(why) = &outcome.explained else {
             return Some(format!("{name} holds too few steps to be replayed"));
         };
