@@ -98,7 +98,7 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<S
             let law = by_law(method, class, damped).filter(|_| has_springs);
             law.or_else(|| damped.then(|| by_balance(method, class, lost)))
         }
-        None if class != EnergyClass::Growing && has_springs => case.solver.dissipates(),
+        None if has_springs => case.solver.by_design(class == EnergyClass::Growing),
         None => None,
     }
 }
