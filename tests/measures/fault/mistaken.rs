@@ -65,9 +65,9 @@ fn all_differ(ends: &[(String, State)], bound: f64) -> Result<(), String> {
 
 #[test]
 fn every_mistake_is_a_map_of_its_own() {
-    // The nearest are two methods of order 4 at half the step, 3.8e-9 apart. Numbers of order 1 are
+    // The nearest are two methods of order 4 without springs, 1.5e-9 apart. Numbers of order 1 are
     // rounded in the sixteenth digit, a million times finer.
-    let bound = 2e-9;
+    let bound = 8e-10;
     for model in [DampingModel::Axial, DampingModel::Isotropic] {
         let scene = scene(model);
         let mut ends = ends(&scene);
@@ -132,13 +132,16 @@ fn names_itself(scene: &Scene, made: &Candidate, expected: &Candidate) -> Result
     let rows = rows(scene, &states, Precision::Double);
     let question = question(scene, &system, &rows);
     let identity = identify(&question).identity.ok_or("nothing identified")?;
-    if identity.method != expected.id || !identity.decisive() {
+    // Without springs some methods are one.
+    let same = |other: &String| other.split('(').next() == identity.method.split('(').next();
+    let named = identity.method == expected.id || identity.equivalent.contains(&expected.id);
+    if !named || !identity.equivalent.iter().all(same) {
         return Err(format!("{} taken for {identity:?}", expected.id));
     }
     let fault = first_fault(&question, &identity).ok_or("no fault")?;
     // What adds up or comes late is right in the first step.
     let first = u64::from(expected.remembers);
-    let says = expected.says.ok_or("no mistake")?;
+    let says = expected.says.as_deref().ok_or("no mistake")?;
     if fault.step != first || !fault.explanation.starts_with(says) {
         return Err(format!("{}: {fault:?}", expected.id));
     }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::testkit::{crossed, swinging_triangle};
 use springcheck::integrators::fixed;
-use springcheck::measure::identify::Undecided;
+use springcheck::measure::identify::{TRUTH, Undecided};
 use springcheck::scene::DampingModel;
 
 fn rounded(mut rows: Rows, precision: Precision) -> Rows {
@@ -64,7 +64,14 @@ fn what_is_said_of_rounded_data_holds() {
     for (method, ((damping, substeps), precision)) in &tried {
         let scene = swinging_triangle(*damping, DampingModel::Axial);
         let rows = run(&scene, method.id, *substeps, 200);
-        let identity = name(&scene, &rounded(rows, *precision));
+        let found = found(&scene, &rounded(rows, *precision), None);
+        let Some(identity) = found.identity else {
+            // Substeps whose error these digits do not show.
+            let scheme = found.explained.and_then(|explained| explained.scheme);
+            assert_eq!(scheme.as_deref(), Some(TRUTH), "{}", method.id);
+            assert!(*substeps > 1, "{}", method.id);
+            continue;
+        };
         honest(&identity, method.id, *substeps).unwrap();
         decided += usize::from(identity.decisive());
     }
@@ -124,7 +131,8 @@ fn the_law_of_rounded_data_kills_mutants() {
     assert!(honest(&identity, "explicit_euler", 2).is_err());
     let mut stiffer = scene.clone();
     stiffer.springs[0].stiffness *= 1.01;
-    assert!(honest(&name(&stiffer, &rows), "explicit_euler", 1).is_err());
+    let identity = name_of(&stiffer, &rows, None);
+    assert!(identity.is_none_or(|identity| honest(&identity, "explicit_euler", 1).is_err()));
 }
 
 /// Single transitions are too coarse for five decimals at a small step; longer stretches are not.

@@ -10,7 +10,7 @@ use springcheck::trajectory::Recorder;
 
 /// Named, decisively, and followed throughout.
 fn names(scene: &Scene, rows: &Rows, method: &str, substeps: u32) -> Result<Identity, String> {
-    let identity = name(scene, rows);
+    let identity = name_of(scene, rows, None).ok_or("no scheme")?;
     let right = identity.method == method
         && identity.substeps == substeps
         && identity.decisive()

@@ -64,7 +64,7 @@ fn on_constant_forces_methods_fall_into_three_classes() {
     for members in [
         "explicit_euler symplectic_euler_drift_first",
         "symplectic_euler implicit_euler linearized_implicit_predicted linearized_implicit_at_start linearized_implicit_material",
-        "midpoint heun ralston velocity_verlet position_verlet rk4 yoshida4 pefrl implicit_midpoint trapezoidal tr_bdf2",
+        "midpoint heun ralston velocity_verlet position_verlet rk3 ssprk3 rk4 yoshida4 pefrl implicit_midpoint trapezoidal tr_bdf2",
     ] {
         for method in members.split_whitespace() {
             assert_eq!(class(&scene, method), Ok(set(members)), "{method}");
@@ -87,6 +87,7 @@ fn on_linear_forces_some_methods_are_one() {
             "symplectic_euler_drift_first",
             "velocity_verlet",
             "position_verlet",
+            "rk3 ssprk3",
             "rk4",
             "yoshida4",
             "pefrl",
