@@ -132,6 +132,31 @@ impl Solver {
         }
     }
 
+    /// The scheme that its rows follow in this scene, by its id and number of substeps, as identity by replay
+    /// names it; None where that is not known beforehand. rapier's joints follow theirs as far as their sweeps
+    /// have converged.
+    pub fn law(&self, scene: &Scene) -> Option<(&'static str, u32)> {
+        match &self.source {
+            Source::Method(method) if method.pair().is_none() => Some((method.id, 1)),
+            Source::Method(_) | Source::Own(_) | Source::Program(_) => None,
+            // Forces are set once a step and held over its substeps.
+            Source::Forces(_) if self.substeps > 1 => {
+                Some(("forces_held(symplectic_euler)", self.substeps))
+            }
+            Source::Forces(_) => Some(("symplectic_euler", 1)),
+            Source::Joints(_) => {
+                let solves =
+                    !scene.springs.is_empty() || scene.particles.iter().any(|p| p.drag > 0.0);
+                let id = if solves {
+                    "linearized_implicit_material"
+                } else {
+                    "symplectic_euler"
+                };
+                Some((id, self.substeps))
+            }
+        }
+    }
+
     /// The program, if the solver is another program.
     pub fn as_program(&self) -> Option<&dyn Program> {
         match &self.source {

@@ -10,7 +10,7 @@ mod rows;
 
 pub use csv::CsvWriter;
 pub use npz::{NpzWriter, Scratch};
-pub use read::{ErrorPlace, Expected, FreeAxis, Layout, ReadError, free_axis, limits, read};
+pub use read::{ErrorPlace, Expected, FreeAxis, Layout, Plane, ReadError, free_axis, limits, read};
 pub use record::{Recorder, Trajectory, stride};
 pub use rows::{Precision, Rows};
 

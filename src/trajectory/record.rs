@@ -172,6 +172,7 @@ impl Recorder {
                     v: Some(Vec::with_capacity(rows * dim)),
                     precision: Precision::Double,
                     precision_v: Precision::Double,
+                    cut: false,
                 },
                 instants: Vec::with_capacity(instants),
                 work: Vec::with_capacity(instants),
@@ -264,6 +265,7 @@ mod tests {
             x,
             precision: Precision::Double,
             precision_v: Precision::Double,
+            cut: false,
         }
     }
 

@@ -18,6 +18,8 @@ pub struct Rows {
     /// How exactly the velocities were written down, often otherwise; as the positions where there
     /// are none.
     pub precision_v: Precision,
+    /// The last row of the file may have been cut inside its last number, and is not among these.
+    pub cut: bool,
 }
 
 /// How exactly data is given. Rounding to it is the best a replay can be held to.
@@ -25,6 +27,8 @@ pub struct Rows {
 pub enum Precision {
     Double,
     Single,
+    /// Singles, printed with this many digits after the decimal point: small ones are rounded to these.
+    SingleDecimals(u32),
     /// Rounded to this many digits after the decimal point.
     Decimals(u32),
     /// Rounded to this many significant digits.
@@ -41,6 +45,10 @@ impl Precision {
             Self::Double => double,
             Self::Single => {
                 magnitude.max(f64::from(f32::MIN_POSITIVE)) * (0.5 * f64::from(f32::EPSILON))
+            }
+            Self::SingleDecimals(digits) => {
+                let single = Self::Single.half_unit(value);
+                single.max(Self::Decimals(digits).half_unit(value))
             }
             // Text may give more digits than the double has that was written down.
             Self::Decimals(digits) => double.max(0.5 * power_of_ten(-i64::from(digits))),

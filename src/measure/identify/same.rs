@@ -85,6 +85,7 @@ impl<'a> Comparison<'a> {
             v: Some(start.v.clone()),
             precision: Precision::Double,
             precision_v: Precision::Double,
+            cut: false,
         };
         let mut replayer = candidate.replayer(&self.replay.settings);
         let mut state = start.clone();

@@ -37,18 +37,27 @@ impl Form {
     }
 }
 
-/// The precision of states of `width` numbers, one after the other. `written` is the precision that
-/// their form alone tells.
+/// The precision of states of `width` numbers, one after the other, and of singles the precision they
+/// were written to. `written` is the precision that their form alone tells.
 ///
 /// Only numbers that differ from the same one in the state before count, since starts and fixed
 /// particles are often exact. Floats in full need 17 digits (singles 9). Rounded numbers have a
 /// largest number of decimals, or digits, and most of them need just that many.
-pub(super) fn detect(values: &[f64], width: usize, written: Precision) -> Precision {
-    match written {
-        Precision::Decimals(_) => written,
-        Precision::Digits(digits) if digits < FULL => written,
-        _ => Sample::new(values, width, written).precision(),
-    }
+pub(super) fn detect(
+    values: &[f64],
+    width: usize,
+    written: Precision,
+) -> (Precision, Option<Precision>) {
+    let sample = Sample::new(values, width, written);
+    let singles = sample.singles(written);
+    let precision = match (written, singles) {
+        (Precision::Decimals(decimals), Some(_)) => Precision::SingleDecimals(decimals),
+        (Precision::Digits(digits), Some(_)) if digits < FULL => Precision::Single,
+        (Precision::Decimals(_), None) => written,
+        (Precision::Digits(digits), None) if digits < FULL => written,
+        _ => sample.precision(),
+    };
+    (precision, singles)
 }
 
 /// Significant digits that give back any double.
@@ -85,8 +94,8 @@ pub(super) struct Sample {
     values: Vec<f64>,
     /// None where nothing is rounded: all numbers are short binary fractions, or nothing ever changes.
     pub shortest: Vec<Shortest>,
-    /// Whether they are in single precision.
-    pub single: bool,
+    /// The precision they were written to, if they are in single precision.
+    single: Option<Precision>,
 }
 
 /// A sample of this many numbers is enough.
@@ -97,23 +106,65 @@ impl Sample {
         let mut sample = Self {
             values: pick(values, width),
             shortest: Vec::new(),
-            single: written == Precision::Single,
+            single: Some(Precision::Single).filter(|single| written == *single),
         };
-        if !sample.single && sample.values.iter().all(|v| is_short_fraction(*v)) {
+        if sample.single.is_none() && sample.values.iter().all(|v| is_short_fraction(*v)) {
             return sample;
         }
         let mut scratch = String::new();
-        sample.single |= values.iter().all(|v| f64::from(*v as f32) == *v);
-        let shortest = sample.values.iter().map(|v| match sample.single {
+        if sample.values.iter().all(|v| f64::from(*v as f32) == *v) {
+            sample.single = Some(Precision::Single);
+        }
+        let exact = sample.single.is_some();
+        let shortest = sample.values.iter().map(|v| match exact {
             true => Shortest::new(*v as f32, &mut scratch),
             false => Shortest::new(*v, &mut scratch),
         });
         sample.shortest = shortest.collect();
-        // Singles in their own shortest text are no singles once read as doubles.
-        sample.single = sample.single
-            || matches!(sample.longest(), 8 | 9)
-                && (sample.values.iter()).all(|v| is_printed_single(*v, &mut scratch));
+        if exact {
+            return sample;
+        }
+        // Singles in text, once read as doubles, are singles no more. They were printed with the
+        // fewest digits that give them back, or all with the same number.
+        let digits = sample.longest();
+        let all = |text: Precision| sample.printed_from_singles(text).then_some(text);
+        let shortest = matches!(digits, 8 | 9)
+            && (sample.values.iter()).all(|v| is_printed_single(*v, &mut scratch));
+        sample.single = match shortest {
+            true => Some(Precision::Single),
+            false => all(Precision::Digits(digits)),
+        };
         sample
+    }
+
+    /// The precision that singles were written to; None if the numbers are not in single precision.
+    /// Where their form tells how far they are written, it decides alone.
+    pub fn singles(&self, written: Precision) -> Option<Precision> {
+        match written {
+            Precision::Digits(digits) if digits >= FULL => self.single,
+            Precision::Decimals(_) | Precision::Digits(_) => {
+                self.printed_from_singles(written).then_some(written)
+            }
+            _ => self.single,
+        }
+    }
+
+    /// Whether each number is the text of a single, written to this precision, and not by chance.
+    fn printed_from_singles(&self, written: Precision) -> bool {
+        // The logarithm of the chance that other numbers written so look like singles.
+        let mut chance = 0.0;
+        for &value in &self.values {
+            let single = value as f32;
+            let unit = 2.0 * written.half_unit(value);
+            // Reading rounds once more.
+            let slack = 0.5 * unit + Precision::Double.half_unit(value);
+            if (value - f64::from(single)).abs() > slack {
+                return false;
+            }
+            let spacing = f64::from(single.abs().next_up()) - f64::from(single.abs());
+            chance += (unit / spacing).min(1.0).ln();
+        }
+        chance < CHANCE.ln()
     }
 
     pub fn longest(&self) -> u32 {
@@ -128,8 +179,8 @@ impl Sample {
     /// Decimals or digits if the numbers are rounded to them, else the float's own precision.
     fn precision(&self) -> Precision {
         let (full, own) = match self.single {
-            true => (SINGLE, Precision::Single),
-            false => (DOUBLE, Precision::Double),
+            Some(_) => (SINGLE, Precision::Single),
+            None => (DOUBLE, Precision::Double),
         };
         if self.shortest.is_empty() {
             return own;
@@ -160,7 +211,7 @@ impl Sample {
             let magnitude = v.abs();
             magnitude / 10f64.powf(magnitude.log10().floor()) < 4.0
         };
-        if !self.single
+        if self.single.is_none()
             && longest == DOUBLE
             && to_digits >= MOST
             && self.values.iter().filter(open).count() >= 20
@@ -184,6 +235,9 @@ const SINGLE: u32 = 7;
 
 /// Numbers were rounded to a number of decimals, or digits, if at least this fraction needs them all.
 const MOST: f64 = 0.7;
+
+/// Numbers are taken for singles where others would look so less often than this.
+const CHANCE: f64 = 1e-6;
 
 /// Numbers other than 0 that changed since the state before, evenly spread in a fixed irregular
 /// rhythm, so that no coordinate is left out.

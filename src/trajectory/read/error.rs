@@ -55,6 +55,13 @@ fn separated(help: &str) -> String {
 /// The help for a file that ends too early.
 pub(super) const HALF: &str = "half a file? The program that wrote it may have stopped early";
 
+/// The help for data of a plane where no plane was named.
+pub(super) const PLANE: &str =
+    "data of a plane? `compare --axes xy` (or xz, yz) says which axes of the scene it has";
+
+/// The help for three coordinates where a plane was named.
+pub(super) const SPACE: &str = "there are three coordinates: leave --axes out";
+
 /// An error that does not know yet where it happened.
 #[derive(Debug)]
 pub(super) struct Wrong {

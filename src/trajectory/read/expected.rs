@@ -12,6 +12,43 @@ pub struct Expected {
     /// Whether each particle is fixed.
     pub(super) fixed: Vec<bool>,
     pub(super) free_axis: Option<FreeAxis>,
+    /// The plane of two-dimensional data; None where all three coordinates are given.
+    pub(super) plane: Option<Plane>,
+    /// The axes on which anything can move.
+    moves: [bool; 3],
+}
+
+/// The plane that two-dimensional data lies in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Plane {
+    Xy,
+    Xz,
+    Yz,
+}
+
+/// The names of the axes, by their index.
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Plane {
+    pub const ALL: [Self; 3] = [Self::Xy, Self::Xz, Self::Yz];
+
+    /// The names of both axes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Xy => "xy",
+            Self::Xz => "xz",
+            Self::Yz => "yz",
+        }
+    }
+
+    /// The two axes, ascending.
+    pub fn axes(self) -> [usize; 2] {
+        match self {
+            Self::Xy => [0, 1],
+            Self::Xz => [0, 2],
+            Self::Yz => [1, 2],
+        }
+    }
 }
 
 /// The only coordinate that moves, in a scene where one particle moves on one axis.
@@ -37,7 +74,30 @@ impl Expected {
             start: scene.particles.iter().flat_map(|p| p.position).collect(),
             fixed: scene.particles.iter().map(|p| p.fixed).collect(),
             free_axis: free_axis(scene),
+            plane: None,
+            moves: moves(scene),
         }
+    }
+
+    /// Expects data of a plane: two coordinates a particle. The third stays where the scene has it.
+    ///
+    /// # Errors
+    /// The third axis's name, if something in the scene moves particles along it.
+    pub fn in_plane(self, plane: Plane) -> Result<Self, &'static str> {
+        let axes = plane.axes();
+        match (0..3).find(|axis| !axes.contains(axis) && self.moves[*axis]) {
+            Some(axis) => Err(AXES[axis]),
+            None => Ok(Self {
+                plane: Some(plane),
+                ..self
+            }),
+        }
+    }
+
+    /// The axes a file gives of each particle.
+    pub(super) fn axes(&self) -> Vec<usize> {
+        self.plane
+            .map_or(vec![0, 1, 2], |plane| plane.axes().to_vec())
     }
 
     pub(super) fn particles(&self) -> usize {
@@ -60,14 +120,24 @@ impl Expected {
     }
 }
 
-/// The one coordinate that can move: exactly one particle is free, and its velocity, gravity, wind,
-/// its springs and attractions all lie on one coordinate axis. None where nothing moves it at all,
-/// since no axis is then better than another.
+/// The one coordinate that can move: exactly one particle is free, and it [moves] on one axis. None
+/// where nothing moves it at all, since no axis is then better than another.
+///
+/// [moves]: moves
 pub fn free_axis(scene: &Scene) -> Option<FreeAxis> {
     let mut free = (0..).zip(&scene.particles).filter(|(_, p)| !p.fixed);
-    let ((particle, own), None) = (free.next()?, free.next()) else {
+    let ((particle, _), None) = (free.next()?, free.next()) else {
         return None;
     };
+    let moves = moves(scene);
+    let axis = moves.iter().position(|&moves| moves)?;
+    let others = moves.iter().filter(|&&moves| moves).count() - 1;
+    (others == 0).then_some(FreeAxis { particle, axis })
+}
+
+/// The axes on which free particles can move: where their velocities, gravity, wind, or their springs
+/// and attractions have a component.
+fn moves(scene: &Scene) -> [bool; 3] {
     // Effects of strength 0 pull nowhere.
     let springs = scene
         .springs
@@ -77,28 +147,22 @@ pub fn free_axis(scene: &Scene) -> Option<FreeAxis> {
     let pairs = scene.gravitational.iter().filter(|pair| pair.g != 0.0);
     let lines = springs
         .chain(pairs.map(|pair| pair.ends))
-        .filter_map(|[a, b]| match particle {
-            p if p == a => Some(b),
-            p if p == b => Some(a),
-            _ => None,
-        })
-        .map(|other| {
-            let other = scene.particles[other].position;
-            [0, 1, 2].map(|axis| other[axis] - own.position[axis])
-        });
+        .map(|ends| ends.map(|end| &scene.particles[end]))
+        .filter(|ends| ends.iter().any(|end| !end.fixed))
+        .map(|[a, b]| [0, 1, 2].map(|axis| b.position[axis] - a.position[axis]));
     let mut gravity = [0.0; 3];
     gravity[scene.up.index()] = scene.solver.gravity;
     let wind = scene.wind.iter().filter(|wind| wind.strength != 0.0);
-    let mut moved = [false; 3];
+    let velocities = scene.particles.iter().filter(|p| !p.fixed);
+    let mut moves = [false; 3];
     for direction in lines
         .chain(wind.map(|wind| wind.direction))
-        .chain([gravity, own.velocity])
+        .chain(velocities.map(|p| p.velocity))
+        .chain([gravity])
     {
         for axis in 0..3 {
-            moved[axis] |= direction[axis] != 0.0;
+            moves[axis] |= direction[axis] != 0.0;
         }
     }
-    let axis = moved.iter().position(|&moves| moves)?;
-    let others = moved.iter().filter(|&&moves| moves).count() - 1;
-    (others == 0).then_some(FreeAxis { particle, axis })
+    moves
 }

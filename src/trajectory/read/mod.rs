@@ -8,12 +8,18 @@
 //!
 //! Text has a header and one row a particle and instant: `t,id,x,y,z`, and `vx,vy,vz` if wanted, in
 //! any order of columns. Rows of one instant stand together, their ids in any order. Without `id`
-//! rows are about the scene's only free particle. Lines that begin with `#` are comments, but such
-//! a line above the numbers can be the header, as `np.savetxt` writes it.
+//! rows are about the scene's only free particle, or, wide, about all: `t,x0,y0,z0,x1,...`. Lines that
+//! begin with `#` are comments, but such a line above the numbers can be the header, as `np.savetxt`
+//! writes it.
 //!
 //! Arrays are `t` of shape (T), `x` of shape (T, N, 3) and, if wanted, `v` of x's shape, in single
 //! or double precision or whole numbers. An NPY file is `x` alone: its times are n timesteps. With
 //! one free particle `x` may be (T, 3).
+//!
+//! Data of a [`Plane`] has two coordinates of each particle; the third is as the scene has it.
+//!
+//! A text whose last number may be cut loses its last row, which [`Rows::cut`] says. What is cut for
+//! certain is refused.
 //!
 //! Fixed particles may be left out, all of them or none. Where the one free particle moves on one
 //! axis ([`free_axis`]), text may be `t,x[,v]` and arrays (T): the coordinate on that axis, whichever
@@ -30,7 +36,7 @@ mod npz;
 mod times;
 
 pub use error::{ErrorPlace, ReadError};
-pub use expected::{Expected, FreeAxis, free_axis};
+pub use expected::{Expected, FreeAxis, Plane, free_axis};
 
 use super::{Precision, Rows};
 use error::Wrong;
@@ -88,6 +94,8 @@ struct Table {
     x: Numbers,
     /// Velocities, m/s.
     v: Option<Numbers>,
+    /// The last row may be cut and is left out.
+    cut: bool,
 }
 
 /// Whole states, one after the other.
@@ -101,10 +109,16 @@ impl Numbers {
     /// The precision of states of `dim` numbers, and the numbers. Text of singles gives back the
     /// singles it was printed from.
     fn measured(mut self, dim: usize) -> (Precision, Vec<f64>) {
-        let precision = digits::detect(&self.values, dim, self.written);
-        if precision == Precision::Single {
-            for value in &mut self.values {
-                *value = f64::from(*value as f32);
+        let (precision, singles) = digits::detect(&self.values, dim, self.written);
+        for value in &mut self.values {
+            let single = f64::from(*value as f32);
+            // In coarser text several singles look the same.
+            let unique = |text: Precision| match text {
+                Precision::Single => true,
+                _ => 2.0 * text.half_unit(*value) <= Precision::Single.half_unit(*value),
+            };
+            if singles.is_some_and(unique) && single.is_finite() {
+                *value = single;
             }
         }
         (precision, self.values)
@@ -153,5 +167,6 @@ fn rows(bytes: &[u8], layout: Layout, expected: &Expected) -> Result<Rows, ReadE
         v,
         precision,
         precision_v: precision_v.unwrap_or(precision),
+        cut: table.cut,
     })
 }

@@ -1,8 +1,8 @@
 //! Trajectories as NumPy arrays: `t`, `x` and `v` in an archive, or the positions alone.
 
 use super::array::{Header, tuple};
-use super::error::{ErrorPlace, HALF, ReadError, Wrong};
-use super::expected::Expected;
+use super::error::{ErrorPlace, HALF, PLANE, ReadError, SPACE, Wrong};
+use super::expected::{AXES, Expected};
 use super::times::Times;
 use super::{Numbers, Precision, Table};
 use crate::scene::words::{nearest, shorten};
@@ -23,6 +23,11 @@ pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError
             Wrong::new("this is no NPZ archive", EXAMPLE)
         })
     })?;
+    // Of two entries of one name the archive shows one.
+    if entries(bytes).is_some_and(|entries| entries > archive.len()) {
+        let message = "the archive has an array twice";
+        return Err(whole(Wrong::new(message, EXAMPLE)));
+    }
     let known = |name: &str| {
         name.strip_suffix(".npy")
             .is_some_and(|name| NAMES.contains(&name))
@@ -48,7 +53,8 @@ pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError
         if array.sizes[0] != instants {
             let found = array.sizes[0];
             let message = format!("expected the {instants} instants of t, found {found}");
-            return Err(Wrong::new(message, "").at(of(array.name)));
+            let help = "give one row of each array for each instant";
+            return Err(Wrong::new(message, help).at(of(array.name)));
         }
         if array.coordinates != x.coordinates {
             let message = format!(
@@ -56,7 +62,8 @@ pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError
                 tuple(&x.sizes),
                 tuple(&array.sizes)
             );
-            return Err(Wrong::new(message, "").at(of(array.name)));
+            let help = "give the velocities of those particles whose positions are given";
+            return Err(Wrong::new(message, help).at(of(array.name)));
         }
     }
     Ok(Table {
@@ -66,7 +73,15 @@ pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError
         },
         x: x.states(&expected.start),
         v: v.map(|v| v.states(&vec![0.0; 3 * expected.particles()])),
+        cut: false,
     })
+}
+
+/// The number of entries an archive's last record states; None where it has none.
+fn entries(bytes: &[u8]) -> Option<usize> {
+    let end = bytes.windows(4).rposition(|w| w == b"PK\x05\x06")?;
+    let count = bytes.get(end + 10..end + 12)?;
+    Some(usize::from(u16::from_le_bytes(count.try_into().ok()?)))
 }
 
 /// Reads an array of positions; its times are n timesteps.
@@ -83,6 +98,7 @@ pub(super) fn positions(bytes: &[u8], expected: &Expected) -> Result<Table, Read
         },
         x: x.states(&expected.start),
         v: None,
+        cut: false,
     })
 }
 
@@ -108,7 +124,7 @@ impl Array {
         // The shape is read first: it says how much there is to read.
         let coordinates = coordinates(name, &header.shape, expected).map_err(fail)?;
         if header.shape[0] == 0 {
-            let wrong = Wrong::new("expected at least one instant, found none", "");
+            let wrong = Wrong::new("expected at least one instant, found none", HALF);
             return Err(fail(wrong));
         }
         let values = header.numbers(&mut from).map_err(fail)?;
@@ -166,34 +182,52 @@ fn coordinates(name: &str, shape: &[usize], expected: &Expected) -> Result<Vec<u
         };
         return (shape.len() == 1).then(Vec::new).ok_or_else(wrong);
     }
+    let (n, free, axes) = (expected.particles(), expected.free(), expected.axes());
     let of = |particles: &[usize]| -> Vec<usize> {
         let each = particles.iter();
-        each.flat_map(|id| [3 * id, 3 * id + 1, 3 * id + 2])
+        each.flat_map(|id| axes.iter().map(move |axis| 3 * id + axis))
             .collect()
     };
-    let n = expected.particles();
-    let free = expected.free();
+    let all: Vec<usize> = (0..n).collect();
     match (shape, &free[..], expected.free_axis) {
-        (&[_, k, 3], ..) if k == n => Ok((0..3 * n).collect()),
-        (&[_, k, 3], ..) if k == free.len() => Ok(of(&free)),
-        (&[_, 3], [_], _) => Ok(of(&free)),
+        (&[_, k, d], ..) if k == n && d == axes.len() => Ok(of(&all)),
+        (&[_, k, d], ..) if k == free.len() && d == axes.len() => Ok(of(&free)),
+        (&[_, d], [_], _) if d == axes.len() => Ok(of(&free)),
         (&[_], _, Some(free)) => Ok(vec![free.coordinate()]),
         _ => Err(Wrong::new(
-            format!("expected the shape (T, {n}, 3), found {}", tuple(shape)),
-            remedy(name, shape, n),
+            format!(
+                "expected the shape (T, {n}, {}), found {}",
+                axes.len(),
+                tuple(shape)
+            ),
+            remedy(name, shape, expected),
         )),
     }
 }
 
 /// A guess at what the array is, in NumPy's words.
-fn remedy(x: &str, shape: &[usize], n: usize) -> String {
+fn remedy(x: &str, shape: &[usize], expected: &Expected) -> String {
+    let (n, free) = (expected.particles(), expected.free().len());
+    let d = expected.axes().len();
+    // The shape as it would be with this many coordinates.
+    let has = |d: usize| match *shape {
+        [_, k, last] => (k == n || k == free) && last == d,
+        [_, last] => free == 1 && last == d,
+        _ => false,
+    };
     match *shape {
-        [_, k] if k == 3 * n => format!("{x}.reshape(-1, {n}, 3) makes it so"),
-        [a, 3, _] if a == n => format!("{x}.transpose(2, 0, 1) makes it so"),
-        [3, b, _] if b == n => format!("{x}.transpose(2, 1, 0) makes it so"),
-        [a, _, 3] if a == n => format!("{x}.transpose(1, 0, 2) makes it so"),
-        [_, 3, b] if b == n => format!("{x}.transpose(0, 2, 1) makes it so"),
-        _ => format!("instants, then the scene's {n} particles, then x, y, z"),
+        _ if d == 3 && has(2) => PLANE.to_owned(),
+        _ if d == 2 && has(3) => SPACE.to_owned(),
+        [_, k] if k == d * n => format!("{x}.reshape(-1, {n}, {d}) makes it so"),
+        [a, c, _] if a == n && c == d => format!("{x}.transpose(2, 0, 1) makes it so"),
+        [c, b, _] if b == n && c == d => format!("{x}.transpose(2, 1, 0) makes it so"),
+        [a, _, c] if a == n && c == d => format!("{x}.transpose(1, 0, 2) makes it so"),
+        [_, c, b] if b == n && c == d => format!("{x}.transpose(0, 2, 1) makes it so"),
+        _ => {
+            let axes = expected.axes().into_iter().map(|axis| AXES[axis]);
+            let axes = axes.collect::<Vec<_>>().join(", ");
+            format!("instants, then the scene's {n} particles, then {axes}")
+        }
     }
 }
 

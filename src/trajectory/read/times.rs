@@ -51,18 +51,18 @@ enum Rounding {
 
 impl Rounding {
     fn of(times: &Numbers) -> Self {
+        let sample = Sample::new(&times.values, 1, times.written);
         let (decimals, digits) = match times.written {
-            Precision::Decimals(decimals) => (decimals, FULL),
-            Precision::Digits(digits) => (FULL, digits),
-            Precision::Double | Precision::Single => {
-                let sample = Sample::new(&times.values, 1, times.written);
-                match (sample.longest(), sample.decimals()) {
-                    (0, _) => return Self::Sum(f64::EPSILON),
-                    _ if sample.single => return Self::Sum(f64::from(f32::EPSILON)),
-                    (digits, _) if digits >= FULL - 1 => return Self::Sum(f64::EPSILON),
-                    (digits, decimals) => (decimals, digits),
-                }
+            _ if sample.singles(times.written).is_some() => {
+                return Self::Sum(f64::from(f32::EPSILON));
             }
+            Precision::Decimals(decimals) | Precision::SingleDecimals(decimals) => (decimals, FULL),
+            Precision::Digits(digits) => (FULL, digits),
+            Precision::Double | Precision::Single => match (sample.longest(), sample.decimals()) {
+                (0, _) => return Self::Sum(f64::EPSILON),
+                (digits, _) if digits >= FULL - 1 => return Self::Sum(f64::EPSILON),
+                (digits, decimals) => (decimals, digits),
+            },
         };
         Self::Text { decimals, digits }
     }

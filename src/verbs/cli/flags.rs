@@ -1,6 +1,7 @@
 //! Flags that several verbs have: the scene with its duration, `--truth`, lengths of time.
 
 use crate::scene::{self, Scene};
+use crate::trajectory::Plane;
 use crate::truth::Demand;
 use crate::verbs;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -25,6 +26,16 @@ pub fn demand() -> impl TypedValueParser<Value = Demand> {
         "closed" => Demand::Closed,
         "none" => Demand::None,
         _ => Demand::Auto,
+    })
+}
+
+/// The parser of the values of `--axes`.
+pub fn plane() -> impl TypedValueParser<Value = Plane> {
+    let names = Plane::ALL.map(Plane::name);
+    PossibleValuesParser::new(names).map(|name| {
+        let found = Plane::ALL.into_iter().find(|plane| plane.name() == name);
+        // The parser lets no other name pass.
+        found.unwrap_or(Plane::Xy)
     })
 }
 

@@ -6,9 +6,9 @@ use crate::report::json::Tool;
 use crate::scene::Scene;
 use crate::solvers::Solver;
 use crate::solvers::external::{Failure, Program, Recording, Task};
-use crate::trajectory::{self, Expected, Rows, SaveError, limits};
+use crate::trajectory::{self, Expected, Plane, Rows, SaveError, limits};
 use crate::truth::Demand;
-use crate::verbs::cli::flags::{self, demand};
+use crate::verbs::cli::flags::{self, demand, plane};
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::terminal::Terminal;
 use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity};
@@ -24,7 +24,7 @@ use std::sync::Arc;
 #[derive(Debug, clap::Args)]
 #[command(mut_arg("output", |arg| arg.help("Where a report goes. Default: nowhere")))]
 pub struct Args {
-    /// What some program computed: CSV (`t,id,x,y,z[,vx,vy,vz]`), NPZ (`t`, `x`, `v`) or NPY.
+    /// What some program computed: CSV (`t,id,x,y,z[,vx,vy,vz]`, or wide: `t,x0,y0,z0,x1,...`), NPZ (`t`, `x`, `v`) or NPY.
     #[arg(value_name = "FILE")]
     file: PathBuf,
 
@@ -36,6 +36,10 @@ pub struct Args {
     #[arg(long, value_name = "H")]
     timestep: Option<f64>,
 
+    /// The axes that two-dimensional data has. Default: data has all three.
+    #[arg(long, value_parser = plane(), value_name = "AXES")]
+    axes: Option<Plane>,
+
     /// What errors are measured against, as in `run`.
     #[arg(long, default_value = "auto", value_parser = demand(), value_name = "KIND")]
     truth: Demand,
@@ -44,8 +48,8 @@ pub struct Args {
     output: Output,
 }
 
-/// The exit code where no scheme, or more than one, explains the file.
-const UNDECIDED: u8 = 3;
+/// The exit code where no scheme explains the file to rounding.
+const NOT_EXACT: u8 = 3;
 
 /// Runs the verb.
 pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
@@ -56,7 +60,8 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     let name = args.file.display().to_string();
     let bytes = read(&args.file).with_context(|| format!("cannot read {name}"))?;
-    let rows = trajectory::read(&bytes, &name, None, &Expected::new(&scene, timestep))?;
+    let expected = expected(&scene, timestep, args.axes)?;
+    let rows = trajectory::read(&bytes, &name, None, &expected)?;
     drop(bytes);
     // The file determines the duration.
     scene.duration = rows
@@ -79,6 +84,21 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(code(&report)))
 }
 
+/// What the file has to fit.
+fn expected(scene: &Scene, timestep: f64, plane: Option<Plane>) -> anyhow::Result<Expected> {
+    let expected = Expected::new(scene, timestep);
+    let Some(plane) = plane else {
+        return Ok(expected);
+    };
+    expected.in_plane(plane).map_err(|axis| {
+        anyhow::anyhow!(
+            "--axes {}: the scene moves particles along {axis} as well, so data of that plane alone \
+             cannot be of it; gravity acts along the scene's `up`",
+            plane.name()
+        )
+    })
+}
+
 /// Reads the file, up to one byte more than the parser accepts.
 fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
@@ -87,7 +107,8 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The exit code. 0: it follows a scheme throughout; 1: it has a fault; 3: its scheme is undecided.
+/// The exit code. 0: it follows a scheme throughout; 1: it follows a known mistake, or leaves its scheme; 3: no scheme
+/// explains it to rounding.
 fn code(report: &Report) -> u8 {
     if let Body::Compare { fault: Some(_), .. } = report.body {
         return 1;
@@ -97,9 +118,9 @@ fn code(report: &Report) -> u8 {
         .first()
         .and_then(|o| o.identified.as_ref());
     match found.map(|found| found.undecided) {
-        // Schemes that are the same map here cannot be told apart by any data.
-        Some(None | Some(Undecided::SameMap)) => 0,
-        _ => UNDECIDED,
+        None | Some(Some(Undecided::Near)) => NOT_EXACT,
+        // Schemes that no data, or not this data, tells apart.
+        Some(None | Some(Undecided::SameMap | Undecided::DataTooCoarse)) => 0,
     }
 }
 
@@ -136,11 +157,13 @@ fn report(
     };
     let plan = Plan::new(scene, &choice);
     let mut report = plan.execute(session)?;
-    let (identified, fault) = identity::of_rows(&plan, rows);
+    let (found, fault) = identity::of_rows(&plan, rows);
+    let identified = found.identity.and_then(|identity| identity.report());
     if let Body::Run { outcomes } = &mut report.body {
         let mut outcomes = std::mem::take(outcomes);
         for outcome in &mut outcomes {
             outcome.identified.clone_from(&identified);
+            outcome.explained.clone_from(&found.explained);
         }
         report.body = Body::Compare { outcomes, fault };
     }

@@ -31,6 +31,9 @@ pub fn one(
     }
 }
 
+/// The words for rows whose last one is left out.
+const CUT: &str = "no line end follows its last number, which may be cut: its last row is left out";
+
 /// Converts a recording to the record of a run.
 fn record_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
     let Recording { mut rows, seconds } = recording;
@@ -39,6 +42,9 @@ fn record_of(recording: Recording, task: &Task, limits: &Limits) -> Record {
         return Record::none(Status::Failed, wrong);
     }
     let mut remarks: Vec<String> = other_start(&rows, &start).into_iter().collect();
+    if rows.cut {
+        remarks.push(CUT.to_owned());
+    }
     complete(&mut rows, &start, task.steps);
     if rows.v.is_none() {
         remarks.push(
@@ -166,7 +172,10 @@ fn ended_early(rows: &Rows, task: &Task) -> String {
         rows.steps.get(last).copied().unwrap_or(0),
         task.steps
     );
-    if rows
+    if rows.cut {
+        reason += "; ";
+        reason += CUT;
+    } else if rows
         .steps
         .get(last)
         .is_some_and(|step| step + 1 == task.steps)

@@ -16,7 +16,8 @@ pub fn remarks(
     linearised: Option<&Linearised>,
 ) -> Vec<String> {
     let class = outcome.energy.as_ref().and_then(|energy| energy.class);
-    let warning = linearised.and_then(|linearised| step_warning(linearised, case));
+    let calm = outcome.status == Status::Completed && outcome.energy.as_ref().is_some_and(is_calm);
+    let warning = linearised.and_then(|linearised| step_warning(linearised, case, calm));
     let mut remarks = Vec::new();
     match outcome.status {
         Status::Unsupported | Status::Failed => {
@@ -178,14 +179,34 @@ pub fn linearised(plan: &Plan) -> Option<Linearised> {
 /// A relative growth of amplitudes over a whole run below this is invisible in a plot.
 const VISIBLE: f64 = 0.01;
 
+/// The largest error of the energy, in units of S, of a run that is called stable.
+const CALM: f64 = 1.0;
+
+/// Whether a run shows itself stable: its energy neither rises nor is far off.
+fn is_calm(energy: &Energy) -> bool {
+    let keeps = matches!(
+        energy.class,
+        Some(EnergyClass::Bounded | EnergyClass::Dissipating)
+    );
+    keeps && energy.relative_error_max.is_some_and(|error| error <= CALM)
+}
+
 /// The warning that a timestep exceeds the stability limit of its method on this scene; None where it is stable
-/// or the limit is unknown.
-fn step_warning(linearised: &Linearised, case: &Case) -> Option<String> {
+/// or the limit is unknown. Of a `calm` run, which stays stable, it only says where the linearised scene's limit
+/// is.
+fn step_warning(linearised: &Linearised, case: &Case, calm: bool) -> Option<String> {
     let h = case.label.timestep;
     let prediction = linearised.predict(case.solver.as_method()?, h);
     match prediction.limit {
         // Exactly at the limit nothing grows, and a timestep rounded to a few digits may be meant to lie there.
+        Limit::At(limit) if h > limit * (1.0 + 1e-9) && calm => Some(format!(
+            "this run stays stable, though its step is beyond the limit of the scene linearised about its start, \
+             {} s{}",
+            known(limit, prediction.error),
+            reason_in_brackets(&prediction)
+        )),
         Limit::At(limit) if h > limit * (1.0 + 1e-9) => Some(beyond_limit(h, limit, &prediction)),
+        Limit::Never | Limit::Unknown(_) if calm => None,
         Limit::Never => never_stable(h, case.label.end(), &prediction),
         // The scene is too large to know all its modes, but one that grows is enough.
         Limit::Unknown(_) => {
@@ -202,11 +223,13 @@ fn step_warning(linearised: &Linearised, case: &Case) -> Option<String> {
 
 fn beyond_limit(h: f64, limit: f64, prediction: &Prediction) -> String {
     let mode = reason_in_brackets(prediction);
-    let advice = round_below(limit).map_or_else(String::new, |step| format!(": take {step} s"));
+    // What is surely stable.
+    let sure = limit * (1.0 - prediction.error);
+    let advice = round_below(sure).map_or_else(String::new, |step| format!(": take {step} s"));
     format!(
         "h = {} s is beyond its stability limit {} s here{mode}{advice}",
         short(h),
-        short(limit)
+        known(limit, prediction.error)
     )
 }
 
@@ -230,7 +253,13 @@ fn reason_in_brackets(prediction: &Prediction) -> String {
 
 /// A number with four digits, without trailing zeros.
 fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    known(value, 0.0)
+}
+
+/// A number with as many digits as its relative error leaves, two to four, without trailing zeros.
+fn known(value: f64, error: f64) -> String {
+    let digits = (-error.max(1e-4).log10()).floor().clamp(2.0, 4.0) as usize;
+    let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
     if rounded != 0.0 && !(1e-4..1e5).contains(&rounded.abs()) {
         format!("{rounded:e}")
     } else {
@@ -269,5 +298,8 @@ mod tests {
         assert_eq!(short(0.05), "0.05");
         assert_eq!(short(0.028_284_27), "0.02828");
         assert_eq!(short(1.234_6e6), "1.235e6");
+        for (error, digits) in [(0.0, "0.02828"), (5e-4, "0.0283"), (0.2, "0.028")] {
+            assert_eq!(known(0.028_284_27, error), digits, "{error}");
+        }
     }
 }

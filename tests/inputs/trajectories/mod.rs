@@ -3,6 +3,8 @@
 
 mod accepted;
 mod arrays;
+mod cut;
+mod planes;
 mod precision;
 mod refused;
 mod times;

@@ -8,6 +8,16 @@ const SORT: &str = "help: rows of one time stand together, one a particle: sort 
 const HALF: &str = "help: half a file? The program that wrote it may have stopped early";
 const HEADER: &str = "help: write `t,id,x,y,z` or `t,id,x,y,z,vx,vy,vz` above the numbers";
 const COLUMNS: &str = "help: the columns are t, id, x, y, z, vx, vy, vz: remove others";
+const PLANE: &str =
+    "help: data of a plane? `compare --axes xy` (or xz, yz) says which axes of the scene it has";
+const WIDE: &str =
+    "help: write `t,x0,y0,z0,x1,...`, then `vx0,vy0,vz0,...` if wanted, or one particle a line";
+const ONCE: &str = "help: leave one of them out";
+const FIELDS: &str = "help: give every record a field for each column of the header";
+const COLUMN: &str =
+    "help: name every column in the header; numbers have a decimal point, no comma";
+const NUMBER: &str = "help: numbers are as 0.25 or 2.5e-1";
+const EACH: &str = "help: give each particle once at each time";
 const CUT: &str = "help: end the file before the first number that is none";
 const COUNT: &str = "help: particles count from 0, as in the scene";
 const STEP: &str = "help: --timestep tells the step the rows were computed with";
@@ -21,39 +31,49 @@ const TEXTS: &[(&str, &str, &[&str])] = &[
     ("only comments", "# a\n# »b\n", &["expected a header, found nothing", "help: is the file empty, or not yet written?"]),
     ("only a header", "t,id,x,y,»z\n", &["expected rows below the header, found none", HALF]),
     ("no header", "»0,0,0,0,2\n", &["expected a header, found the number 0", HEADER]),
-    ("a comment that is no header", "# t,id,x,y\n»0,0,0,0\n", &["expected a header, found the number 0", HEADER]),
+    ("a comment that is no header", "# by t\n»0,0,0,0\n", &["expected a header, found the number 0", HEADER]),
+    ("a plane in a comment", "»# t,id,x,y\n0,0,0,0\n", &["the header lacks one of `x`, `y`, `z`", PLANE]),
     ("no t", "»id,x,y,z\n", &["the header lacks `t`", HEADER]),
     ("no id", "»t,x,y,z\n", &["the header lacks `id`, and the scene has 2 free particles", HEADER]),
-    ("no z", "»t,id,x,y\n", &["the header lacks one of `x`, `y`, `z`", HEADER]),
+    ("no z", "»t,id,x,y\n", &["the header lacks one of `x`, `y`, `z`", PLANE]),
+    ("no y, no z", "»t,id,y\n", &["the header lacks one of `x`, `y`, `z`", HEADER]),
     ("no vz", "»t,id,x,y,z,vx,vy\n", &["the header lacks one of `vx`, `vy`, `vz`", HEADER]),
     ("v for vx, vy, vz", "t,id,x,y,z,»v\n", &["`v` beside `x`, `y`, `z`", "help: name it vx, vy or vz"]),
     ("x alone", "»t,x\n0,0\n", &["`x` alone is for a scene with one free particle that moves on one axis, without `id`", HEADER]),
-    ("a column twice", "t,id,x,y,z, »x\n", &["the column `x` a second time"]),
+    ("a column twice", "t,id,x,y,z, »x\n", &["the column `x` a second time", ONCE]),
     ("misspelt", "t,id,x,y,z,vx,vy,»v_z\n", &["unknown column `v_z`", "help: did you mean `vz`?"]),
     ("more than is read", "t,id,x,y,z,»energy\n", &["unknown column `energy`", COLUMNS]),
     ("semicolons", "»t;id;x;y;z\n", &["unknown column `t;id;x;y;z`", "help: separate columns by commas"]),
     ("blanks", "»t id x y z\n", &["unknown column `t id x y z`", "help: separate columns by commas"]),
     ("control characters", "»t\u{1b}[2J,id,x,y,z\n", &["unknown column `t\u{fffd}[2j`", COLUMNS]),
+    // Wide headers.
+    ("id in wide text", "t,»id,x1,y1,z1,x2,y2,z2\n", &["`id` beside columns of single particles", WIDE]),
+    ("x beside x1", "t,»x,x1,y1,z1,x2,y2,z2\n", &["a column without a particle beside columns of single particles", WIDE]),
+    ("a free particle missing", "»t,x0,y0,z0,x1,y1,z1\n", &["the header lacks particle 2", WIDE]),
+    ("too many particles", "t,x1,y1,z1,x2,y2,z2,»x3,y3,z3\n", &["expected particles from 0 to 2, found 3", COUNT]),
+    ("no z2", "»t,x1,y1,z1,x2,y2\n", &["the header lacks one of `x2`, `y2`, `z2`", PLANE]),
+    ("velocities of one", "»t,x1,y1,z1,x2,y2,z2,vx1,vy1,vz1\n", &["the header has velocities of some particles only", WIDE]),
     // Fields.
-    ("too few", "t,id,x,y,z\n0,0,0,»0\n0,1,0,0,0\n", &["expected 5 fields, found 4"]),
+    ("too few", "t,id,x,y,z\n0,0,0,»0\n0,1,0,0,0\n", &["expected 5 fields, found 4", FIELDS]),
     ("too few at the end", "t,id,x,y,z\n0,0,0,»0", &["expected 5 fields, found 4", HALF]),
-    ("too many", "t,id,x,y,z\n0,0,0,0,»0,0\n", &["expected 5 fields, found 6"]),
-    ("text", "t,id,x,y,z\n0,0,0, »up,0\n", &["expected a number, found `up`"]),
-    ("empty field", "t,id,x,y,z\n0,0,0,»,0\n", &["expected a number, found nothing"]),
-    ("a Fortran exponent", "t,id,x,y,z\n0,0,»1.0D+00,0,0\n", &["expected a number, found `1.0D+00`"]),
+    ("too many", "t,id,x,y,z\n0,0,0,0,»0,0\n", &["expected 5 fields, found 6", COLUMN]),
+    ("text", "t,id,x,y,z\n0,0,0, »up,0\n", &["expected a number, found `up`", NUMBER]),
+    ("half a number", "t,id,x,y,z\n0,0,0,0,»1.5e-", &["expected a number, found `1.5e-`", HALF]),
+    ("empty field", "t,id,x,y,z\n0,0,0,»,0\n", &["expected a number, found nothing", NUMBER]),
+    ("a Fortran exponent", "t,id,x,y,z\n0,0,»1.0D+00,0,0\n", &["expected a number, found `1.0D+00`", NUMBER]),
     ("NaN", "t,id,x,y,z\n0,0,0,0,»nan\n", &["expected a finite number, found `nan`", CUT]),
     ("infinite", "t,id,x,y,z,vx,vy,vz\n0,0,0,0,0,0,0,»-inf\n", &["expected a finite number, found `-inf`", CUT]),
     ("beyond doubles", "t,id,x,y,z\n0,0,»1e999,0,0\n", &["expected a finite number, found `1e999`", CUT]),
-    ("after an umlaut", "t,id,x,y,z\n0,0,»ä,0,0\n", &["expected a number, found `ä`"]),
+    ("after an umlaut", "t,id,x,y,z\n0,0,»ä,0,0\n", &["expected a number, found `ä`", NUMBER]),
     ("after a byte order mark", "\u{feff}t,id,»w,y,z\n", &["unknown column `w`", COLUMNS]),
-    ("CRLF and blank lines", "t,id,x,y,z\r\n\r\n \r\n0,0,»x,0,0\r\n", &["expected a number, found `x`"]),
-    ("CR", "t,id,x,y,z\r0,0,»x,0,0\r", &["expected a number, found `x`"]),
+    ("CRLF and blank lines", "t,id,x,y,z\r\n\r\n \r\n0,0,»x,0,0\r\n", &["expected a number, found `x`", NUMBER]),
+    ("CR", "t,id,x,y,z\r0,0,»x,0,0\r", &["expected a number, found `x`", NUMBER]),
     // Particles.
     ("unknown", "t,id,x,y,z\n0,»3,0,0,0\n", &["expected a particle from 0 to 2, found `3`", COUNT]),
     ("negative", "t,id,x,y,z\n0,»-1,0,0,0\n", &["expected a particle from 0 to 2, found `-1`", COUNT]),
     ("between two", "t,id,x,y,z\n0,»0.5,0,0,0\n", &["expected a particle from 0 to 2, found `0.5`", COUNT]),
     ("NaN as a particle", "t,id,x,y,z\n0,»nan,0,0,0\n", &["expected a particle from 0 to 2, found `nan`", COUNT]),
-    ("twice", "t,id,x,y,z\n0,0,0,0,0\n0,»0,0,0,0\n", &["particle 0 a second time at t = 0.0"]),
+    ("twice", "t,id,x,y,z\n0,0,0,0,0\n0,»0,0,0,0\n", &["particle 0 a second time at t = 0.0", EACH]),
     ("missing", "t,id,x,y,z\n0,0,0,0,0\n0,1,0,0,0\n»0.25,0,0,0,0\n", &["particle 2 missing at t = 0.0 before the next time begins", SORT]),
     ("sorted by particle", "t,id,x,y,z\n0,0,0,0,0\n»0.25,0,0,0,0\n", &["particle 1 and 1 more missing at t = 0.0 before the next time begins", SORT]),
     ("a fixed one and a free one missing", "t,id,x,y,z\n0,1,0,0,0\n»0.25,1,0,0,0\n", &["particle 2 missing at t = 0.0 before the next time begins", SORT]),
@@ -143,6 +163,8 @@ const NAMES: &str =
 const FLOAT: &str = "help: save x.astype(float)";
 const ORDER: &str = "help: instants, then the scene's 3 particles, then x, y, z";
 const END: &str = "help: end the arrays before the first number that is none";
+const ROWS: &str = "help: give one row of each array for each instant";
+const SAME: &str = "help: give the velocities of those particles whose positions are given";
 const FEWER: &str = "help: keep fewer instants";
 
 #[test]
@@ -201,19 +223,19 @@ fn bad_shapes_are_refused() {
     #[rustfmt::skip]
     judge(vec![
         ("four particles", halves(&[4, 4, 3]), "x: expected the shape (T, 3, 3), found (4, 4, 3)", ORDER),
-        ("in a plane", halves(&[4, 3, 2]), "x: expected the shape (T, 3, 3), found (4, 3, 2)", ORDER),
+        ("in a plane", halves(&[4, 3, 2]), "x: expected the shape (T, 3, 3), found (4, 3, 2)", PLANE),
         ("one particle of three", halves(&[4, 3]), "x: expected the shape (T, 3, 3), found (4, 3)", ORDER),
         ("one number an instant", halves(&[4]), "x: expected the shape (T, 3, 3), found (4,)", ORDER),
         ("a single number", halves(&[]), "x: expected the shape (T, 3, 3), found ()", ORDER),
         ("flat", halves(&[4, 9]), "x: expected the shape (T, 3, 3), found (4, 9)", "help: x.reshape(-1, 3, 3) makes it so"),
         ("particles first", halves(&[3, 7, 3]), "x: expected the shape (T, 3, 3), found (3, 7, 3)", "help: x.transpose(1, 0, 2) makes it so"),
         ("instants last", with("v", &halves(&[3, 3, 7])), "v: expected the shape (T, 3, 3), found (3, 3, 7)", "help: v.transpose(2, 0, 1) makes it so"),
-        ("no instant", halves(&[0, 3, 3]), "x: expected at least one instant, found none", ""),
-        ("no time", with("t", &halves(&[0])), "t: expected at least one instant, found none", ""),
+        ("no instant", halves(&[0, 3, 3]), "x: expected at least one instant, found none", HALF),
+        ("no time", with("t", &halves(&[0])), "t: expected at least one instant, found none", HALF),
         ("times in a column", with("t", &halves(&[3, 1])), "t: expected the shape (T,), found (3, 1)", "help: t.ravel() makes it so"),
-        ("a position too few", with("x", &halves(&[2, 3, 3])), "x: expected the 3 instants of t, found 2", ""),
-        ("a velocity too many", with("v", &halves(&[4, 3, 3])), "v: expected the 3 instants of t, found 4", ""),
-        ("velocities of the free ones", with("v", &halves(&[3, 2, 3])), "v: expected x's shape (3, 3, 3), found (3, 2, 3)", ""),
+        ("a position too few", with("x", &halves(&[2, 3, 3])), "x: expected the 3 instants of t, found 2", ROWS),
+        ("a velocity too many", with("v", &halves(&[4, 3, 3])), "v: expected the 3 instants of t, found 4", ROWS),
+        ("velocities of the free ones", with("v", &halves(&[3, 2, 3])), "v: expected x's shape (3, 3, 3), found (3, 2, 3)", SAME),
     ]);
 }
 
@@ -289,6 +311,6 @@ fn ids_go_with_whole_positions() {
     let error = read("t,x\n0,1\n0,1\n", HANGING).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "mine:3:1: particle 1 a second time at t = 0.0"
+        "mine:3:1: particle 1 a second time at t = 0.0\nhelp: give each particle once at each time"
     );
 }

@@ -2,11 +2,13 @@
 
 use super::{CHAIN, HANGING, archive, doubles, expected, npy};
 use proptest::prelude::*;
-use springcheck::trajectory::{self, ErrorPlace, Layout};
+use springcheck::trajectory::{self, ErrorPlace, Layout, Plane};
 
 fn answers(bytes: &[u8]) {
-    for scene in [HANGING, CHAIN] {
-        let expected = expected(scene);
+    let in_plane = expected(HANGING)
+        .in_plane(Plane::Yz)
+        .expect("it moves on z");
+    for expected in [expected(HANGING), expected(CHAIN), in_plane] {
         for layout in [
             None,
             Some(Layout::Csv),
@@ -48,6 +50,7 @@ fn seeds() -> Vec<Vec<u8>> {
     vec![
         TEXT.as_bytes().to_vec(),
         b"t,x,v\n0,1,0\n0.25,0.9,-0.1\n".to_vec(),
+        b"t,x1,y1,z1,vx1,vy1,vz1\n0,0,0,1,0,0,0\n0.25,0,0,0.9,0,0,-0.1".to_vec(),
         x.clone(),
         v.clone(),
         archive(&[("t.npy", &t), ("x.npy", &x), ("v.npy", &v)]),

@@ -27,6 +27,12 @@ const LEFT_OUT: &[&str] = &[
     "energy.dissipated_j",
     "energy.injected_j",
     "identified.equivalent",
+    "identified.says",
+    "identified.left_out",
+    "explained.scheme",
+    "explained.residual",
+    "explained.largest_at",
+    "explained.deviations",
     "remarks",
 ];
 
@@ -137,8 +143,8 @@ impl Listed for Undecided {
     fn next(self) -> Option<Self> {
         match self {
             Self::SameMap => Some(Self::DataTooCoarse),
-            Self::DataTooCoarse => Some(Self::NothingFits),
-            Self::NothingFits => None,
+            Self::DataTooCoarse => Some(Self::Near),
+            Self::Near => None,
         }
     }
 }

@@ -41,6 +41,9 @@ pub fn rows(scene: &Scene, states: &[State], precision: Precision) -> Rows {
         Precision::Digits(n) => format!("{value:.*e}", n as usize - 1)
             .parse()
             .expect("a number"),
+        Precision::SingleDecimals(n) => format!("{:.*}", n as usize, *value as f32)
+            .parse()
+            .expect("a number"),
         Precision::Decimals(n) => format!("{value:.*}", n as usize).parse().expect("a number"),
     };
     Rows {
@@ -51,6 +54,7 @@ pub fn rows(scene: &Scene, states: &[State], precision: Precision) -> Rows {
         v: Some(states.iter().flat_map(|s| s.v.iter().map(write)).collect()),
         precision,
         precision_v: precision,
+        cut: false,
     }
 }
 
@@ -76,6 +80,7 @@ pub fn question<'a>(scene: &'a Scene, system: &'a ParticleSystem, rows: &'a Rows
         rows,
         settings: Settings::default(),
         transitions: None,
+        budget: u64::MAX,
         hint: None,
     }
 }
