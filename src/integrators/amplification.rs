@@ -1,6 +1,7 @@
 //! The amplification of a mode by one step on linear systems, from a method's coefficients.
 
 use super::{DampingTreatment, Stable, Stage, Tableau};
+use crate::physics::phi1;
 use nalgebra::Complex;
 
 /// The one-step map on x'' = -K x - C v.
@@ -268,18 +269,14 @@ pub(crate) fn bisect(
     low
 }
 
-/// (e^z - 1) / z.
-pub(crate) fn phi1(z: f64) -> f64 {
-    if z == 0.0 { 1.0 } else { z.exp_m1() / z }
-}
-
 impl DampingTreatment {
     /// The two factors of a kick over `step` under damping c: it multiplies the velocity by the first and
     /// the acceleration by the second, and adds the two.
     pub(crate) fn kick(self, step: f64, c: f64) -> (f64, f64) {
         match self {
             Self::Explicit => (1.0 - step * c, step),
-            Self::ExactFlow => ((-step * c).exp(), step * phi1(-step * c)),
+            // On one oscillator a sweep is the exact flow.
+            Self::ExactFlow | Self::Sweeps => ((-step * c).exp(), step * phi1(-step * c)),
         }
     }
 }

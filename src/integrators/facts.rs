@@ -140,6 +140,7 @@ fn of_composition(row: MethodRow, stages: &'static [Stage], damping: DampingTrea
             // Each kick has 1 - h b c for exp(-h b c). The product has order 2 only if the sum of all b² is 0.
             DampingTreatment::Explicit => order.min(1),
             DampingTreatment::ExactFlow => order_of_flows(stages, order),
+            DampingTreatment::Sweeps => order_of_sweeps(stages, order_of_flows(stages, order)),
         },
         symplectic: true,
         reversible: stages.iter().eq(stages.iter().rev()),
@@ -169,7 +170,7 @@ fn evaluations(stages: &[Stage], damping: DampingTreatment) -> u32 {
         .filter(|s| matches!(s, Stage::Kick(_)))
         .count() as u32;
     let same = matches!(stages, [Stage::Kick(_), .., Stage::Kick(_)]);
-    kicks - u32::from(same && damping == DampingTreatment::ExactFlow)
+    kicks - u32::from(same && damping != DampingTreatment::Explicit)
 }
 
 impl Tableau {
@@ -336,6 +337,28 @@ fn order_of_flows(stages: &[Stage], order: u32) -> u32 {
         }
     }
     order
+}
+
+/// The order of a composition that has `flows` with exact flows in its kicks, where these are sweeps.
+///
+/// A kick c with a sweep each way is symmetric: the exact flow but for a term of (c h)³, and higher odd powers.
+/// The sum of all c³ decides on order 3, and a composition that reads the same backwards has no odd order. Half
+/// kicks at both ends, with one sweep each, are of order 2.
+fn order_of_sweeps(stages: &[Stage], flows: u32) -> u32 {
+    let cubes: f64 = (stages.iter())
+        .map(|stage| match stage {
+            Stage::Drift(_) => 0.0,
+            Stage::Kick(part) => part.powi(3),
+        })
+        .sum();
+    let palindrome = stages.iter().eq(stages.iter().rev());
+    if Stage::half_kicks_at_ends(stages) || !is_zero(cubes) {
+        flows.min(2)
+    } else if palindrome {
+        flows.min(4)
+    } else {
+        flows.min(3)
+    }
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ mod splitting;
 mod velocity_flow;
 
 pub use amplification::{Amplification, Rational};
-pub(crate) use amplification::{bisect, map, phi1};
+pub(crate) use amplification::{bisect, map};
 pub use facts::MethodRow;
 pub(crate) use facts::is_exact;
 pub use implicit::{Implicit, ImplicitScheme};

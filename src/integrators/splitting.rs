@@ -2,7 +2,7 @@
 
 use super::velocity_flow::{HALVINGS, VelocityFlow};
 use super::{Coefficients, Integrator, MethodRow, StepError, axpy, fit, refuse};
-use crate::physics::{ForceKinds, State, System};
+use crate::physics::{Dampers, ForceKinds, State, Sweep, System};
 use crate::vector;
 
 /// One factor of the composition; its coefficient multiplies the step.
@@ -49,6 +49,12 @@ impl Stage {
         Drift(W1 / 2.0),
     ];
 
+    /// Whether the only kicks are two alike, the first stage and the last.
+    pub(super) fn half_kicks_at_ends(stages: &[Self]) -> bool {
+        let kicks = stages.iter().filter(|stage| matches!(stage, Kick(_)));
+        matches!(stages, [Kick(first), .., Kick(last)] if first == last) && kicks.count() == 2
+    }
+
     /// Omelyan, Mryglod and Folk's four kicks.
     pub const PEFRL: &'static [Self] = &[
         Drift(XI),
@@ -70,6 +76,12 @@ pub enum DampingTreatment {
     Explicit,
     /// The exact flow of v' = a(x, v) at frozen x, so that the composition keeps its order.
     ExactFlow,
+    /// The exact flow of one damper after the other ([`Sweep`]): one pass over them a sweep, where the exact flow
+    /// of all takes ten. It is that flow where no particle has two dampers. Elsewhere the force acts in the
+    /// middle of two sweeps, there and back, which keeps the composition symmetric.
+    ///
+    /// Systems that cannot be swept are damped by the exact flow.
+    Sweeps,
 }
 
 impl DampingTreatment {
@@ -78,7 +90,7 @@ impl DampingTreatment {
     pub(super) const fn takes(self) -> ForceKinds {
         match self {
             Self::Explicit => ForceKinds::ANY,
-            Self::ExactFlow => ForceKinds::SYMMETRIC,
+            Self::ExactFlow | Self::Sweeps => ForceKinds::SYMMETRIC,
         }
     }
 }
@@ -108,7 +120,7 @@ pub(super) const SYMPLECTIC_EULER_DRIFT_FIRST: MethodRow = MethodRow {
 pub(super) const VELOCITY_VERLET: MethodRow = MethodRow {
     id: "velocity_verlet",
     name: "velocity Verlet",
-    coefficients: Coefficients::Composition(Stage::VERLET, DampingTreatment::ExactFlow),
+    coefficients: Coefficients::Composition(Stage::VERLET, DampingTreatment::Sweeps),
     energy: Some("[1 - z²/4, 1]"),
     source: "Swope et al. 1982; Hairer, Lubich, Wanner, Acta Numerica 2003 (Störmer-Verlet)",
     not: "position_verlet (drift, kick, drift), or Verlet with a predicted velocity in the damper",
@@ -117,7 +129,7 @@ pub(super) const VELOCITY_VERLET: MethodRow = MethodRow {
 pub(super) const POSITION_VERLET: MethodRow = MethodRow {
     id: "position_verlet",
     name: "position Verlet",
-    coefficients: Coefficients::Composition(Stage::POSITION_VERLET, DampingTreatment::ExactFlow),
+    coefficients: Coefficients::Composition(Stage::POSITION_VERLET, DampingTreatment::Sweeps),
     energy: Some("[1, 1/(1 - z²/4)]"),
     source: "Verlet 1967; Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4",
     not: "velocity_verlet, which kicks first and last",
@@ -126,7 +138,7 @@ pub(super) const POSITION_VERLET: MethodRow = MethodRow {
 pub(super) const YOSHIDA4: MethodRow = MethodRow {
     id: "yoshida4",
     name: "Yoshida / Forest-Ruth",
-    coefficients: Coefficients::Composition(Stage::YOSHIDA4, DampingTreatment::ExactFlow),
+    coefficients: Coefficients::Composition(Stage::YOSHIDA4, DampingTreatment::Sweeps),
     energy: None,
     source: "Forest & Ruth 1990, Physica D 43; Yoshida 1990, Phys. Lett. A 150",
     not: "Yoshida's sixth- and eighth-order methods",
@@ -149,6 +161,8 @@ pub struct Splitting {
     flow: VelocityFlow,
     kept: Kept,
     zero: Vec<f64>,
+    /// Scratch: ∫ v over a kick.
+    moved: Vec<f64>,
     /// The state at the step's start, kept where a flow in the step may fail.
     saved: Option<State>,
 }
@@ -171,6 +185,7 @@ impl Splitting {
             flow: VelocityFlow::default(),
             kept: Kept::default(),
             zero: Vec::new(),
+            moved: Vec::new(),
             saved: None,
         }
     }
@@ -204,6 +219,49 @@ impl Splitting {
         h: f64,
         state: &mut State,
     ) -> Result<(), StepError> {
+        self.evaluate(system, t, h, state);
+        if system.kinds().depends_on_velocity() {
+            return self
+                .flow
+                .advance(system, t, h, &self.kept.a, state, HALVINGS);
+        }
+        self.push(system, t, h, state);
+        Ok(())
+    }
+
+    /// Applies the dampers one after the other, and the force at rest; of several dampers at a particle, the `first`
+    /// kick of a step sweeps before the force, the `last` one back after it, and any other both ways in its middle.
+    fn kick_by_sweeps(
+        &mut self,
+        system: &dyn System,
+        t: f64,
+        h: f64,
+        [first, last]: [bool; 2],
+        state: &mut State,
+    ) {
+        if system.dampers() == Dampers::Apart {
+            self.evaluate(system, t, h, state);
+            self.kick_apart(system, t, h, state);
+        } else if first {
+            sweep(system, h, false, state);
+            self.evaluate(system, t, h, state);
+            self.push(system, t, h, state);
+        } else if last {
+            self.evaluate(system, t, h, state);
+            self.push(system, t, h, state);
+            sweep(system, h, true, state);
+        } else {
+            let half = 0.5 * h;
+            self.evaluate(system, t, h, state);
+            self.push(system, t, half, state);
+            sweep(system, half, true, state);
+            sweep(system, half, false, state);
+            self.push(system, t, half, state);
+        }
+    }
+
+    /// Evaluates the acceleration at rest, unless the kept one fits.
+    fn evaluate(&mut self, system: &dyn System, t: f64, h: f64, state: &State) {
         let n = state.x.len();
         fit(&mut self.zero, n);
         fit(&mut self.kept.a, n);
@@ -217,10 +275,11 @@ impl Splitting {
             self.kept.t = t;
             self.kept.valid = true;
         }
-        if system.kinds().depends_on_velocity() {
-            self.flow
-                .advance(system, t, h, &self.kept.a, state, HALVINGS)?;
-        } else if system.kinds().has(ForceKinds::DRIVEN) {
+    }
+
+    /// v += h a with the acceleration at rest, and the work of driven forces.
+    fn push(&self, system: &dyn System, t: f64, h: f64, state: &mut State) {
+        if system.kinds().has(ForceKinds::DRIVEN) {
             // The power is linear in v, and v is linear in time: the trapezoid is exact.
             let before = system.injected_power(t, &state.x, &state.v);
             axpy(&mut state.v, h, &self.kept.a);
@@ -229,17 +288,49 @@ impl Splitting {
         } else {
             axpy(&mut state.v, h, &self.kept.a);
         }
-        Ok(())
     }
+
+    /// The exact flow of the acceleration at rest and of dampers that share no particle.
+    fn kick_apart(&mut self, system: &dyn System, t: f64, h: f64, state: &mut State) {
+        let a = &self.kept.a;
+        let driven = system.kinds().has(ForceKinds::DRIVEN);
+        if driven {
+            fit(&mut self.moved, a.len());
+            for ((moved, v), a) in self.moved.iter_mut().zip(&state.v).zip(a) {
+                *moved = h * (v + 0.5 * h * a);
+            }
+        }
+        axpy(&mut state.v, h, a);
+        let moved = driven.then_some(&mut self.moved[..]);
+        let mut sweep = Sweep::new(system, &state.x, &mut state.v, h).with(a, moved);
+        system.sweep(&mut sweep);
+        state.work.dissipated += sweep.dissipated();
+        if driven {
+            state.work.injected += system.injected_power(t, &state.x, &self.moved);
+        }
+    }
+}
+
+/// Applies the dampers alone, one after the other, over h.
+fn sweep(system: &dyn System, h: f64, backward: bool, state: &mut State) {
+    let mut sweep = Sweep::new(system, &state.x, &mut state.v, h);
+    sweep.backward = backward;
+    system.sweep(&mut sweep);
+    state.work.dissipated += sweep.dissipated();
 }
 
 impl Integrator for Splitting {
     fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
         refuse(self, system)?;
-        if self.damping == DampingTreatment::Explicit || !system.kinds().depends_on_velocity() {
+        let whole = match self.damping {
+            DampingTreatment::Explicit => false,
+            DampingTreatment::ExactFlow => true,
+            DampingTreatment::Sweeps => system.dampers() == Dampers::Whole,
+        };
+        if !(whole && system.kinds().depends_on_velocity()) {
             return self.compose(system, h, state);
         }
-        // Only a damping flow can fail, after part of the step is done.
+        // Only the flow of all dampers can fail, after part of the step is done.
         let mut saved = self.saved.take().unwrap_or_else(|| state.clone());
         saved.clone_from(state);
         let done = self.compose(system, h, state);
@@ -260,7 +351,11 @@ impl Splitting {
         let start = state.t;
         let mut drifted = 0.0;
         let mut stages = self.stages;
+        let damped = system.kinds().depends_on_velocity();
+        let swept = damped && system.dampers() != Dampers::Whole;
+        let halves = Stage::half_kicks_at_ends(stages);
         while let [stage, rest @ ..] = stages {
+            let before = self.stages.len() - stages.len();
             stages = rest;
             match *stage {
                 Drift(c) => {
@@ -280,7 +375,11 @@ impl Splitting {
                             }
                             self.kick_explicitly(system, t, c * h, drift, state);
                         }
-                        DampingTreatment::ExactFlow => {
+                        DampingTreatment::Sweeps if swept => {
+                            let ends = [before == 0, rest.is_empty()].map(|end| halves && end);
+                            self.kick_by_sweeps(system, t, c * h, ends, state);
+                        }
+                        DampingTreatment::ExactFlow | DampingTreatment::Sweeps => {
                             self.kick_exactly(system, t, c * h, state)?;
                         }
                     }

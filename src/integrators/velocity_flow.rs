@@ -9,9 +9,9 @@
 //! Where only damping acts, a0 = 0, and h G is large, v(h) = e^(hG) v is computed directly. The sum
 //! v + h φ1 r has an error of a last bit of v, which a later substep backward would amplify.
 
-use super::{StepError, axpy, fit, largest, phi1, worst_particle};
+use super::{StepError, axpy, fit, largest, worst_particle};
 use crate::krylov::Space;
-use crate::physics::{ForceKinds, State, System};
+use crate::physics::{ForceKinds, State, System, phi1, phi2};
 use nalgebra::{DMatrix, Dyn, SymmetricEigen};
 
 /// The number of Taylor terms before Lanczos takes over.
@@ -243,17 +243,6 @@ fn mass_root(inverse_mass: &[f64]) -> f64 {
     }
 }
 
-/// (e^z - 1 - z) / z².
-fn phi2(z: f64) -> f64 {
-    if z.abs() > 0.5 {
-        return (z.exp_m1() - z) / z / z;
-    }
-    // The closed form cancels here; 16 terms of 1/2 + z/6 + z²/24 + ... reach rounding.
-    (2..18)
-        .rev()
-        .fold(0.0, |sum, k| (sum * z + 1.0) / f64::from(k))
-}
-
 /// The norm of u in the mass metric, also where its square would overflow or underflow.
 fn length(u: &[f64], inverse_mass: &[f64]) -> f64 {
     let plain = weighted_dot(u, u, inverse_mass).sqrt();
@@ -273,19 +262,4 @@ fn weighted_dot(u: &[f64], w: &[f64], inverse_mass: &[f64]) -> f64 {
         .filter(|(_, inverse)| **inverse > 0.0)
         .map(|((u, w), inverse)| u * w / inverse)
         .sum()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn phi2_is_continuous_where_the_series_takes_over() {
-        // Both sides of |z| = 1/2 agree to the closed form's cancellation, about 8 eps.
-        for z in [0.5_f64, -0.5] {
-            let closed = (z.exp_m1() - z) / z / z;
-            assert!((phi2(z) - closed).abs() < 2e-15, "{z}");
-        }
-        assert_eq!(phi2(0.0), 0.5);
-    }
 }

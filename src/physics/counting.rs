@@ -1,6 +1,6 @@
 //! Counts an integrator's force evaluations, independently of the integrator and the system.
 
-use super::{ForceKinds, Jacobian, Linearization, Power, System};
+use super::{Dampers, ForceKinds, Jacobian, Linearization, Power, Sweep, System};
 use std::cell::Cell;
 
 /// Evaluations of the forces so far.
@@ -8,7 +8,7 @@ use std::cell::Cell;
 pub struct Evaluations {
     /// Full force evaluations.
     pub forces: u64,
-    /// Products with the damping matrix: passes over the velocity-dependent effects alone.
+    /// Products with the damping matrix, and sweeps: passes over the velocity-dependent effects alone.
     pub damping: u64,
 }
 
@@ -55,6 +55,15 @@ impl<S: System> System for Counting<S> {
         counted.damping += 1;
         self.counted.set(counted);
         self.inner.damping(t, x, w, a);
+    }
+    fn dampers(&self) -> Dampers {
+        self.inner.dampers()
+    }
+    fn sweep(&self, sweep: &mut Sweep) {
+        let mut counted = self.counted.get();
+        counted.damping += 1;
+        self.counted.set(counted);
+        self.inner.sweep(sweep);
     }
     fn injected_power(&self, t: f64, x: &[f64], v: &[f64]) -> f64 {
         self.inner.injected_power(t, x, v)

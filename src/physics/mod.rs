@@ -8,6 +8,7 @@ mod jacobian;
 mod kinds;
 mod particles;
 mod state;
+mod sweep;
 
 pub use counting::{Counting, Evaluations};
 pub(crate) use jacobian::PairBlock;
@@ -15,6 +16,8 @@ pub use jacobian::{Derivative, Jacobian, Linearization, Triplets};
 pub use kinds::{ForceKinds, Refused};
 pub use particles::{Effects, ParticleSystem};
 pub use state::{Power, State, Work};
+pub use sweep::{Dampers, Sweep};
+pub(crate) use sweep::{phi1, phi2};
 
 /// A second-order mechanical system M x'' = f(t, x, v) over `dim` coordinates.
 ///
@@ -62,6 +65,15 @@ pub trait System {
     fn damping(&self, _t: f64, _x: &[f64], _w: &[f64], a: &mut [f64]) {
         a.fill(0.0);
     }
+
+    /// How its dampers can be applied.
+    fn dampers(&self) -> Dampers {
+        Dampers::Whole
+    }
+
+    /// Advances the sweep's velocities by the flow of one damper after the other, in an order that is always the
+    /// same, or its reverse. Only called where they can be applied so ([`dampers`](Self::dampers)).
+    fn sweep(&self, _sweep: &mut Sweep) {}
 
     /// Power at velocity `v`, W, of forces that have no potential, other than damping. It is linear in `v`,
     /// so for a displacement it gives the work, J. Only called for [`ForceKinds::DRIVEN`].

@@ -1,6 +1,6 @@
 //! The system a scene describes: particles and the effects that act on them.
 
-use super::{ForceKinds, Jacobian, Linearization, Power, Refused, State, System};
+use super::{Dampers, ForceKinds, Jacobian, Linearization, Power, Refused, State, Sweep, System};
 use crate::physics::effects::{self, Effect, EffectRow, Scaled};
 use crate::scene::Scene;
 use crate::vector;
@@ -15,6 +15,7 @@ pub struct ParticleSystem {
     inverse_mass: Arc<[f64]>,
     effects: Arc<Effects>,
     kinds: ForceKinds,
+    dampers: Dampers,
 }
 
 impl ParticleSystem {
@@ -49,6 +50,7 @@ impl ParticleSystem {
     pub fn of(inverse_mass: Vec<f64>, effects: Effects) -> Self {
         Self {
             kinds: ForceKinds::union(effects.iter().map(|(_, effect)| effect.kinds())),
+            dampers: dampers(&inverse_mass, &effects),
             inverse_mass: inverse_mass.into(),
             effects: Arc::new(effects),
         }
@@ -117,6 +119,21 @@ impl ParticleSystem {
     }
 }
 
+/// How the dampers of these effects can be applied.
+fn dampers(inverse_mass: &[f64], effects: &Effects) -> Dampers {
+    let mut at = vec![0; inverse_mass.len() / 3];
+    let damped = |(_, effect): &&(_, Box<dyn Effect>)| effect.kinds().depends_on_velocity();
+    if !(effects.iter().filter(damped)).all(|(_, effect)| effect.count_dampers(&mut at)) {
+        return Dampers::Whole;
+    }
+    let mut free = at.iter().zip(inverse_mass.iter().step_by(3));
+    if free.any(|(count, w)| *count > 1 && *w > 0.0) {
+        Dampers::Shared
+    } else {
+        Dampers::Apart
+    }
+}
+
 impl System for ParticleSystem {
     fn inverse_mass(&self) -> &[f64] {
         &self.inverse_mass
@@ -148,6 +165,20 @@ impl System for ParticleSystem {
             }
         }
         vector::multiply(a, &self.inverse_mass);
+    }
+
+    fn dampers(&self) -> Dampers {
+        self.dampers
+    }
+
+    fn sweep(&self, sweep: &mut Sweep) {
+        let damped = |(_, effect): &&(_, Box<dyn Effect>)| effect.kinds().depends_on_velocity();
+        let effects = self.effects.iter().filter(damped);
+        if sweep.backward {
+            effects.rev().for_each(|(_, effect)| effect.sweep(sweep));
+        } else {
+            effects.for_each(|(_, effect)| effect.sweep(sweep));
+        }
     }
 
     fn injected_power(&self, t: f64, _x: &[f64], v: &[f64]) -> f64 {

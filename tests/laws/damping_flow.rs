@@ -5,7 +5,7 @@ use crate::testkit::scenes::{free, spring};
 use crate::testkit::{Build, Random, advance, built, method, own, swinging_triangle};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use springcheck::integrators::{DampingTreatment, Integrator, Splitting, Stage};
-use springcheck::physics::{Counting, State, System};
+use springcheck::physics::{Counting, Dampers, State, System};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
 use springcheck::solvers::Solver;
 use springcheck::verbs::run::{Choice, Plan};
@@ -175,8 +175,158 @@ fn half_kicks_law(scene: &Scene, build: Build) -> Result<(), String> {
 fn verlet_is_made_of_these_kicks() {
     for model in MODELS {
         let scene = chain(50.0, model);
-        half_kicks_law(&scene, &own(method("velocity_verlet"))).unwrap();
+        let flows = || Box::new(Splitting::new(Stage::VERLET, DampingTreatment::ExactFlow)) as _;
+        half_kicks_law(&scene, &flows).unwrap();
         assert!(half_kicks_law(&scene, &own(method("symplectic_euler"))).is_err());
+    }
+}
+
+/// The exact flow of each damper alone over h, in this order, written out.
+fn sweep(scene: &Scene, order: &mut dyn Iterator<Item = usize>, h: f64, state: &mut State) {
+    for s in order {
+        let Spring { ends, damping, .. } = scene.springs[s];
+        let w = ends.map(|end| 1.0 / scene.particles[end].mass);
+        let w = [0, 1].map(|k| {
+            if scene.particles[ends[k]].fixed {
+                0.0
+            } else {
+                w[k]
+            }
+        });
+        let kept = (-damping * (w[0] + w[1]) * h).exp();
+        let between = |of: &[f64]| [0, 1, 2].map(|k| of[3 * ends[1] + k] - of[3 * ends[0] + k]);
+        let (d, u) = (between(&state.x), between(&state.v));
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        for axis in 0..3 {
+            let part = match scene.damping_model {
+                DampingModel::Axial => dot(u, d) / dot(d, d) * d[axis],
+                DampingModel::Isotropic => u[axis],
+            };
+            let lost = (1.0 - kept) * part / (w[0] + w[1]);
+            state.v[3 * ends[0] + axis] += w[0] * lost;
+            state.v[3 * ends[1] + axis] -= w[1] * lost;
+        }
+    }
+}
+
+/// Velocity Verlet on a network: sweep and push, drift, push and sweep back, each written out.
+fn swept_law(scene: &Scene, build: Build) -> Result<(), String> {
+    let (system, start) = built(scene);
+    let mut by_hand = start.clone();
+    let push = |state: &mut State| {
+        let (rest, mut a) = (vec![0.0; system.dim()], vec![0.0; system.dim()]);
+        system.acceleration(0.0, &state.x, &rest, &mut a);
+        for (v, a) in state.v.iter_mut().zip(a) {
+            *v += 0.5 * H * a;
+        }
+    };
+    let springs = scene.springs.len();
+    sweep(scene, &mut (0..springs), 0.5 * H, &mut by_hand);
+    push(&mut by_hand);
+    for (x, v) in by_hand.x.iter_mut().zip(&by_hand.v) {
+        *x += H * v;
+    }
+    push(&mut by_hand);
+    sweep(scene, &mut (0..springs).rev(), 0.5 * H, &mut by_hand);
+    let mut state = start;
+    advance(build().as_mut(), &system, H, 1, &mut state);
+    let off = crate::testkit::distance(&by_hand.v, &state.v);
+    // Each particle's velocity, at most 3 m/s, is changed some ten times by 60 dampers: half a last bit each.
+    if off < 1e-14 {
+        Ok(())
+    } else {
+        Err(format!("off by {off:.1e}"))
+    }
+}
+
+#[test]
+fn verlet_sweeps_there_and_back() {
+    for model in MODELS {
+        let scene = chain(5.0, model);
+        swept_law(&scene, &own(method("velocity_verlet"))).unwrap();
+        // Not all dampers together, nor the other order of pushes and drifts.
+        let flows = || Box::new(Splitting::new(Stage::VERLET, DampingTreatment::ExactFlow)) as _;
+        assert!(swept_law(&scene, &flows).is_err());
+        assert!(swept_law(&scene, &own(method("position_verlet"))).is_err());
+    }
+}
+
+/// A symmetric step: -h takes back what h did, dampers and all.
+fn symmetry_law(scene: &Scene, build: Build) -> Result<(), String> {
+    let (system, start) = built(scene);
+    let mut state = start.clone();
+    advance(build().as_mut(), &system, H, 1, &mut state);
+    advance(build().as_mut(), &system, -H, 1, &mut state);
+    let off = crate::testkit::distance(&start.v, &state.v)
+        .max(crate::testkit::distance(&start.x, &state.x));
+    // Going back multiplies roundings by e^(h |G|), at most e^1.7 a kick.
+    if off < 1e-13 {
+        Ok(())
+    } else {
+        Err(format!("off by {off:.1e}"))
+    }
+}
+
+#[test]
+fn swept_steps_are_symmetric() {
+    for model in MODELS {
+        let scene = chain(5.0, model);
+        for id in ["velocity_verlet", "position_verlet", "yoshida4"] {
+            symmetry_law(&scene, &own(method(id))).unwrap();
+        }
+        let textbook = || Box::new(Splitting::new(Stage::VERLET, DampingTreatment::Explicit)) as _;
+        assert!(symmetry_law(&scene, &textbook).is_err());
+        assert!(symmetry_law(&scene, &own(method("symplectic_euler"))).is_err());
+    }
+}
+
+/// Every other link with a damper, and drag on none of their ends: no particle has two dampers, and the sweep with
+/// the forces is the exact flow, its work included.
+#[test]
+fn dampers_that_share_no_particle_are_swept_exactly() {
+    for (damping, _, tolerance) in CASES {
+        for model in MODELS {
+            let mut scene = chain(damping, model);
+            for (at, spring) in scene.springs.iter_mut().enumerate() {
+                if at % 3 != 0 {
+                    spring.damping = 0.0;
+                }
+            }
+            scene.particles[2].drag = damping;
+            let system = built(&scene).0;
+            assert_eq!(system.dampers(), Dampers::Apart);
+            flow_law(&scene, tolerance, &kick(DampingTreatment::Sweeps)).unwrap();
+            scene.springs[1].damping = damping;
+            assert_eq!(built(&scene).0.dampers(), Dampers::Shared);
+            assert!(flow_law(&scene, tolerance, &kick(DampingTreatment::Sweeps)).is_err());
+        }
+    }
+}
+
+/// One pass over the forces and two over the dampers a Verlet step, three times that for Yoshida's three.
+#[test]
+fn a_verlet_step_takes_three_passes() {
+    let steps = 10;
+    for model in MODELS {
+        for (id, forces) in [
+            ("velocity_verlet", 1),
+            ("position_verlet", 1),
+            ("yoshida4", 3),
+        ] {
+            let (inner, mut state) = built(&chain(50.0, model));
+            let system = Counting::new(inner);
+            let mut integrator = method(id).build(&Default::default());
+            advance(integrator.as_mut(), &system, H, 1, &mut state);
+            let first = system.evaluations();
+            advance(integrator.as_mut(), &system, H, steps, &mut state);
+            let all = system.evaluations();
+            assert_eq!(all.forces - first.forces, forces * steps as u64, "{id}");
+            assert_eq!(
+                all.damping - first.damping,
+                2 * forces * steps as u64,
+                "{id}"
+            );
+        }
     }
 }
 

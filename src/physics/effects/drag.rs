@@ -1,7 +1,7 @@
 //! Linear drag against still air.
 
 use super::{Effect, EffectRow, boxed};
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
 use crate::scene::Scene;
 
 pub(super) const ROW: EffectRow = EffectRow {
@@ -65,6 +65,20 @@ impl Effect for Drag {
 
     fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
         self.add_force(0.0, x, w, f);
+    }
+
+    fn count_dampers(&self, at: &mut [u32]) -> bool {
+        for (i, _) in &self.coefficients {
+            at[*i] += 1;
+        }
+        true
+    }
+
+    fn sweep(&self, sweep: &mut Sweep) {
+        // One particle's drag leaves the others alone: the order does not matter.
+        for &(i, b) in &self.coefficients {
+            sweep.on(i, b);
+        }
     }
 
     fn add_jacobian(

@@ -19,7 +19,7 @@ pub use scaled::Scaled;
 pub use springs::Springs;
 pub use wind::WindForce;
 
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
 use crate::scene::Scene;
 
 /// A force on particles. It is computed for all its members at once, in flat vectors of length 3n.
@@ -56,6 +56,15 @@ pub trait Effect: Send + Sync {
 
     /// *Adds* the velocity-dependent part of its force at velocity `w`, N, to `f`.
     fn add_damping(&self, _x: &[f64], _w: &[f64], _f: &mut [f64]) {}
+
+    /// *Adds* the number of its dampers at each particle; false where [`sweep`](Self::sweep) does not apply them.
+    fn count_dampers(&self, _at: &mut [u32]) -> bool {
+        false
+    }
+
+    /// Applies its dampers one after the other, or in the reverse order. An effect that has some and does not
+    /// count them is damped as a whole, by [`add_damping`](Self::add_damping).
+    fn sweep(&self, _sweep: &mut Sweep) {}
 
     /// The power of a [driven](ForceKinds::DRIVEN) force at velocity `v`, W.
     fn injected_power(&self, _t: f64, _v: &[f64]) -> f64 {

@@ -1,7 +1,7 @@
 //! An effect with all its forces multiplied by a factor: physics that is wrong on purpose.
 
 use super::Effect;
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
+use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
 
 /// `factor` times another effect: -1 flips its sign, 2 applies it twice.
 ///
@@ -63,6 +63,14 @@ impl Effect for Scaled {
 
     fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
         self.scaled(f, |own| self.effect.add_damping(x, w, own));
+    }
+
+    fn count_dampers(&self, at: &mut [u32]) -> bool {
+        self.effect.count_dampers(at)
+    }
+
+    fn sweep(&self, sweep: &mut Sweep) {
+        sweep.scaled(self.factor, |sweep| self.effect.sweep(sweep));
     }
 
     fn injected_power(&self, t: f64, v: &[f64]) -> f64 {

@@ -191,7 +191,7 @@ pub(super) fn yoshida4_swapped_coefficients(
 ) -> Stepped {
     const W1: f64 = 1.351_207_191_959_657_8;
     for w in [1.0 - 2.0 * W1, W1, W1] {
-        splitting(DRIFT_FIRST, DampingTreatment::ExactFlow, system, w * h, s)?;
+        splitting(DRIFT_FIRST, DampingTreatment::Sweeps, system, w * h, s)?;
     }
     Ok(())
 }

@@ -47,8 +47,8 @@ impl Definite {
         let changes = neighbours.filter(|(one, next)| is_kick(one) != is_kick(next));
         match damping {
             DampingTreatment::Explicit if kicks == 1 => Some(Self::Explicit),
-            DampingTreatment::ExactFlow if changes.count() == 2 => Some(Self::ExactFlow),
-            _ => None,
+            DampingTreatment::Explicit => None,
+            _ => (changes.count() == 2).then_some(Self::ExactFlow),
         }
     }
 

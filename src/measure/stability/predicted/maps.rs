@@ -2,6 +2,7 @@
 //! a definite matrix.
 
 use super::definite::Definite;
+use super::parts::{Matrix, Part};
 use super::prediction::Prediction;
 use super::regions::stiffest_binds;
 use super::spectrum::{Coverage, Mode, Spectrum};
@@ -106,7 +107,7 @@ impl Pair {
             _ if mode.stiffness != 0.0 => (a + d, a * d - b * c),
             DampingTreatment::Explicit => (d, 0.0),
             // Flows of damping alone merge into one: their product overflows where kicks go backward.
-            DampingTreatment::ExactFlow => ((-h * mode.damping).exp(), 0.0),
+            _ => ((-h * mode.damping).exp(), 0.0),
         };
         Self {
             half_trace: 0.5 * trace,
@@ -175,4 +176,25 @@ fn coupled(
         }
     };
     found.growing(map.and_then(|map| map.growth(amplification, h)), h)
+}
+
+/// The prediction where a composition sweeps over dampers that share particles.
+///
+/// Verlet's step is S* V S, with V the undamped step over the forces and S a sweep, which shrinks v in the metric of
+/// the masses. Below V's limit it conserves v² + xᵀ (K - h² K²/4) x, a definite form in which only v is shrunk. An
+/// eigenvalue -1 needs S* S v = -v, so v = 0 and h² K x = 4 x: dampers never move the limit.
+pub(super) fn swept(amplification: Amplification, of: &Spectrum, effort: &Effort) -> Prediction {
+    let part = &of.part;
+    let undamped = Part {
+        damping: Matrix::new(part.n(), []),
+        ..part.clone()
+    };
+    let kind = Definite::of(amplification).filter(|_| part.symmetric);
+    kind.and_then(|kind| kind.limit(&undamped, effort))
+        .unwrap_or_else(|| {
+            Prediction::unknown(
+                "dampers that share particles act one after the other, and this method's map of them is not \
+                 worked out",
+            )
+        })
 }

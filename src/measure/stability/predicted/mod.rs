@@ -12,8 +12,8 @@ mod spectrum;
 mod stepmap;
 
 use super::Limit;
-use crate::integrators::{Amplification, Method};
-use crate::physics::{State, System};
+use crate::integrators::{Amplification, DampingTreatment, Method};
+use crate::physics::{Dampers, State, System};
 use crate::scene::{DampingModel, Scene};
 pub(super) use parts::shortest;
 pub use prediction::Prediction;
@@ -35,6 +35,8 @@ pub struct Linearised {
     excluded: Vec<String>,
     /// The reason why nothing, or not everything, is known.
     failed: Option<&'static str>,
+    /// Whether some particle has two dampers, so that a sweep over them is not their exact flow.
+    shared: bool,
     effort: Effort,
 }
 
@@ -47,6 +49,7 @@ impl Linearised {
             parts: Vec::new(),
             excluded: Vec::new(),
             failed: None,
+            shared: system.dampers() == Dampers::Shared,
             effort,
         };
         let Some(parts) = parts::parts(system, state) else {
@@ -123,6 +126,11 @@ impl Linearised {
             .iter()
             .filter_map(|part| match method.amplification {
                 Amplification::Rational(rational) => regions::predict(&rational, part, timestep),
+                Amplification::Composition(_, DampingTreatment::Sweeps)
+                    if self.shared && part.part.damping.norm() > 0.0 =>
+                {
+                    Some(maps::swept(method.amplification, part, &self.effort))
+                }
                 other => maps::predict(other, part, timestep, &self.effort),
             });
         let all = parts.chain(self.failed.map(Prediction::unknown));

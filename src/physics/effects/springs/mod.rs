@@ -4,11 +4,11 @@ mod kernel;
 mod network;
 
 use super::{Effect, EffectRow, FEW_OPERATIONS, boxed};
-use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power};
+use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power, Sweep};
 use crate::scene::{DampingModel, Scene, Spring};
 use kernel::Motion;
 use nalgebra::{Matrix3, Vector3};
-use network::Network;
+use network::{Network, Part};
 use pulp::Arch;
 
 pub(super) const ROW: EffectRow = EffectRow {
@@ -93,6 +93,23 @@ impl Springs {
             Damping::Isotropic => kernel::add::<ISOTROPIC, ELASTIC>(arch, parts, at, f),
         }
     }
+
+    /// Applies the dampers of one part, in this order. A spring between two parts belongs to that of its first end.
+    fn sweep_part(&self, part: &Part, order: impl Iterator<Item = usize>, sweep: &mut Sweep) {
+        let table = &part.table;
+        for s in order {
+            let (c, ends) = (table.damping[s], table.ends[s].map(|end| end as usize));
+            if c == 0.0 || !part.particles.contains(&ends[0]) {
+                continue;
+            }
+            if self.damping == Damping::Isotropic {
+                sweep.between(ends, c);
+                continue;
+            }
+            let [i, j] = ends.map(|end| 3 * end);
+            sweep.along(ends, c, difference(sweep.x(), i, j));
+        }
+    }
 }
 
 impl Effect for Springs {
@@ -137,6 +154,26 @@ impl Effect for Springs {
 
     fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
         self.add::<false>(x, w, f);
+    }
+
+    fn count_dampers(&self, at: &mut [u32]) -> bool {
+        let damped = self
+            .network
+            .springs()
+            .filter(|spring| spring.damping != 0.0);
+        damped.for_each(|spring| spring.ends.iter().for_each(|end| at[*end] += 1));
+        true
+    }
+
+    fn sweep(&self, sweep: &mut Sweep) {
+        let parts = self.network.parts.iter();
+        if sweep.backward {
+            parts.rev().for_each(|part| {
+                self.sweep_part(part, (0..part.table.damping.len()).rev(), sweep);
+            });
+        } else {
+            parts.for_each(|part| self.sweep_part(part, 0..part.table.damping.len(), sweep));
+        }
     }
 
     fn add_jacobian(
