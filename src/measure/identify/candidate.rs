@@ -278,11 +278,6 @@ impl<'a> Replayer<'a> {
         state: &mut State,
     ) -> Result<(), StepError> {
         let forces = self.candidate.forces.as_ref();
-        let rounded = self.pattern.map(|pattern| Rounded::new(forces, pattern));
-        let system: &dyn System = match &rounded {
-            Some(rounded) => rounded,
-            None => forces,
-        };
         // Substeps under forces that are held are the scheme's own.
         let n = match self.candidate.scheme {
             Scheme::Around(..) => 1,
@@ -300,6 +295,13 @@ impl<'a> Replayer<'a> {
                 // As solvers count time: n h, not a running sum.
                 state.t = (at * u64::from(n) + u64::from(part)) as f64 * part_of_h;
                 let start = state.clone();
+                let rounded = self.pattern.map(|pattern| {
+                    Rounded::new(forces, pattern, at * u64::from(n) + u64::from(part))
+                });
+                let system: &dyn System = match &rounded {
+                    Some(rounded) => rounded,
+                    None => forces,
+                };
                 self.scale(ScaledAt::Start, inner, &start.x, state);
                 match (&mut self.integrator, self.candidate.scheme) {
                     (Some(integrator), _) => integrator.step(system, inner, state)?,

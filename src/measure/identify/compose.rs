@@ -637,11 +637,18 @@ impl System for Altered<'_> {
 pub(super) struct Rounded<'a> {
     inner: &'a dyn System,
     pattern: u64,
+    /// The same in all evaluations of a step, so that an iteration converges; another in the next, since rounding
+    /// that always pushed the same way would leave out what grows by alternating.
+    step: u64,
 }
 
 impl<'a> Rounded<'a> {
-    pub(super) fn new(inner: &'a dyn System, pattern: u64) -> Self {
-        Self { inner, pattern }
+    pub(super) fn new(inner: &'a dyn System, pattern: u64, step: u64) -> Self {
+        Self {
+            inner,
+            pattern,
+            step,
+        }
     }
 }
 
@@ -655,7 +662,7 @@ impl System for Rounded<'_> {
         self.inner.rounding(t, x, v, &mut off);
         let power = self.inner.acceleration(t, x, v, a);
         for (i, (a, off)) in a.iter_mut().zip(off).enumerate() {
-            *a += sign((u64::MAX, self.pattern), i) * off;
+            *a += sign((!self.step, self.pattern), i) * off;
         }
         power
     }

@@ -39,8 +39,10 @@ const SUSPECTS: usize = 2;
 const PROMISING: f64 = 0.9;
 /// Most Gauss-Newton steps.
 const STEPS: usize = 12;
+/// A step that leaves more than this part of the difference is slow.
+const SLOW: f64 = 0.5;
 /// Most times that one of them is halved.
-const HALVINGS: usize = 6;
+const HALVINGS: usize = 3;
 /// Directions in which a fit's units are measured.
 const NUDGES: u64 = 4;
 /// A trajectory is near a scheme whose steps it misses by this part of the scheme's own error. What is only
@@ -523,6 +525,8 @@ impl<'a> Model<'a> {
         if size > 1 {
             sets.sort_by(|a, b| a.0.total_cmp(&b.0));
             sets.truncate(TRIED);
+            // The scene's effects come before mass, step and velocity.
+            sets.sort_by(|a, b| a.1.cmp(&b.1));
         }
         let mut fits: Vec<Fit> = sets.iter().filter_map(|(_, set)| self.fit(set)).collect();
         if size == 1 {
@@ -551,7 +555,7 @@ impl<'a> Model<'a> {
         let mut factors: Vec<(usize, f64)> = set.iter().map(|&k| (k, 1.0)).collect();
         let mut residuals = self.residuals_at(&factors)?;
         let mut slopes: Vec<DVector<f64>> = set.iter().map(|&k| self.slopes[k].clone()).collect();
-        for _ in 0..STEPS {
+        for taken in 0..STEPS {
             let mut step = least_squares(&slopes, &residuals)?;
             let here = residuals.norm();
             for halving in 0..=HALVINGS {
@@ -567,6 +571,10 @@ impl<'a> Model<'a> {
             }
             if step.amax() <= 1e-13 * (1.0 + factors.iter().fold(0.0, |m: f64, f| m.max(f.1.abs())))
             {
+                break;
+            }
+            if taken > 1 && residuals.norm() > SLOW * here {
+                // It converges to something else than rounding.
                 break;
             }
             for (place, slope) in slopes.iter_mut().enumerate() {

@@ -62,6 +62,16 @@ const FIND: u64 = 8;
 /// A step that solves costs as much as this many that do not: 20 to 100, on a chain of 20.
 const SOLVE: u64 = 100;
 
+/// How the numbers of a row are moved by rounding.
+#[derive(Clone, Copy)]
+pub(super) struct Nudge {
+    /// Which way each of them goes.
+    pattern: u64,
+    /// Roundings of a step's sums until the row `to`.
+    roundings: f64,
+    to: usize,
+}
+
 /// Replays the rows of a trajectory.
 pub struct Replay<'a> {
     pub(super) rows: &'a Rows,
@@ -314,7 +324,11 @@ impl<'a> Replay<'a> {
         let span = transition.span(rows);
         let step = rows.steps[transition.from];
         let total = span.saturating_mul(u64::from(replayer.candidate().roundings()));
-        let nudge = pattern.map(|pattern| (pattern, total as f64));
+        let nudge = pattern.map(|pattern| Nudge {
+            pattern,
+            roundings: total as f64,
+            to: transition.to,
+        });
         replayer.nudge(pattern);
         let mut state = self.state(transition.from, nudge);
         let mut before = transition.before.map(|k| (k, self.state(k, nudge)));
@@ -372,7 +386,7 @@ impl<'a> Replay<'a> {
 
     /// The state of row `k`, velocities 0 where they are unknown; each free number moved by its
     /// rounding and that of as many operations in the direction of the pattern.
-    pub(super) fn state(&self, k: usize, nudge: Option<(u64, f64)>) -> State {
+    pub(super) fn state(&self, k: usize, nudge: Option<Nudge>) -> State {
         let rows = self.rows;
         let mut x = rows.x(k).to_vec();
         let mut v = rows
@@ -385,12 +399,21 @@ impl<'a> Replay<'a> {
                 if (x[i] - place).abs() <= 1.01 * rows.half_unit(i, place) {
                     x[i] = place;
                 }
-            } else if let Some((pattern, roundings)) = nudge {
+            } else if let Some(nudge) = nudge {
+                let Nudge {
+                    pattern,
+                    roundings,
+                    to,
+                } = nudge;
                 let own = 0.5 * f64::EPSILON * roundings;
                 let row = (k as u64, pattern);
                 let round = [self.half_unit(k, i, x[i]), self.half_unit(k, dim + i, v[i])];
-                x[i] += sign(row, 2 * i) * (round[0] + own * x[i].abs());
-                v[i] += sign(row, 2 * i + 1) * (round[1] + own * v[i].abs());
+                // A number that grows on the way is rounded as what it grows to.
+                let to_v = rows.v(to).map_or(0.0, |v| v[i].abs());
+                let sizes = [x[i].abs().max(rows.x(to)[i].abs()), v[i].abs().max(to_v)];
+                let finite = sizes.map(|size| if size.is_finite() { size } else { 0.0 });
+                x[i] += sign(row, 2 * i) * (round[0] + own * finite[0]);
+                v[i] += sign(row, 2 * i + 1) * (round[1] + own * finite[1]);
             }
         }
         let mut state = State::new(x, v);

@@ -211,14 +211,14 @@ pub static MISTAKES: &[Mistake] = &[
     physics(
         "damping_isotropic",
         physics::damping_isotropic,
-        &[("springs.damping", 1.0)],
+        &[("damping_model", 1.0)],
         "the dampers resist the whole relative velocity of a spring's ends: the scene asks for its \
          part along the spring alone (`damping_model: axial`)",
     ),
     physics(
         "damping_axial",
         physics::damping_axial,
-        &[("springs.damping", 1.0)],
+        &[("damping_model", 1.0)],
         "the dampers resist only the relative velocity along the spring: the scene asks for all of \
          it (`damping_model: isotropic`)",
     ),
@@ -273,7 +273,7 @@ pub static MISTAKES: &[Mistake] = &[
     physics(
         "damper_own_velocity",
         springs::own_velocity,
-        &[("springs.damping", 1.0)],
+        &[("springs.relative_velocity", 0.0)],
         "each end is damped by its own velocity: a damper resists the difference of its ends' velocities",
     ),
     physics(
