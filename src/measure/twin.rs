@@ -7,6 +7,7 @@
 mod lockstep;
 mod start;
 
+use crate::measure::identify::solve_effort;
 use crate::measure::{Check, CheckStatus};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
@@ -23,6 +24,10 @@ const JOINT_STEPS: u32 = 4;
 const MAX_SWEEPS: u32 = 1024;
 /// Most visits to joints in one try: about two seconds.
 const MAX_ROWS: u64 = 20_000_000;
+/// Paths of ours in a proof that measures how much rounding grows.
+const PATHS: u64 = 3;
+/// What a visit to a joint takes, in steps of one particle under explicit forces.
+const ROW: u64 = 3;
 /// A proof that could not tell a relative error of this size is none.
 const BLUNT: f64 = 1e-6;
 
@@ -41,18 +46,32 @@ pub fn prove(scene: &Scene, timestep: f64) -> Vec<Check> {
     prove_pair(scene, scene, timestep)
 }
 
+/// The same, as far as `effort` allows, in steps of one particle under explicit forces: a proof that takes more is
+/// skipped, and sweeps are not doubled beyond it.
+pub fn prove_within(scene: &Scene, timestep: f64, effort: u64) -> Vec<Check> {
+    let mut pair = Pair::new(scene, scene, timestep);
+    pair.effort = effort;
+    pair.proofs()
+}
+
 /// The same with a scene of its own for rapier: a different one must fail. For tests of the proof.
 pub fn prove_pair(ours: &Scene, theirs: &Scene, timestep: f64) -> Vec<Check> {
-    let pair = Pair::new(ours, theirs, timestep);
-    let mut proofs = vec![
-        pair.prove(FORCES, Pair::forces),
-        pair.prove(JOINTS, Pair::joints),
-    ];
-    let system = ParticleSystem::new(&pair.ours);
-    if system.effects().iter().all(|(row, _)| row.constant) {
-        proofs.push(pair.prove(FALL, Pair::fall));
+    Pair::new(ours, theirs, timestep).proofs()
+}
+
+impl Pair {
+    fn proofs(&self) -> Vec<Check> {
+        let pair = self;
+        let mut proofs = vec![
+            pair.prove(FORCES, Pair::forces),
+            pair.prove(JOINTS, Pair::joints),
+        ];
+        let system = ParticleSystem::new(&pair.ours);
+        if system.effects().iter().all(|(row, _)| row.constant) {
+            proofs.push(pair.prove(FALL, Pair::fall));
+        }
+        proofs
     }
-    proofs
 }
 
 /// The proof `twin-user-forces`, for runs that have this engine: rapier's bodies at its defaults hold the forces
@@ -159,6 +178,8 @@ struct Pair {
     ours: Scene,
     theirs: Scene,
     timestep: f64,
+    /// The most that a proof may take, in steps of one particle under explicit forces.
+    effort: u64,
 }
 
 impl Pair {
@@ -176,6 +197,7 @@ impl Pair {
             ours: start,
             theirs: other,
             timestep,
+            effort: u64::MAX,
         }
     }
 
@@ -196,7 +218,7 @@ impl Pair {
 
     fn forces(&self, claim: &Claim) -> Result<Check, Unsupported> {
         let theirs = self.theirs(find(claim.subject), FORCE_STEPS)?;
-        let ours = Path::ours(&self.ours, claim.method, self.timestep, 1, FORCE_STEPS);
+        let ours = Path::ours(&self.ours, claim.method, self.timestep, 1, FORCE_STEPS)?;
         // v += h (f / m), x += h v: the forces are the same code, and both sides round the same
         // four operations in the same order. There is no difference to be amplified.
         let derivation = "both sides round the same operations in the same order: bit for bit";
@@ -215,12 +237,22 @@ impl Pair {
 
     fn joints(&self, claim: &Claim) -> Result<Check, Unsupported> {
         let mut settings = RapierSettings::CONVERGED;
+        let solves = PATHS * u64::from(JOINT_STEPS * settings.iterations);
+        let particles = self.ours.particles.len() as u64;
+        if (solves * particles).saturating_mul(solve_effort(particles)) > self.effort {
+            return Err(Unsupported {
+                reason: format!(
+                    "left out: its {solves} linear solves would take longer than the runs"
+                ),
+            });
+        }
+        let most = MAX_ROWS.min(self.effort / ROW);
         let run =
             |settings: &RapierSettings| self.theirs(Some(Solver::rapier(*settings)), JOINT_STEPS);
         let mut coarse = run(&settings)?;
-        let (path, bound, derivation) = self.reference(claim.method, settings.iterations);
+        let (path, bound, derivation) = self.reference(claim.method, settings.iterations)?;
         let joints = self.ours.springs.len() as u64 * u64::from(JOINT_STEPS * settings.iterations);
-        while settings.pgs < MAX_SWEEPS && joints * u64::from(2 * settings.pgs) <= MAX_ROWS {
+        while settings.pgs < MAX_SWEEPS && joints * u64::from(2 * settings.pgs) <= most {
             settings.pgs *= 2;
             let Ok(fine) = run(&settings) else { break };
             let moved = distance(&coarse, &fine);
@@ -251,7 +283,7 @@ impl Pair {
     fn fall(&self, claim: &Claim) -> Result<Check, Unsupported> {
         let settings = RapierSettings::DEFAULT;
         let theirs = self.theirs(Some(Solver::rapier(settings)), JOINT_STEPS)?;
-        let (path, bound, derivation) = self.reference(claim.method, settings.iterations);
+        let (path, bound, derivation) = self.reference(claim.method, settings.iterations)?;
         Ok(claim.judge(&path, &theirs, bound, derivation))
     }
 
@@ -264,16 +296,20 @@ impl Pair {
     /// what is measured, since signs are random, and within a factor of 3 on the worst of thousands
     /// of random nets; it is looser on scenes small beside their distance from the origin, where
     /// both sides mostly round positions alike, but need not.
-    fn reference(&self, method: &'static str, substeps: u32) -> (Path, f64, String) {
+    fn reference(
+        &self,
+        method: &'static str,
+        substeps: u32,
+    ) -> Result<(Path, f64, String), Unsupported> {
         let h = self.timestep / f64::from(substeps);
-        let path = Path::ours(&self.ours, method, h, substeps, JOINT_STEPS);
+        let ours = |scene: &Scene| Path::ours(scene, method, h, substeps, JOINT_STEPS);
+        let path = ours(&self.ours)?;
         // The larger of two random directions: one alone may miss what grows.
-        let grown = [2, 3].map(|seed| {
-            let start = disturbed(&self.ours, seed);
-            let disturbed = Path::ours(&start, method, h, substeps, JOINT_STEPS);
-            distance(&path, &disturbed).unwrap_or(f64::INFINITY)
-        });
-        let grown = grown[0].max(grown[1]);
+        let mut grown = 0.0_f64;
+        for seed in [2, 3] {
+            let disturbed = ours(&disturbed(&self.ours, seed))?;
+            grown = grown.max(distance(&path, &disturbed).unwrap_or(f64::INFINITY));
+        }
         let condition = condition(&self.ours, h);
         let roundings = 2 * JOINT_STEPS * substeps;
         let bound = f64::from(roundings) * (grown + f64::EPSILON * condition);
@@ -281,6 +317,6 @@ impl Pair {
             "{roundings} roundings, each growing to {grown:.1e} in these steps and losing \
              {condition:.1} ulp in the solve"
         );
-        (path, bound, derivation)
+        Ok((path, bound, derivation))
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod external;
 mod integrator;
+mod memory;
 pub mod rapier;
 mod run;
 mod setting;

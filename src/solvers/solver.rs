@@ -5,8 +5,8 @@ use super::integrator::{AdaptiveEngine, IntegratorEngine};
 use super::rapier::{self, RapierEngine, RapierForces};
 use super::run::Run;
 use super::setting::Setting;
-use super::{Engine, Unsupported};
-use crate::integrators::{self, Integrator, Method, Settings};
+use super::{Engine, Unsupported, memory};
+use crate::integrators::{self, Coefficients, Integrator, Method, Settings};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -180,8 +180,8 @@ impl Solver {
     /// A fresh run at the scene's start.
     ///
     /// # Errors
-    /// [`Unsupported`] where the solver has no true counterpart of something in the scene, and for another
-    /// program, which takes no single steps.
+    /// [`Unsupported`] where the solver has no true counterpart of something in the scene, where it would take more
+    /// memory than it may, and for another program, which takes no single steps.
     pub fn start(
         &self,
         scene: &Scene,
@@ -210,6 +210,9 @@ impl Solver {
                     let until = scene.duration;
                     Box::new(AdaptiveEngine::new(scene, system, pair, tolerance, until))
                 } else {
+                    if matches!(method.coefficients, Coefficients::Implicit(_)) {
+                        memory::fits_factor(scene)?;
+                    }
                     let settings = Settings::stated(scene.solver.tolerance);
                     let engine = IntegratorEngine::new(scene, system, method, &settings, timestep);
                     Box::new(engine)
@@ -221,9 +224,11 @@ impl Solver {
                 Box::new(IntegratorEngine::with(scene, system, integrator, timestep))
             }
             Source::Joints(settings) => {
+                memory::fits_rapier(scene, scene.springs.len())?;
                 Box::new(RapierEngine::new(scene, system, timestep, settings)?)
             }
             Source::Forces(settings) => {
+                memory::fits_rapier(scene, 0)?;
                 Box::new(RapierForces::new(scene, system, timestep, settings)?)
             }
             Source::Program(_) => {

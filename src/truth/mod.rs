@@ -177,6 +177,25 @@ pub fn find(
     }
 }
 
+/// Closed forms of larger scenes are not looked for beforehand.
+const FEW: usize = 200;
+
+/// About what [`find`] will take, in force evaluations times coordinates; 0 where it finds at once that there is a
+/// closed form, a stored reference, or none.
+pub fn expected(
+    scene: &Scene,
+    system: &ParticleSystem,
+    demand: Demand,
+    until: f64,
+    store: &dyn Store,
+) -> u64 {
+    let few = scene.particles.len() <= FEW;
+    if demand != Demand::Auto || (few && closed::find(scene, system, until).is_some()) {
+        return 0;
+    }
+    converged::expected(scene, system, until, store)
+}
+
 impl Truth {
     /// No truth, and why.
     pub fn none(reason: impl Into<String>) -> Self {

@@ -12,8 +12,8 @@ pub trait Session: Sync {
     /// Fails when the file cannot be made.
     fn saver(&self, case: &Label) -> Result<Option<Box<dyn Saver>>, SaveError>;
 
-    /// Reports further progress, in the units of the plan: steps, or nominal microseconds.
-    fn progress(&self, steps: u64);
+    /// Reports further progress, in the units of the plan: steps of one particle, or nominal microseconds.
+    fn progress(&self, units: u64);
 
     /// The store that keeps truths from one run to the next.
     fn store(&self) -> &dyn Store {
@@ -39,7 +39,7 @@ impl Session for Quiet {
         Ok(None)
     }
 
-    fn progress(&self, _steps: u64) {}
+    fn progress(&self, _units: u64) {}
 }
 
 /// Identifies the run that something belongs to.
@@ -60,7 +60,7 @@ impl Label {
     }
 }
 
-/// Expected wall time of one case, s.
+/// Expected wall time of one case, s; of what is done beside them its label has no steps.
 #[derive(Debug, Clone)]
 pub struct TimeEstimate {
     pub label: Label,

@@ -10,7 +10,8 @@ use springcheck::measure::CheckStatus;
 use springcheck::measure::order::{MeasuredOrder, RATIOS, Reason, Study, Verdict, check, observed};
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::Scene;
-use springcheck::truth::Motion;
+use springcheck::truth::{Motion, States};
+use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The scenes that say in their description that they are made for this.
@@ -76,6 +77,76 @@ fn no_method_falls_below_its_order_on_an_oscillator() {
             );
             assert_eq!(check(row.id, &measured).status, CheckStatus::Pass);
         }
+    }
+}
+
+/// The two bodies of `order/kepler.yml`, by Kepler's equation E - e sin E = t.
+struct Kepler;
+
+impl Motion for Kepler {
+    fn states(&self, times: &[f64]) -> States {
+        let mut states = States::with_room(6, times.len());
+        for &t in times {
+            let (e, mean) = (0.6_f64, t % TAU);
+            // Newton's iteration, from where it cannot overshoot (Danby 1987).
+            let mut anomaly = mean + 0.85 * e * mean.sin().signum();
+            for _ in 0..20 {
+                let (s, c) = anomaly.sin_cos();
+                anomaly -= (anomaly - e * s - mean) / (1.0 - e * c);
+            }
+            let ((s, c), root) = (anomaly.sin_cos(), (1.0 - e * e).sqrt());
+            let rate = 1.0 / (1.0 - e * c);
+            let x = [c - e, root * s, 0.0];
+            let v = [-s * rate, root * c * rate, 0.0];
+            let both = |of: [f64; 3]| -> Vec<f64> {
+                [-0.25, 0.75]
+                    .iter()
+                    .flat_map(|part| of.map(|c| part * c))
+                    .collect()
+            };
+            states.push(&both(x), &both(v));
+        }
+        states
+    }
+
+    /// A time is rounded, and turned by twice the largest speed.
+    fn error_bar(&self, t: f64) -> f64 {
+        16.0 * f64::EPSILON * (1.0 + 2.0 * t)
+    }
+}
+
+/// Thirty rounds of an ellipse at a hundredth: errors at the end are as large as the ellipse, or rounding has grown
+/// over them. Over a horizon that is short enough every method shows its order.
+#[test]
+fn on_a_long_fast_motion_the_horizon_is_shorter() {
+    let scene = shipped("order/kepler.yml");
+    let (system, _) = built(&scene);
+    let study = Study::of_scene(&scene, &system, &Kepler, scene.duration);
+    let mut shorter = 0;
+    for row in fixed().iter() {
+        let measured = study.method(row);
+        let order = measured.observed.order.unwrap_or(f64::NAN);
+        // A verdict allows for TOLERANCE; twice that, since a leading term may nearly cancel here.
+        assert!(
+            (order - f64::from(row.order)).abs() <= 0.1,
+            "{}: {measured:?}",
+            row.id
+        );
+        let said = check(row.id, &measured);
+        assert_eq!(said.status, CheckStatus::Pass, "{}", said.message);
+        assert_eq!(measured.shortened, measured.until < scene.duration);
+        assert_eq!(said.message.contains("over the first"), measured.shortened);
+        shorter += usize::from(measured.shortened);
+    }
+    // Yoshida's method and PEFRL show theirs over the whole time.
+    assert!((12..fixed().len()).contains(&shorter), "{shorter}");
+    // Mutants are seen there, too.
+    for (stated, step) in [
+        (2, mutants::verlet_with_a_stale_force as Step),
+        (4, mutants::rk4_with_swapped_weights),
+    ] {
+        let seen = study.measure(stated, &mutant(step)).observed;
+        assert_eq!(seen.verdict, Verdict::Misses, "{seen:?}");
     }
 }
 

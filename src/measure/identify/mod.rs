@@ -28,7 +28,7 @@ pub use compose::{Around, OneStep, composed, ids as composed_ids};
 pub use explain::TRUTH;
 pub use fault::{first_departure, first_fault, moved_anchor};
 pub use mistakes::{MISTAKES, Mistake, Wrong, mistakes};
-pub use replay::{Defect, FIT, Replay};
+pub use replay::{Defect, FIT, Replay, solve_effort};
 pub use result::{Deviation, Explained, Fault, Identified, Quantity, Undecided};
 pub use transition::Transition;
 

@@ -62,6 +62,12 @@ const FIND: u64 = 8;
 /// A step that solves costs as much as this many that do not: 20 to 100, on a chain of 20.
 const SOLVE: u64 = 100;
 
+/// What a step that solves costs a particle, in explicit steps: factors of a surface of n particles grow as n^1.5.
+/// Measured on cloths: 330 of 10,000 and 1,100 of 100,000.
+pub fn solve_effort(particles: u64) -> u64 {
+    SOLVE.max(10 * particles.isqrt() / 3)
+}
+
 /// How the numbers of a row are moved by rounding.
 #[derive(Clone, Copy)]
 pub(super) struct Nudge {
@@ -357,11 +363,15 @@ impl<'a> Replay<'a> {
 
     /// About what replaying it costs, in steps of one particle under explicit forces.
     pub(super) fn effort(&self, candidate: &Candidate, transition: &Transition) -> u64 {
-        let each = if candidate.solves() { SOLVE } else { 1 };
+        let particles = (self.rows.dim / 3).max(1) as u64;
+        let each = if candidate.solves() {
+            solve_effort(particles)
+        } else {
+            1
+        };
         let each = each * if self.rows.v.is_some() { 1 } else { FIND };
         let steps = transition.reach(self.rows);
         let substeps = u64::from(candidate.substeps.max(1));
-        let particles = (self.rows.dim / 3).max(1) as u64;
         steps
             .saturating_mul(each * substeps)
             .saturating_mul(particles)

@@ -40,8 +40,9 @@ impl<'a> Comparison<'a> {
         }
         // A force that is linear where the data goes may not be elsewhere, behind an anchor say;
         // but data that hardly moves must not leave nothing to try.
+        let least = 0.02 * scene.size();
         for (low, high) in &mut region {
-            let margin = 0.5 * (*high - *low) + 0.02 * scene.size();
+            let margin = 0.5 * (*high - *low) + least;
             *low -= margin;
             *high += margin;
         }

@@ -40,6 +40,12 @@ const CONTROL: (&str, f64) = ("rk4", 3.5);
 /// coarser.
 const GRIDS: [(u64, u64); 2] = [(64, 511), (1024, 127)];
 
+/// The horizons tried, as parts of the time there is: the longest first, then shorter ones, over which errors are
+/// smaller against the motion and rounding has grown less.
+const PARTS: [u64; 4] = [1, 4, 16, 64];
+/// A horizon is at least this many of the scene's own steps long.
+const SHORTEST: u64 = 16;
+
 /// A convergence study on one motion: the refinement levels to measure orders with. Any number of methods
 /// may use it, also at once.
 ///
@@ -48,12 +54,14 @@ const GRIDS: [(u64, u64); 2] = [(64, 511), (1024, 127)];
 /// same M instants, the steps of the coarsest level, so that two errors differ by the step alone.
 pub struct Study<'a> {
     problem: TestProblem<'a>,
+    /// The time there is, s.
+    until: f64,
     /// Steps at the scene's own timestep.
     own: u64,
     budget: u64,
     settings: Settings,
-    /// The grids for levels a factor 2 and a factor 1.3 apart.
-    grids: [Grid; 2],
+    /// For each horizon, the longest first, the grids for levels a factor 2 and a factor 1.3 apart.
+    grids: Vec<[Grid; 2]>,
 }
 
 /// The result of a study.
@@ -64,8 +72,10 @@ pub struct MeasuredOrder {
     pub points: Vec<Point>,
     /// The levels that gave none: their step, s, and why.
     pub left_out: Vec<(f64, String)>,
-    /// End of the time errors were taken over, s.
+    /// The horizon: the end of the time errors were taken over, s.
     pub until: f64,
+    /// Whether there is more time, over which no order was to be seen.
+    pub shortened: bool,
 }
 
 impl<'a> Study<'a> {
@@ -88,13 +98,19 @@ impl<'a> Study<'a> {
             system,
             start,
             motion,
-            until,
         };
-        // Both grids are made now, not on first use: the truth is computed in parallel, and a thread that
+        // All grids are made now, not on first use: the truth is computed in parallel, and a thread that
         // waits for it inside its own computation would wait for ever.
-        let grids = GRIDS.map(|(part, most)| Grid::new(&problem, own / part, most));
+        let long = |part: &u64| *part == 1 || own / part >= SHORTEST;
+        let parts = PARTS.into_iter().filter(long);
+        let grids = parts.map(|horizon| {
+            let until = until / horizon as f64;
+            GRIDS.map(|(part, most)| Grid::new(&problem, until, own / horizon / part, most))
+        });
+        let grids = grids.collect();
         Self {
             problem,
+            until,
             own,
             budget: BUDGET.max(RUNS.saturating_mul(run)),
             settings: Settings::default(),
@@ -154,8 +170,52 @@ impl<'a> Study<'a> {
     ///
     /// A method that does not converge at all and stays farther off than that is thus not told from
     /// steps too coarse.
+    ///
+    /// Where no order is to be seen over the whole time, since errors are not small against the motion or rounding
+    /// covers them, a quarter of it is tried, and so on, each with half of the budget that is left.
     pub fn measure(&self, stated: u32, build: MakeIntegrator) -> MeasuredOrder {
-        let grid = self.grid(stated);
+        let mut left = self.budget;
+        let mut whole: Option<MeasuredOrder> = None;
+        for (at, grids) in self.grids.iter().enumerate() {
+            let share = if at + 1 < self.grids.len() {
+                left / 2
+            } else {
+                left
+            };
+            let grid = &grids[usize::from(stated > 4)];
+            let (measured, unspent) = self.over(grid, stated, build, share);
+            left -= share - unspent;
+            let unseen = matches!(
+                measured.observed.verdict,
+                Verdict::Inconclusive(Reason::TooFew | Reason::NotAsymptotic | Reason::AtFloor)
+            );
+            if !unseen {
+                let shortened = at > 0;
+                return MeasuredOrder {
+                    shortened,
+                    ..measured
+                };
+            }
+            whole.get_or_insert(measured);
+        }
+        whole.unwrap_or_else(|| MeasuredOrder {
+            observed: observed(&[], stated),
+            points: Vec::new(),
+            left_out: Vec::new(),
+            until: 0.0,
+            shortened: false,
+        })
+    }
+
+    /// Measures over one horizon. Returns what is left of the budget, too.
+    fn over(
+        &self,
+        grid: &Grid,
+        stated: u32,
+        build: MakeIntegrator,
+        budget: u64,
+    ) -> (MeasuredOrder, u64) {
+        let own = (self.own as f64 * grid.until / self.until).round() as u64;
         let mut levels = multiples(stated)
             .take_while(|_| grid.instants > 0)
             .peekable();
@@ -163,15 +223,15 @@ impl<'a> Study<'a> {
             problem: &self.problem,
             grid,
             build,
-            left: self.budget,
+            left: budget,
             points: Vec::new(),
             left_out: Vec::new(),
             amplification: None,
             controls: Vec::new(),
         };
         let mut first = Vec::new();
-        while let Some(m) = levels
-            .next_if(|&m| (first.len() <= RATIOS || grid.steps(m) <= self.own) && runs.spend(m))
+        while let Some(m) =
+            levels.next_if(|&m| (first.len() <= RATIOS || grid.steps(m) <= own) && runs.spend(m))
         {
             first.push(m);
         }
@@ -198,19 +258,17 @@ impl<'a> Study<'a> {
                         },
                         None => seen,
                     };
-                    return MeasuredOrder {
+                    let measured = MeasuredOrder {
                         observed,
                         points: runs.points,
                         left_out: runs.left_out,
-                        until: self.problem.until,
+                        until: grid.until,
+                        shortened: false,
                     };
+                    return (measured, runs.left);
                 }
             }
         }
-    }
-
-    fn grid(&self, stated: u32) -> &Grid {
-        &self.grids[usize::from(stated > 4)]
     }
 }
 
@@ -278,7 +336,7 @@ impl Runs<'_> {
 
     /// The control's error at a step, where it gives one and the budget allows.
     fn control(&mut self, h: f64, settings: &Settings) -> Option<f64> {
-        let m = (self.problem.until / h / self.grid.instants as f64).round() as u64;
+        let m = (self.grid.until / h / self.grid.instants as f64).round() as u64;
         if let Some((_, error)) = self.controls.iter().find(|(at, _)| *at == m) {
             return *error;
         }
@@ -313,10 +371,10 @@ impl Runs<'_> {
                 Err(why) => self.left_out.push((h, why)),
             }
         }
-        let bar = self.problem.motion.error_bar(self.problem.until);
+        let bar = self.problem.motion.error_bar(self.grid.until);
         let response = self.amplification.unwrap_or(0.0) + self.grid.size;
         for point in &mut self.points {
-            let steps = (self.problem.until / point.h).round();
+            let steps = (self.grid.until / point.h).round();
             // Each step rounds: at worst the same way each time, and a few dozen times at once.
             point.floor = 10.0 * bar + f64::EPSILON * (steps + 100.0) * response;
         }
@@ -337,6 +395,11 @@ pub fn check(subject: &str, measured: &MeasuredOrder) -> Check {
         _ => format!("{} steps", measured.points.len()),
     };
     let order = seen.order.unwrap_or(f64::NAN);
+    let over = if measured.shortened {
+        format!(" over the first {:.3} s", measured.until)
+    } else {
+        String::new()
+    };
     let (status, message) = match seen.verdict {
         Verdict::Inconclusive(reason) => {
             let ended = measured.left_out.last();
@@ -349,15 +412,15 @@ pub fn check(subject: &str, measured: &MeasuredOrder) -> Check {
         }
         Verdict::Misses => (
             CheckStatus::Fail,
-            format!("{subject} is of order {order:.2}, not {stated} as it states"),
+            format!("{subject} is of order {order:.2}{over}, not {stated} as it states"),
         ),
         Verdict::Above => (
             CheckStatus::Pass,
-            format!("{subject} shows order {order:.2} here, above the {stated} it states"),
+            format!("{subject} shows order {order:.2} here{over}, above the {stated} it states"),
         ),
         Verdict::Meets => (
             CheckStatus::Pass,
-            format!("{subject} is of order {order:.2}, as stated"),
+            format!("{subject} is of order {order:.2}{over}, as stated"),
         ),
     };
     Check {

@@ -18,13 +18,11 @@ const MEMORY: u64 = 1 << 22;
 /// Relative size of the disturbance whose response tells how much rounding grows.
 const DISTURBANCE: f64 = 1e-7;
 
-/// A test problem: a system and a start, and the truth from there up to a time.
+/// A test problem: a system and a start, and the truth from there.
 pub(super) struct TestProblem<'a> {
     pub system: &'a (dyn System + Sync),
     pub start: State,
     pub motion: &'a dyn Motion,
-    /// The last time, s.
-    pub until: f64,
 }
 
 /// The instants errors are taken at, and the truth there.
@@ -42,15 +40,15 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// A grid of about `wanted` instants, at most `most`.
-    pub fn new(problem: &TestProblem, wanted: u64, most: u64) -> Self {
+    /// A grid of about `wanted` instants, at most `most`, up to `until` seconds.
+    pub fn new(problem: &TestProblem, until: f64, wanted: u64, most: u64) -> Self {
         let dim = problem.system.dim();
         let room = (MEMORY / (dim.max(1) as u64)).min(most).max(FEWEST);
         let instants = (wanted.clamp(FEWEST, room) - 1) | 1;
-        let usable = problem.until > 0.0 && problem.until.is_finite();
+        let usable = until > 0.0 && until.is_finite();
         let instants = if usable { instants } else { 0 };
         let times: Vec<f64> = (1..=instants)
-            .map(|k| problem.until * (k as f64 / instants as f64))
+            .map(|k| until * (k as f64 / instants as f64))
             .collect();
         let truth = problem.motion.states(&times);
         let each = || (0..times.len()).map(|k| truth.x(k));
@@ -60,7 +58,7 @@ impl Grid {
         let size = each().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
         Self {
             instants,
-            until: problem.until,
+            until,
             reach,
             size,
             truth,

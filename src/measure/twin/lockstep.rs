@@ -38,15 +38,17 @@ impl Path {
     }
 
     /// The path of our integrator of this id.
-    pub(super) fn ours(scene: &Scene, method: &str, h: f64, substeps: u32, steps: u32) -> Self {
+    pub(super) fn ours(
+        scene: &Scene,
+        method: &str,
+        h: f64,
+        substeps: u32,
+        steps: u32,
+    ) -> Result<Self, Unsupported> {
         // A missing row would be a fault of this program's; explicit Euler, the first, then fails the
         // proof instead of stopping the run.
         let method = integrators::find(method).unwrap_or(&integrators::fixed()[0]);
-        let none = Self {
-            states: Vec::new(),
-            failed: None,
-        };
-        Self::of(&Solver::method(method), scene, h, substeps, steps).unwrap_or(none)
+        Self::of(&Solver::method(method), scene, h, substeps, steps)
     }
 
     /// The reason why the path is not a whole one, if so.

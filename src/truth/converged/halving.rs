@@ -145,6 +145,18 @@ pub(super) fn halve(
     })
 }
 
+/// Force evaluations times coordinates of the first level; None where forces are not finite.
+pub(super) fn first_cost(
+    system: &(dyn System + Sync),
+    start: &State,
+    until: f64,
+    size: f64,
+) -> Option<u64> {
+    let pieces = first_pieces(fastest_rate(system, start, size)?, until);
+    let each: u64 = Level::costs().iter().sum();
+    Some((each * system.dim() as u64).saturating_mul(pieces))
+}
+
 fn not_finite() -> NotConverged {
     NotConverged::new("the forces at the start are not finite")
 }

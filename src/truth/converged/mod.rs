@@ -188,6 +188,20 @@ pub fn find(
     found
 }
 
+/// About the force evaluations times coordinates that [`find`] will spend; 0 where it is stored or ends at once.
+pub fn expected(scene: &Scene, system: &ParticleSystem, until: f64, store: &dyn Store) -> u64 {
+    if store.load(&key(scene, until)).is_some() {
+        return 0;
+    }
+    let start = ParticleSystem::initial_state(scene);
+    let first = halving::first_cost(system, &start, until, scene.size());
+    let first = first.filter(|cost| *cost <= BUDGET).unwrap_or(0);
+    first.saturating_mul(HALVINGS).min(BUDGET)
+}
+
+/// All levels together, in units of the first: each has twice its steps, and three or four are usual.
+const HALVINGS: u64 = 15;
+
 impl NotConverged {
     fn new(reason: impl Into<String>) -> Self {
         Self {

@@ -82,7 +82,11 @@ pub fn announce(estimates: &[TimeEstimate], expected: f64, shorter: &str, quiet:
     let _ = writeln!(err, "about {expected:.0} s expected:");
     for TimeEstimate { label, seconds } in estimates {
         let (engine, steps) = (&label.engine, label.steps);
-        let _ = writeln!(err, "  {engine:<30} {seconds:>8.1} s  ({steps} steps)");
+        let steps = match steps {
+            0 => String::new(),
+            steps => format!("  ({steps} steps)"),
+        };
+        let _ = writeln!(err, "  {engine:<30} {seconds:>8.1} s{steps}");
     }
     let _ = writeln!(err, "shorter: {shorter}");
 }

@@ -5,6 +5,7 @@ use crate::report::json::Tool;
 use crate::scene::{self, Scene};
 use crate::truth::Demand;
 use crate::verbs::Report;
+use crate::verbs::cli::cache::Cache;
 use crate::verbs::cli::external::{self, External};
 use crate::verbs::cli::flags::{self, Time, demand};
 use crate::verbs::cli::output::{self, Output};
@@ -149,15 +150,14 @@ fn one(
     choice.expectations = expectations(args, scene, stated);
     let programs = external::chosen(&args.external, path, args.external_timeout);
     choice.solvers.extend(programs);
-    let plan = Plan::new(scene, &choice);
+    let plan = Plan::new(scene, &choice).expecting(files.is_some(), &Cache::new());
     let estimates = plan.estimate();
     let expected = terminal::expected(&estimates);
     terminal::announce(&estimates, expected, SHORTER, quiet);
     if let Some(place) = &place {
         place.create()?;
     }
-    let steps = plan.cases.iter().map(|case| case.label.steps).sum();
-    let terminal = Terminal::new(steps, expected, quiet).saving(files);
+    let terminal = Terminal::new(plan.units(), expected, quiet).saving(files);
     output::written(plan.execute(&terminal)?, place.as_ref())
 }
 

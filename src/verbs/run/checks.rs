@@ -1,5 +1,6 @@
 //! The checks of a plan beside its runs: the twin proof, and the order each integrator shows on the scene.
 
+use super::budget;
 use super::plan::{Case, Orders, Plan};
 use crate::integrators::Method;
 use crate::measure::order::{Study, check};
@@ -11,18 +12,23 @@ use crate::truth::Truth;
 use rayon::prelude::*;
 
 /// The twin proof: rapier's world and the hand-written one are the same scene, by a few steps of it. Empty where
-/// the choice does not want it, and where only external programs run.
+/// the choice does not want it, and where rapier does not run.
 pub fn proofs(plan: &Plan) -> Vec<Check> {
-    let computed = |case: &Case| case.solver.kind != SolverKind::External;
-    if !plan.choice.prove || !plan.cases.iter().any(computed) {
+    if !proves(plan) {
         return Vec::new();
     }
     let timestep = plan.scene.solver.timestep;
-    let mut proofs = twin::prove(plan.scene, timestep);
+    let mut proofs = twin::prove_within(plan.scene, timestep, budget::of_proofs(plan));
     if (plan.cases.iter()).any(|case| case.solver.id == "rapier-user-forces") {
         proofs.push(twin::prove_user_forces(plan.scene, plan.scene, timestep));
     }
     proofs
+}
+
+/// Whether a plan calls for the twin proof.
+pub fn proves(plan: &Plan) -> bool {
+    let is_rapier = |case: &Case| case.solver.kind == SolverKind::Rapier;
+    plan.choice.prove && plan.cases.iter().any(is_rapier)
 }
 
 /// Steps times coordinates of the scene's own run up to which orders are measured by default. Measuring
@@ -32,6 +38,21 @@ const MAX_DEFAULT_COST: u64 = 500_000;
 const BUDGET_RUNS: u64 = 4;
 /// The least budget of one method, in steps times coordinates.
 const MIN_BUDGET: u64 = 1_000_000;
+
+/// The cost of the scene's own run, in steps times coordinates.
+fn cost(plan: &Plan) -> u64 {
+    let steps = plan.scene.steps(plan.scene.solver.timestep);
+    steps.saturating_mul(plan.system.dim() as u64)
+}
+
+/// Whether a plan calls for orders, if there is a truth.
+pub fn measures_orders(plan: &Plan) -> bool {
+    match plan.choice.order {
+        Orders::Never => false,
+        Orders::Always => true,
+        Orders::WhereCheap => cost(plan) <= MAX_DEFAULT_COST,
+    }
+}
 
 /// A check of the observed order for each integrator, or one check that says why none was made. Empty without a truth.
 pub fn orders(plan: &Plan, truth: &Truth) -> Vec<Check> {
@@ -44,12 +65,11 @@ pub fn orders(plan: &Plan, truth: &Truth) -> Vec<Check> {
             methods.push(method);
         }
     }
-    let steps = scene.steps(scene.solver.timestep);
-    let cost = steps.saturating_mul(plan.system.dim() as u64);
+    let cost = cost(plan);
     if methods.is_empty() || plan.choice.order == Orders::Never {
         return Vec::new();
     }
-    if cost > MAX_DEFAULT_COST && plan.choice.order != Orders::Always {
+    if !measures_orders(plan) {
         return vec![skipped()];
     }
     let until = truth.horizon.min(scene.duration);

@@ -19,7 +19,7 @@ pub fn all(plan: &Plan, limits: &Limits, session: &dyn Session) -> Result<Vec<Re
     };
     let program = |case: &Case| {
         let program = case.solver.as_program()?;
-        Some(program::one(plan, case, program, limits, session))
+        Some(program::one(plan, case, program, limits))
     };
     let (engines, programs) = rayon::join(
         || plan.cases.par_iter().map(engine).collect::<Result<_, _>>(),
@@ -39,10 +39,12 @@ fn one(
     let Label {
         steps, timestep, ..
     } = case.label;
+    let each = case.step(plan.scene);
+    let progress = |taken: u64| session.progress(taken.saturating_mul(each));
     let mut run = match case.start(plan) {
         Ok(run) => run,
         Err(unsupported) => {
-            session.progress(steps);
+            progress(steps);
             return Ok(Record::none(Status::Unsupported, unsupported.reason));
         }
     };
@@ -50,7 +52,7 @@ fn one(
     let mut recorder = Recorder::new(steps, dim, timestep);
     let start = Instant::now();
     let coarse = limits.coarse();
-    let mut ended = run.finish(&coarse, &mut recorder, &|taken| session.progress(taken));
+    let mut ended = run.finish(&coarse, &mut recorder, &progress);
     let wall = spread(vec![start.elapsed().as_secs_f64()]);
     if ended != Ended::Completed
         && let Ok(again) = case.start(plan)
@@ -63,7 +65,7 @@ fn one(
     if let Some(mut saver) = session.saver(&case.label)? {
         // The same run again writes the file: the bits are the same, and the timed run writes nothing.
         if let Ok(mut again) = case.start(plan) {
-            again.finish(limits, saver.as_mut(), &|_| {});
+            again.finish(limits, saver.as_mut(), &progress);
         }
         saver.finish()?;
     }
@@ -79,7 +81,7 @@ fn one(
             (Status::Failed, Some(reason), step)
         }
     };
-    session.progress(steps.saturating_sub(taken));
+    progress(steps.saturating_sub(taken));
     Ok(Record {
         status,
         reason,

@@ -1,5 +1,6 @@
 //! The identity of each trajectory: the scheme it follows.
 
+use super::budget;
 use super::plan::{Case, Plan};
 use super::program::begin_with;
 use crate::integrators::Settings;
@@ -11,23 +12,25 @@ use std::borrow::Cow;
 /// The number of a run's steps that are replayed: enough to identify it, few enough to be quick. A file is
 /// replayed whole.
 const TRANSITIONS: usize = 16;
+/// The fewest steps that identify it.
+const FEWEST: usize = 3;
 
-/// Steps times particles that may be replayed whatever a run took: some hundredths of a second.
-const LEAST: u64 = 1_000_000;
-/// The same for a file, which is judged for its own sake: some seconds.
+/// Steps times particles that may be replayed of a file, which is judged for its own sake: some seconds.
 const OF_FILE: u64 = 60_000_000;
 
-/// Identifies the scheme of a run by replaying some of its steps, at no more cost than the run's own.
-pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Found {
-    let steps = run.rows().steps.last().copied().unwrap_or(0);
-    let particles = plan.scene.particles.len() as u64;
+/// Identifies the scheme of a run by replaying some of its steps; None where the scheme that it should follow takes
+/// more than the [budget](budget::of_replays) to replay.
+pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Option<Found> {
+    let budget = budget::of_replays(plan, case);
+    // A step is replayed twice, once with every number off by its rounding, and half of the budget is for others.
+    let each = 4 * case.replay(plan.scene).max(1);
     let question = Question {
-        transitions: Some(TRANSITIONS),
+        transitions: Some(((budget / each) as usize).clamp(FEWEST, TRANSITIONS)),
         hint: case.solver.law(plan.scene),
-        budget: steps.saturating_mul(particles).max(LEAST),
+        budget,
         ..question(plan, run.rows())
     };
-    identify(&question)
+    (FEWEST as u64 * each <= budget).then(|| identify(&question))
 }
 
 /// Identifies the scheme of rows by replaying all their steps, and finds the first step that deviates from it.

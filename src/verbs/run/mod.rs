@@ -5,6 +5,7 @@
 //! only wall times do.
 
 mod args;
+mod budget;
 mod checks;
 mod curves;
 mod execute;
@@ -45,19 +46,29 @@ impl Plan<'_> {
         let limits = facts::limits(scene, system);
         let ends = self.cases.iter().map(|case| case.label.end());
         let until = ends.fold(0.0, f64::max);
-        let find = || truth::find(scene, system, self.choice.truth, until, session.store());
+        let find = || {
+            let truth = truth::find(scene, system, self.choice.truth, until, session.store());
+            session.progress(self.beside.truth);
+            truth
+        };
         let (truth, (records, proofs)) = rayon::join(find, || {
             rayon::join(
                 || execute::all(self, &limits, session),
-                || checks::proofs(self),
+                || {
+                    let proofs = checks::proofs(self);
+                    session.progress(self.beside.proofs);
+                    proofs
+                },
             )
         });
         let mut records = records?;
         let truths = Truths::new(self, &records, &truth);
         let orders = checks::orders(self, &truth);
+        session.progress(self.beside.orders);
         execute::time_again(self, &mut records, &limits);
         let scale = facts::energy_scale(scene, system, &truth);
-        let (outcomes, energies) = outcomes::all(self, &records, &truths, scale);
+        let (outcomes, energies, left_out) = outcomes::all(self, &records, &truths, scale);
+        session.progress(self.beside.judging);
         let mut evaluations = [0, 0];
         for (case, record) in self.cases.iter().zip(&records) {
             if case.solver.kind == SolverKind::Integrator {
@@ -71,6 +82,7 @@ impl Plan<'_> {
             checks: proofs
                 .into_iter()
                 .chain(orders)
+                .chain(budget::left_out(left_out))
                 .chain(facts::no_scale(scale))
                 .collect(),
         };

@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use super::record::Record;
 use super::truths::Truths;
-use super::{identity, remarks};
+use super::{budget, identity, remarks};
 use crate::measure::{self, Deviation, EnergySeries, TOLERANCE};
 use crate::solvers::Status;
 use crate::trajectory::Trajectory;
@@ -11,14 +11,15 @@ use crate::verbs::run::{Outcome, WorkSummary};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// One outcome for each case, and its energies over time for the figures.
+/// One outcome for each case, its energies over time for the figures, and what was left out since it would have
+/// taken longer than the runs.
 pub fn all(
     plan: &Plan,
     records: &[Record],
     truths: &Truths,
     scale: Option<f64>,
-) -> (Vec<Outcome>, Vec<Option<EnergySeries>>) {
-    let limits = remarks::linearised(plan);
+) -> (Vec<Outcome>, Vec<Option<EnergySeries>>, Vec<String>) {
+    let (limits, limits_left_out) = remarks::linearised(plan, budget::of_limits(plan));
     let one = |index: usize| {
         let (case, record) = (&plan.cases[index], &records[index]);
         let timestep = case.label.timestep;
@@ -30,7 +31,8 @@ pub fn all(
         let judged = |series| measure::judge(series, scale, diverged);
         let replayed = trajectory.filter(|_| plan.choice.identify);
         let found = replayed.map(|run| identity::of_run(plan, case, run));
-        let found = found.unwrap_or_default();
+        let unknown = found.as_ref().is_some_and(Option::is_none);
+        let found = found.flatten().unwrap_or_default();
         let mut outcome = Outcome {
             engine: case.label.engine.clone(),
             kind: case.solver.kind,
@@ -56,9 +58,24 @@ pub fn all(
         };
         outcome.remarks = remarks::remarks(plan, case, &outcome, limits.as_ref());
         outcome.remarks.extend(record.remarks.iter().cloned());
-        (outcome, series)
+        (outcome, (series, unknown))
     };
-    (0..records.len()).into_par_iter().map(one).unzip()
+    let (outcomes, rest): (Vec<_>, Vec<_>) = (0..records.len()).into_par_iter().map(one).unzip();
+    let (energies, unknown): (Vec<_>, Vec<bool>) = rest.into_iter().unzip();
+    let mut left_out = Vec::new();
+    left_out.extend(limits_left_out.then(|| "predicted limits".to_owned()));
+    for (case, _) in plan
+        .cases
+        .iter()
+        .zip(unknown)
+        .filter(|(_, unknown)| *unknown)
+    {
+        let what = format!("replays of {}", case.label.engine);
+        if !left_out.contains(&what) {
+            left_out.push(what);
+        }
+    }
+    (outcomes, energies, left_out)
 }
 
 /// The deviations from every other reference engine that ran at the same timestep.

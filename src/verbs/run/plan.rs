@@ -1,10 +1,11 @@
 //! The plan of a run: each chosen solver at each timestep.
 
+use super::budget::Beside;
 use crate::integrators;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::{self, Run, Setting, Solver, SolverKind, Unsupported};
-use crate::truth::Demand;
+use crate::truth::{Demand, Store};
 use crate::verbs::session::{Label, TimeEstimate};
 use std::time::{Duration, Instant};
 
@@ -124,6 +125,8 @@ pub struct Plan<'a> {
     pub cases: Vec<Case>,
     /// The choice the plan is made from.
     pub choice: Choice,
+    /// What is done beside the runs, for the progress; nothing until [`Plan::expecting`] says it.
+    pub beside: Beside,
 }
 
 impl<'a> Plan<'a> {
@@ -148,14 +151,50 @@ impl<'a> Plan<'a> {
             system: ParticleSystem::new(scene),
             cases,
             choice: choice.clone(),
+            beside: Beside::default(),
         }
     }
 
-    /// Estimates the wall time of each case from its first few steps. External programs have no estimate.
+    /// The same plan with what is done beside the runs, which are saved if `saving`.
+    #[must_use]
+    pub fn expecting(mut self, saving: bool, store: &dyn Store) -> Self {
+        self.beside = Beside::of(&self, saving, store);
+        self
+    }
+
+    /// All that is counted by [`Session::progress`](crate::verbs::session::Session::progress), in steps of one
+    /// particle under explicit forces.
+    pub fn units(&self) -> u64 {
+        let beside = self.beside.named().map(|(_, effort)| effort);
+        beside.into_iter().fold(self.effort(), u64::saturating_add)
+    }
+
+    /// Estimates the wall time of each case from its first few steps, and of what is done beside the runs. External
+    /// programs have no estimate.
     pub fn estimate(&self) -> Vec<TimeEstimate> {
         // One after the other: cases that run at the same time would slow each other down.
-        let estimate = |case| estimate(self, case);
-        self.cases.iter().filter_map(estimate).collect()
+        let estimate = |case| Some((case, estimate(self, case)?));
+        let runs: Vec<(&Case, TimeEstimate)> = self.cases.iter().filter_map(estimate).collect();
+        // The lightest case shows best how long a step of one particle takes here.
+        let lightest = runs.iter().min_by_key(|(case, _)| case.step(self.scene));
+        let unit = lightest.map_or(NOMINAL, |(case, estimate)| {
+            estimate.seconds / case.effort(self.scene).max(1) as f64
+        });
+        let beside = self
+            .beside
+            .named()
+            .into_iter()
+            .filter(|(_, effort)| *effort > 0);
+        let beside = beside.map(|(what, effort)| TimeEstimate {
+            label: Label {
+                engine: what.to_owned(),
+                timestep: self.scene.solver.timestep,
+                steps: 0,
+                particles: self.scene.particles.len(),
+            },
+            seconds: unit * effort as f64,
+        });
+        runs.into_iter().map(|(_, run)| run).chain(beside).collect()
     }
 }
 
@@ -163,7 +202,20 @@ impl<'a> Plan<'a> {
 const SAMPLE: Duration = Duration::from_millis(1);
 const SAMPLES: usize = 2;
 
+/// The largest step, in steps of one particle under explicit forces, that is taken to see how long it takes: about
+/// a second. A tenth of that is timed once.
+const TRIED: u64 = 30_000_000;
+/// Seconds of such a step of one particle, about, where none is taken.
+const NOMINAL: f64 = 30e-9;
+
 fn estimate(plan: &Plan, case: &Case) -> Option<TimeEstimate> {
+    let step = case.step(plan.scene);
+    if step > TRIED {
+        return Some(TimeEstimate {
+            label: case.label.clone(),
+            seconds: NOMINAL * step as f64 * case.label.steps as f64,
+        });
+    }
     let mut run = case.start(plan).ok()?;
     // The first step also allocates and orders matrices, so it is not timed.
     run.advance(1).ok()?;
@@ -179,7 +231,8 @@ fn estimate(plan: &Plan, case: &Case) -> Option<TimeEstimate> {
         start.elapsed().as_secs_f64() / f64::max(1.0, steps as f64)
     };
     // The least, since a disturbance can only lengthen a sample.
-    let each = (0..SAMPLES).map(|_| sample()).fold(f64::INFINITY, f64::min);
+    let samples = if 10 * step > TRIED { 1 } else { SAMPLES };
+    let each = (0..samples).map(|_| sample()).fold(f64::INFINITY, f64::min);
     Some(TimeEstimate {
         label: case.label.clone(),
         seconds: each * case.label.steps as f64,

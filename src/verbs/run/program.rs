@@ -7,16 +7,9 @@ use crate::solvers::external::{Program, Recording, Task};
 use crate::solvers::{Counts, Limits, Status};
 use crate::trajectory::{Precision, Rows, Trajectory};
 use crate::verbs::clock::spread;
-use crate::verbs::session::Session;
 
 /// Runs one case of a program and returns its record.
-pub fn one(
-    plan: &Plan,
-    case: &Case,
-    program: &dyn Program,
-    limits: &Limits,
-    session: &dyn Session,
-) -> Record {
+pub fn one(plan: &Plan, case: &Case, program: &dyn Program, limits: &Limits) -> Record {
     let task = Task {
         scene: plan.scene,
         system: &plan.system,
@@ -24,7 +17,6 @@ pub fn one(
         steps: case.label.steps,
     };
     let answer = program.record(&task);
-    session.progress(case.label.steps);
     match answer {
         Ok(recording) => record_of(recording, &task, limits),
         Err(failure) => Record::none(Status::Failed, failure.to_string()),

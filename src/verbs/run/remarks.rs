@@ -167,13 +167,43 @@ fn by_balance(method: &Method, class: EnergyClass, lost: bool) -> String {
     )
 }
 
-/// The scene linearised about its start, if the plan has a method: only methods have a predicted limit.
-pub fn linearised(plan: &Plan) -> Option<Linearised> {
-    let method = |case: &Case| case.solver.as_method().is_some();
-    plan.cases.iter().any(method).then(|| {
-        let start = ParticleSystem::initial_state(plan.scene);
-        Linearised::new(&plan.system, &start, Effort::BRIEF)
-    })
+/// What linearising takes a particle, in its steps under explicit forces, and what each prediction takes where
+/// damping couples modes: one and a few Krylov spaces.
+const LINEARISED: u64 = 1_700;
+const COUPLED: u64 = 3_000;
+/// Its matrices and vectors take some 25 kB a particle: with more than so many, more than a gigabyte.
+const MOST_LINEARISED: u64 = 40_000;
+
+/// What predicting the limits of a plan's methods takes, in steps of one particle; None where there is none to
+/// predict, or no memory for it.
+pub fn effort(plan: &Plan) -> Option<u64> {
+    let methods = plan
+        .cases
+        .iter()
+        .filter(|case| case.solver.as_method().is_some());
+    let methods = methods.count() as u64;
+    let coupled = if plan.system.kinds().depends_on_velocity() {
+        COUPLED.saturating_mul(methods)
+    } else {
+        0
+    };
+    let particles = plan.scene.particles.len() as u64;
+    let any = methods > 0 && particles <= MOST_LINEARISED;
+    any.then(|| (LINEARISED + coupled).saturating_mul(particles))
+}
+
+/// The scene linearised about its start, if the plan has a method: only methods have a predicted limit. None, and
+/// true, where that takes more than the budget.
+pub fn linearised(plan: &Plan, budget: u64) -> (Option<Linearised>, bool) {
+    if effort(plan).is_none_or(|effort| effort > budget) {
+        let method = |case: &Case| case.solver.as_method().is_some();
+        return (None, plan.cases.iter().any(method));
+    }
+    let start = ParticleSystem::initial_state(plan.scene);
+    (
+        Some(Linearised::new(&plan.system, &start, Effort::BRIEF)),
+        false,
+    )
 }
 
 /// A relative growth of amplitudes over a whole run below this is invisible in a plot.
