@@ -137,8 +137,8 @@ impl<'a> Study<'a> {
         study
     }
 
-    /// Sets another budget, in steps times coordinates over all levels and the control. One coarse
-    /// level is run twice, to see how much rounding grows; that comes on top.
+    /// Sets another budget, in steps times coordinates over all horizons, their levels and the control. One coarse
+    /// level of each horizon is run twice, to see how much rounding grows, also where nothing is left for it.
     pub fn budget(mut self, budget: u64) -> Self {
         self.budget = budget;
         self

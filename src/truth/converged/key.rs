@@ -1,6 +1,6 @@
 //! The key of a scene's motion: all it depends on, as one number.
 
-use super::{BUDGET, VERSION};
+use super::{VERSION, budget};
 use crate::scene::model::PARTS;
 use crate::scene::{Scene, Value};
 use sha2::{Digest, Sha256};
@@ -13,7 +13,8 @@ use sha2::{Digest, Sha256};
 pub fn key(scene: &Scene, until: f64) -> String {
     let mut hash = Sha256::new();
     let mut add = |number: u64| hash.update(number.to_le_bytes());
-    for number in [u64::from(VERSION), BUDGET, until.to_bits()] {
+    let budget = budget(3 * scene.particles.len());
+    for number in [u64::from(VERSION), budget, until.to_bits()] {
         add(number);
     }
     for part in PARTS {
