@@ -3,7 +3,7 @@
 use super::plan::{Case, Plan};
 use crate::integrators::{EnergyLaw, Method, PerStep, Settings, Stable};
 use crate::measure::stability::{Effort, Limit, Linearised, Prediction};
-use crate::measure::{Energy, EnergyClass};
+use crate::measure::{Behaviour, Energy, EnergyClass};
 use crate::physics::{ParticleSystem, System};
 use crate::solvers::Status;
 use crate::verbs::run::Outcome;
@@ -15,8 +15,14 @@ pub fn remarks(
     outcome: &Outcome,
     linearised: Option<&Linearised>,
 ) -> Vec<String> {
-    let class = outcome.energy.as_ref().and_then(|energy| energy.class);
-    let warning = linearised.and_then(|linearised| step_warning(linearised, case));
+    let energy = outcome.energy.as_ref();
+    // What is steady needs no explanation.
+    let steady = energy.and_then(Energy::behaviour) == Some(Behaviour::Steady);
+    let class = energy.and_then(|energy| energy.class).filter(|_| !steady);
+    let method = case.solver.as_method();
+    let prediction = linearised.zip(method);
+    let prediction = prediction.map(|(scene, method)| scene.predict(method, case.label.timestep));
+    let warning = prediction.as_ref().and_then(|p| step_warning(p, case));
     let mut remarks = Vec::new();
     match outcome.status {
         Status::Unsupported | Status::Failed => {
@@ -27,11 +33,17 @@ pub fn remarks(
             let time = outcome.stopped_at_s.unwrap_or(0.0);
             let damped = plan.system.kinds().depends_on_velocity();
             // The limit on this scene says more than the method's general facts.
-            let why = match (&warning, case.solver.as_method()) {
-                (None, Some(method)) => why_unstable(method, damped),
+            let why = match (&warning, method, prediction.as_ref().map(|p| &p.limit)) {
+                (None, Some(_), Some(Limit::At(limit))) => format!(
+                    "; the step is within the stability limit {} s of the scene at its start, \
+                     which the motion leaves",
+                    short(*limit)
+                ),
+                (None, Some(method), _) => why_unstable(method, damped),
                 _ => String::new(),
             };
-            remarks.push(format!("diverged at t = {time:.4} s, {cause}{why}"));
+            let time = short(time);
+            remarks.push(format!("diverged at t = {time} s, {cause}{why}"));
         }
         Status::Completed => {
             let lost = outcome.energy.as_ref().is_some_and(Energy::lost);
@@ -180,13 +192,12 @@ const VISIBLE: f64 = 0.01;
 
 /// The warning that a timestep exceeds the stability limit of its method on this scene; None where it is stable
 /// or the limit is unknown.
-fn step_warning(linearised: &Linearised, case: &Case) -> Option<String> {
+fn step_warning(prediction: &Prediction, case: &Case) -> Option<String> {
     let h = case.label.timestep;
-    let prediction = linearised.predict(case.solver.as_method()?, h);
     match prediction.limit {
         // Exactly at the limit nothing grows, and a timestep rounded to a few digits may be meant to lie there.
-        Limit::At(limit) if h > limit * (1.0 + 1e-9) => Some(beyond_limit(h, limit, &prediction)),
-        Limit::Never => never_stable(h, case.label.end(), &prediction),
+        Limit::At(limit) if h > limit * (1.0 + 1e-9) => Some(beyond_limit(h, limit, prediction)),
+        Limit::Never => never_stable(h, case.label.end(), prediction),
         // The scene is too large to know all its modes, but one that grows is enough.
         Limit::Unknown(_) => {
             let growth = prediction.growth_per_s.filter(|rate| *rate > 0.0)?;
