@@ -16,27 +16,27 @@ use nalgebra::Complex;
 /// use springcheck::integrators::{Coefficients, Method, MethodRow, Settings, Stable, Tableau};
 /// use springcheck::measure::CheckStatus;
 ///
-/// let kutta3 = Method::new(MethodRow {
-///     id: "kutta3",
-///     name: "Kutta's third-order method",
+/// let heun3 = Method::new(MethodRow {
+///     id: "heun3",
+///     name: "Heun's third-order method",
 ///     coefficients: Coefficients::Tableau(Tableau {
-///         a: &[&[], &[0.5], &[-1.0, 2.0]],
-///         b: &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
-///         c: &[0.0, 0.5, 1.0],
+///         a: &[&[], &[1.0 / 3.0], &[0.0, 2.0 / 3.0]],
+///         b: &[0.25, 0.0, 0.75],
+///         c: &[0.0, 1.0 / 3.0, 2.0 / 3.0],
 ///     }),
 ///     energy: None,
-///     source: "Kutta 1901",
-///     not: "Heun's third-order method",
+///     source: "Heun 1900",
+///     not: "heun, which is of second order; rk3",
 /// });
-/// assert_eq!(kutta3.order, 3);
-/// let Stable::Below(z) = kutta3.oscillator.stable else {
+/// assert_eq!(heun3.order, 3);
+/// let Stable::Below(z) = heun3.oscillator.stable else {
 ///     panic!("stable up to the root of 3");
 /// };
 /// assert!((z - 3_f64.sqrt()).abs() < 1e-15);
 ///
 /// // Its steps agree with the facts derived from its coefficients.
-/// let build = || kutta3.build(&Settings::default());
-/// let findings = check(&build, &Claims::from(&kutta3));
+/// let build = || heun3.build(&Settings::default());
+/// let findings = check(&build, &Claims::from(&heun3));
 /// assert!(findings.iter().all(|finding| finding.status != CheckStatus::Fail));
 /// ```
 #[derive(Debug, Clone, Copy)]
@@ -117,14 +117,14 @@ fn of_scheme(row: MethodRow, scheme: ImplicitScheme) -> Method {
         plus: tableau.b.len() as u32,
     };
     let mut method = of_tableau(row, &tableau, iterated);
-    if let ImplicitScheme::LinearizedEuler(linearization) = scheme {
+    if let ImplicitScheme::PredictedEuler | ImplicitScheme::LinearizedEuler(_) = scheme {
         method.evaluations = PerStep::Exactly(1);
-        if linearization == Linearization::Material {
-            method.amplification = Amplification::MaterialImplicit;
-            // Without the stiffness across, a step kicks with the force at the start and then drifts.
-            if let Stable::Below(across) = oscillator_limit(Stage::SYMPLECTIC_EULER) {
-                method.oscillator.stable = Stable::AlwaysAlong { across };
-            }
+    }
+    if scheme == ImplicitScheme::LinearizedEuler(Linearization::Material) {
+        method.amplification = Amplification::MaterialImplicit;
+        // Without the stiffness across, a step kicks with the force at the start and then drifts.
+        if let Stable::Below(across) = oscillator_limit(Stage::SYMPLECTIC_EULER) {
+            method.oscillator.stable = Stable::AlwaysAlong { across };
         }
     }
     method

@@ -11,7 +11,9 @@ use std::f64::consts::SQRT_2;
 pub enum ImplicitScheme {
     /// Backward Euler, solved to the tolerance.
     Euler,
-    /// One Newton step of backward Euler from (x, v), with this linearization of the force.
+    /// The first Newton iterate of backward Euler from u = v0: force and Jacobians at x0 + h v0.
+    PredictedEuler,
+    /// The same with force and Jacobians at x0, and this linearization of the force.
     LinearizedEuler(Linearization),
     Midpoint,
     Trapezoidal,
@@ -26,7 +28,7 @@ impl ImplicitScheme {
     /// Newton's iteration needs a symmetric D.
     pub(super) const fn takes(self) -> ForceKinds {
         match self {
-            Self::LinearizedEuler(_) => ForceKinds::ANY,
+            Self::PredictedEuler | Self::LinearizedEuler(_) => ForceKinds::ANY,
             _ => ForceKinds::SYMMETRIC,
         }
     }
@@ -34,7 +36,7 @@ impl ImplicitScheme {
     /// The Runge-Kutta method it is equal to; the linearised ones are so for linear forces.
     pub(super) fn tableau(self) -> Tableau {
         match self {
-            Self::Euler | Self::LinearizedEuler(_) => Tableau {
+            Self::Euler | Self::PredictedEuler | Self::LinearizedEuler(_) => Tableau {
                 a: &[&[1.0]],
                 b: &[1.0],
                 c: &[1.0],
@@ -74,16 +76,26 @@ pub(super) const IMPLICIT_EULER: MethodRow = MethodRow {
     coefficients: Coefficients::Implicit(ImplicitScheme::Euler),
     energy: Some("1/(1 + z²)"),
     source: "Hairer, Wanner, Solving ODEs II, IV.3",
-    not: "linearized_implicit, which stops after one Newton step",
+    not: "linearized_implicit_predicted, which stops after one Newton iteration",
 };
 
-pub(super) const LINEARIZED_IMPLICIT: MethodRow = MethodRow {
-    id: "linearized_implicit",
-    name: "linearly implicit Euler",
+pub(super) const LINEARIZED_IMPLICIT_PREDICTED: MethodRow = MethodRow {
+    id: "linearized_implicit_predicted",
+    name: "linearly implicit Euler, predicted",
+    coefficients: Coefficients::Implicit(ImplicitScheme::PredictedEuler),
+    energy: Some("1/(1 + z²)"),
+    source: "implicit Euler's first Newton iterate from v0; Hairer, Wanner, Solving ODEs II, IV.7-8",
+    not: "linearized_implicit_at_start, whose force and Jacobians are those at x0; implicit_euler, \
+          which iterates until it has converged",
+};
+
+pub(super) const LINEARIZED_IMPLICIT_AT_START: MethodRow = MethodRow {
+    id: "linearized_implicit_at_start",
+    name: "linearly implicit Euler, at the start",
     coefficients: Coefficients::Implicit(ImplicitScheme::LinearizedEuler(Linearization::Exact)),
     energy: Some("1/(1 + z²)"),
     source: "Baraff & Witkin 1998, Large Steps in Cloth Simulation, with the exact Jacobian",
-    not: "implicit_euler: non-linear forces are met only to first order",
+    not: "linearized_implicit_predicted, whose force and Jacobians are those at x0 + h v0",
 };
 
 pub(super) const LINEARIZED_IMPLICIT_MATERIAL: MethodRow = MethodRow {
@@ -92,7 +104,7 @@ pub(super) const LINEARIZED_IMPLICIT_MATERIAL: MethodRow = MethodRow {
     coefficients: Coefficients::Implicit(ImplicitScheme::LinearizedEuler(Linearization::Material)),
     energy: Some("1/(1 + z²)"),
     source: "Baraff & Witkin 1998 with K = k n nᵀ; what rapier's spring joint converges to",
-    not: "linearized_implicit: the stiffness of a spring's turning is left out, so transverse \
+    not: "linearized_implicit_at_start: here the stiffness of a spring's turning is left out, so transverse \
           motion is only as stable as symplectic Euler's",
 };
 
@@ -186,6 +198,12 @@ impl Integrator for Implicit {
         let mut work = state.work;
         match self.scheme {
             ImplicitScheme::Euler => work.advance(self.solve(system, end, h)?, h),
+            ImplicitScheme::PredictedEuler => {
+                let newton = &mut self.newton;
+                let power = newton.first(system, end, h, &self.b, &self.y, &mut self.u)?;
+                axpy(&mut self.y, h, &self.u);
+                work.advance(power, h);
+            }
             ImplicitScheme::LinearizedEuler(linearization) => {
                 let power = self
                     .newton

@@ -277,11 +277,14 @@ pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
         runge_kutta::RALSTON,
         splitting::VELOCITY_VERLET,
         splitting::POSITION_VERLET,
+        runge_kutta::RK3,
+        runge_kutta::SSPRK3,
         runge_kutta::RK4,
         splitting::YOSHIDA4,
         splitting::PEFRL,
         implicit::IMPLICIT_EULER,
-        implicit::LINEARIZED_IMPLICIT,
+        implicit::LINEARIZED_IMPLICIT_PREDICTED,
+        implicit::LINEARIZED_IMPLICIT_AT_START,
         implicit::LINEARIZED_IMPLICIT_MATERIAL,
         implicit::IMPLICIT_MIDPOINT,
         implicit::TRAPEZOIDAL,
@@ -292,9 +295,19 @@ pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
     rows.map(Method::new).to_vec()
 });
 
+/// Short ids, each with the id of the row it means. Scenes and command lines may use either; reports use the
+/// row's.
+pub const ALIASES: &[(&str, &str)] = &[("linearized_implicit", "linearized_implicit_predicted")];
+
+/// The id of the row that an id means: its own, unless it is one of the [`ALIASES`].
+pub fn meant(id: &str) -> &str {
+    let alias = ALIASES.iter().find(|(short, _)| *short == id);
+    alias.map_or(id, |(_, row)| row)
+}
+
 /// The method of this id.
 pub fn find(id: &str) -> Option<&'static Method> {
-    REGISTRY.iter().find(|method| method.id == id)
+    REGISTRY.iter().find(|method| method.id == meant(id))
 }
 
 /// The methods of fixed steps. They are maps of a state, so they can be replayed and have a stability limit.

@@ -67,6 +67,32 @@ pub(super) const RALSTON: MethodRow = MethodRow {
     not: "Ralston's third-order method",
 };
 
+pub(super) const RK3: MethodRow = MethodRow {
+    id: "rk3",
+    name: "Kutta's third-order method",
+    coefficients: Coefficients::Tableau(Tableau {
+        a: &[&[], &[0.5], &[-1.0, 2.0]],
+        b: &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
+        c: &[0.0, 0.5, 1.0],
+    }),
+    energy: Some("1 - z⁴/12 + z⁶/36"),
+    source: "Kutta 1901; Hairer, Nørsett, Wanner, Solving ODEs I, II.1",
+    not: "ssprk3, the same map on linear forces; Heun's third-order method",
+};
+
+pub(super) const SSPRK3: MethodRow = MethodRow {
+    id: "ssprk3",
+    name: "Shu-Osher, third order",
+    coefficients: Coefficients::Tableau(Tableau {
+        a: &[&[], &[1.0], &[0.25, 0.25]],
+        b: &[1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
+        c: &[0.0, 1.0, 0.5],
+    }),
+    energy: Some("1 - z⁴/12 + z⁶/36"),
+    source: "Shu & Osher 1988, J. Comput. Phys. 77: the strong-stability preserving method of order 3",
+    not: "rk3, the same map on linear forces; its three-step form in Euler steps is this method",
+};
+
 pub(super) const RK4: MethodRow = MethodRow {
     id: "rk4",
     name: "classical Runge-Kutta",

@@ -12,7 +12,7 @@ use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::rapier::RapierSettings;
 use crate::solvers::{Solver, Unsupported, find};
-use lockstep::{Path, distance};
+use lockstep::{ForcesHeld, Path, distance};
 use start::{condition, disturbed, set_in_motion};
 
 /// World steps of the proof against symplectic Euler.
@@ -43,19 +43,7 @@ pub fn prove(scene: &Scene, timestep: f64) -> Vec<Check> {
 
 /// The same with a scene of its own for rapier: a different one must fail. For tests of the proof.
 pub fn prove_pair(ours: &Scene, theirs: &Scene, timestep: f64) -> Vec<Check> {
-    let mut start = set_in_motion(ours, timestep * f64::from(JOINT_STEPS));
-    // Whatever residual the scene puts up with, the proof solves to the default one.
-    start.solver.tolerance = None;
-    // Their side differs in what the caller made different, never in how it is set in motion.
-    let mut other = theirs.clone();
-    for (theirs, moving) in other.particles.iter_mut().zip(&start.particles) {
-        theirs.velocity = moving.velocity;
-    }
-    let pair = Pair {
-        ours: start,
-        theirs: other,
-        timestep,
-    };
+    let pair = Pair::new(ours, theirs, timestep);
     let mut proofs = vec![
         pair.prove(FORCES, Pair::forces),
         pair.prove(JOINTS, Pair::joints),
@@ -65,6 +53,12 @@ pub fn prove_pair(ours: &Scene, theirs: &Scene, timestep: f64) -> Vec<Check> {
         proofs.push(pair.prove(FALL, Pair::fall));
     }
     proofs
+}
+
+/// The proof `twin-user-forces`, for runs that have this engine: rapier's bodies at its defaults hold the forces
+/// of each step's start. `theirs` is rapier's scene, which is the same but in tests of the proof.
+pub fn prove_user_forces(ours: &Scene, theirs: &Scene, timestep: f64) -> Check {
+    Pair::new(ours, theirs, timestep).prove(USER_FORCES, Pair::user_forces)
 }
 
 /// The claim that a proof is to show.
@@ -80,6 +74,12 @@ const FORCES: Claim = Claim {
     id: "twin-forces",
     subject: "rapier-forces",
     method: "symplectic_euler",
+};
+/// rapier-user-forces is symplectic Euler at dt / n under held forces.
+const USER_FORCES: Claim = Claim {
+    id: "twin-user-forces",
+    subject: "rapier-user-forces",
+    method: "forces_held(symplectic_euler)",
 };
 /// rapier-converged is linearly implicit Euler without geometric stiffness, at dt / 4.
 const JOINTS: Claim = Claim {
@@ -162,6 +162,23 @@ struct Pair {
 }
 
 impl Pair {
+    /// Both sides, set in motion.
+    fn new(ours: &Scene, theirs: &Scene, timestep: f64) -> Self {
+        let mut start = set_in_motion(ours, timestep * f64::from(JOINT_STEPS));
+        // Whatever residual the scene puts up with, the proof solves to the default one.
+        start.solver.tolerance = None;
+        // Their side differs in what the caller made different, never in how it is set in motion.
+        let mut other = theirs.clone();
+        for (theirs, moving) in other.particles.iter_mut().zip(&start.particles) {
+            theirs.velocity = moving.velocity;
+        }
+        Self {
+            ours: start,
+            theirs: other,
+            timestep,
+        }
+    }
+
     /// rapier's path over `steps` world steps.
     fn theirs(&self, solver: Option<Solver>, steps: u32) -> Result<Path, Unsupported> {
         let solver = solver.ok_or_else(|| Unsupported {
@@ -182,6 +199,16 @@ impl Pair {
         let ours = Path::ours(&self.ours, claim.method, self.timestep, 1, FORCE_STEPS);
         // v += h (f / m), x += h v: the forces are the same code, and both sides round the same
         // four operations in the same order. There is no difference to be amplified.
+        let derivation = "both sides round the same operations in the same order: bit for bit";
+        Ok(claim.judge(&ours, &theirs, 0.0, derivation.to_owned()))
+    }
+
+    fn user_forces(&self, claim: &Claim) -> Result<Check, Unsupported> {
+        let substeps = RapierSettings::DEFAULT.iterations;
+        let held = Solver::own(claim.method, move || Box::new(ForcesHeld::new(substeps)));
+        let theirs = self.theirs(find(claim.subject), FORCE_STEPS)?;
+        let ours = Path::of(&held, &self.ours, self.timestep, 1, FORCE_STEPS)?;
+        // v += h/n (f / m), x += h/n v: the same code and the same operations, as in `forces`.
         let derivation = "both sides round the same operations in the same order: bit for bit";
         Ok(claim.judge(&ours, &theirs, 0.0, derivation.to_owned()))
     }

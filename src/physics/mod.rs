@@ -38,6 +38,17 @@ pub trait System {
     /// Not to be confused with a force: `a` is already divided by the mass.
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power;
 
+    /// Overwrites `a` with a bound of how far rounding moves the acceleration, m/s²: what another program's,
+    /// computed in another order, may differ by.
+    ///
+    /// The default is that of a force without cancellation.
+    fn rounding(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
+        self.acceleration(t, x, v, a);
+        for a in a {
+            *a = 4.0 * f64::EPSILON * a.abs();
+        }
+    }
+
     /// The kinds of all forces together.
     ///
     /// By default the force is assumed to depend on velocity in any way, and methods for which that would

@@ -128,6 +128,14 @@ impl System for ParticleSystem {
         power
     }
 
+    fn rounding(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
+        vector::clear(a);
+        for (_, effect) in self.effects.iter() {
+            effect.add_rounding(t, x, v, a);
+        }
+        vector::multiply(a, &self.inverse_mass);
+    }
+
     fn kinds(&self) -> ForceKinds {
         self.kinds
     }

@@ -30,6 +30,7 @@ impl<'de> Visitor<'de> for Engines<'_> {
     fn visit_map<A: MapAccess<'de>>(mut self, mut map: A) -> Result<(), A::Error> {
         let mut before = Vec::new();
         while let Some(scope) = map.next_key_seed(Key(|engine: &str| {
+            let engine = self.names.meant(engine);
             fresh(engine, &mut before)?;
             scope(engine, self.names)
         }))? {
@@ -94,7 +95,8 @@ impl<'de> Visitor<'de> for Line<'_, '_> {
             fresh(key, &mut before)?;
             Ok(keys.iter().find(|known| known.path == key))
         }))? {
-            let wanted = map.next_value_seed(Any(Value(key.map(|key| &key.kind))))?;
+            let wanted =
+                map.next_value_seed(Any(Value(key.map(|key| &key.kind), engines.names)))?;
             let Some(key) = key else {
                 let key = before.last().map_or("", String::as_str);
                 let paths: Vec<&str> = keys.iter().map(|known| known.path.as_str()).collect();
@@ -118,7 +120,7 @@ impl<'de> Visitor<'de> for Line<'_, '_> {
 }
 
 /// Reads what is expected under a key of this kind. Without a kind only the shape is checked.
-struct Value<'k>(Option<&'k KeyKind>);
+struct Value<'k>(Option<&'k KeyKind>, &'k Names);
 
 impl Value<'_> {
     fn takes_words(&self) -> Result<(), Refusal> {
@@ -138,6 +140,7 @@ impl Value<'_> {
     fn word(&self, word: &str) -> Result<String, Refusal> {
         short(word)?;
         self.takes_words()?;
+        let word = self.1.meant(word);
         if let Some(KeyKind::Word(words)) = self.0 {
             known(word, words, "word")?;
         }
@@ -168,10 +171,11 @@ impl<'de> Visitor<'de> for Value<'_> {
             if words.len() >= EXPECTED {
                 return Refusal::because(format!("expected at most {EXPECTED} words"), "");
             }
-            if words.iter().any(|before| before == word) {
+            let word = self.word(word)?;
+            if words.contains(&word) {
                 return Refusal::because(format!("`{word}` is given twice"), "keep one of them");
             }
-            self.word(word)
+            Ok(word)
         })))? {
             words.push(word);
         }

@@ -13,10 +13,20 @@ pub(super) const REST: &str = "rest";
 pub struct Names {
     /// Ids of integrators, for `solver.type` and for `expect`.
     pub methods: Vec<&'static str>,
+    /// Short ids, each with the id it means, which the scene then holds.
+    pub aliases: &'static [(&'static str, &'static str)],
     /// Ids of reference engines, for `expect`.
     pub engines: Vec<&'static str>,
     /// The keys an expectation may be about.
     pub keys: Vec<OutcomeKey>,
+}
+
+impl Names {
+    /// The id that a word of the file means.
+    pub(super) fn meant<'a>(&self, word: &'a str) -> &'a str {
+        let alias = self.aliases.iter().find(|(short, _)| *short == word);
+        alias.map_or(word, |(_, id)| id)
+    }
 }
 
 /// A key of an outcome that an expectation may be about.

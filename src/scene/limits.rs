@@ -89,7 +89,7 @@ pub const DURATION: Bounds = Bounds::from(1e-30, 1e12, "s");
 pub const BOUND: Bounds = Bounds::signed(f64::MAX, "in the key's unit");
 
 /// Checks a scene's name.
-pub(super) fn name(name: &str, _: &Names) -> Result<(), Refusal> {
+pub(super) fn name<'a>(name: &'a str, _: &Names) -> Result<&'a str, Refusal> {
     if name.trim().is_empty() {
         let message = "expected a name, found none";
         return Refusal::because(message, "without the key it is the file's");
@@ -101,20 +101,22 @@ pub(super) fn name(name: &str, _: &Names) -> Result<(), Refusal> {
     if name.contains(char::is_control) {
         return Refusal::because("expected one line without control characters", "");
     }
-    Ok(())
+    Ok(name)
 }
 
 /// Checks that reports may print the text: an escape sequence would reach the terminal.
-pub(super) fn description(text: &str, _: &Names) -> Result<(), Refusal> {
+pub(super) fn description<'a>(text: &'a str, _: &Names) -> Result<&'a str, Refusal> {
     if text.contains(|c: char| c.is_control() && !matches!(c, '\n' | '\t')) {
         return Refusal::because("expected text without control characters", "");
     }
-    Ok(())
+    Ok(text)
 }
 
-/// Checks that the integrator exists.
-pub(super) fn method(word: &str, names: &Names) -> Result<(), Refusal> {
-    known(word, &names.methods, "integrator")
+/// The id of the integrator, which must exist.
+pub(super) fn method<'a>(word: &'a str, names: &Names) -> Result<&'a str, Refusal> {
+    let id = names.meant(word);
+    known(id, &names.methods, "integrator")?;
+    Ok(id)
 }
 
 /// Checks that the word is one of those known.

@@ -98,8 +98,8 @@ pub enum ValueKind {
     Flag,
     /// One of these words.
     Word(&'static [&'static str]),
-    /// Text that this function accepts.
-    Text(fn(&str, &Names) -> Result<(), Refusal>),
+    /// Text that this function accepts, and replaces by what it means.
+    Text(for<'a> fn(&'a str, &Names) -> Result<&'a str, Refusal>),
     /// A mapping or a list of them, with rows of its own.
     Part(&'static Part),
     /// Expectations, by engine and key.

@@ -177,9 +177,10 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
                 Ok(())
             }
             ValueKind::Word(_) | ValueKind::Text(_) => from.deserialize_any(text(|text| {
+                let mut text = text;
                 match self.row.kind {
                     ValueKind::Word(words) => known(text, words, "choice")?,
-                    ValueKind::Text(judge) => judge(text, self.reading.names)?,
+                    ValueKind::Text(judge) => text = judge(text, self.reading.names)?,
                     _ => {}
                 }
                 self.set(0, Value::Text(text));

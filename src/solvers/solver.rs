@@ -40,6 +40,8 @@ pub struct Solver {
     pub timestep: Option<f64>,
     /// The reason why it loses energy by design; `{n}` stands for its substeps.
     dissipates: Option<&'static str>,
+    /// The reason why it gains energy by design, likewise.
+    gains: Option<&'static str>,
     source: Source,
 }
 
@@ -51,7 +53,7 @@ enum Source {
     /// A rapier world with rapier's own joints and gravity.
     Joints(rapier::RapierSettings),
     /// rapier's bodies under forces computed here.
-    Forces,
+    Forces(rapier::RapierSettings),
     Program(Arc<dyn Program>),
 }
 
@@ -108,6 +110,7 @@ impl Solver {
             reference: false,
             timestep: None,
             dissipates: None,
+            gains: None,
             source,
         }
     }
@@ -129,6 +132,31 @@ impl Solver {
         }
     }
 
+    /// The scheme that its rows follow in this scene, by its id and number of substeps, as identity by replay
+    /// names it; None where that is not known beforehand. rapier's joints follow theirs as far as their sweeps
+    /// have converged.
+    pub fn law(&self, scene: &Scene) -> Option<(&'static str, u32)> {
+        match &self.source {
+            Source::Method(method) if method.pair().is_none() => Some((method.id, 1)),
+            Source::Method(_) | Source::Own(_) | Source::Program(_) => None,
+            // Forces are set once a step and held over its substeps.
+            Source::Forces(_) if self.substeps > 1 => {
+                Some(("forces_held(symplectic_euler)", self.substeps))
+            }
+            Source::Forces(_) => Some(("symplectic_euler", 1)),
+            Source::Joints(_) => {
+                let solves =
+                    !scene.springs.is_empty() || scene.particles.iter().any(|p| p.drag > 0.0);
+                let id = if solves {
+                    "linearized_implicit_material"
+                } else {
+                    "symplectic_euler"
+                };
+                Some((id, self.substeps))
+            }
+        }
+    }
+
     /// The program, if the solver is another program.
     pub fn as_program(&self) -> Option<&dyn Program> {
         match &self.source {
@@ -143,9 +171,9 @@ impl Solver {
         self.row().map(of)
     }
 
-    /// The reason why the solver loses energy by design; None where it should not.
-    pub fn dissipates(&self) -> Option<String> {
-        let why = self.dissipates?;
+    /// The reason why the solver loses energy by design, or gains it; None where it should not.
+    pub fn by_design(&self, gains: bool) -> Option<String> {
+        let why = if gains { self.gains } else { self.dissipates }?;
         Some(why.replace("{n}", &self.substeps.to_string()))
     }
 
@@ -195,7 +223,9 @@ impl Solver {
             Source::Joints(settings) => {
                 Box::new(RapierEngine::new(scene, system, timestep, settings)?)
             }
-            Source::Forces => Box::new(RapierForces::new(scene, system, timestep)?),
+            Source::Forces(settings) => {
+                Box::new(RapierForces::new(scene, system, timestep, settings)?)
+            }
             Source::Program(_) => {
                 return Err(Unsupported {
                     reason: "another program takes no single steps".to_owned(),
@@ -212,23 +242,39 @@ impl std::fmt::Debug for Solver {
 }
 
 /// rapier's worlds at fixed settings.
-fn worlds() -> [Solver; 3] {
+fn worlds() -> [Solver; 4] {
     let converged = Solver {
         id: rapier::IDS[2].into(),
         summary: "rapier's spring joints swept until they converge: linearly implicit Euler",
         follows: integrators::find("linearized_implicit_material"),
         ..joints(rapier::RapierSettings::CONVERGED)
     };
-    let forces = Solver {
+    let own_forces = Solver {
         id: rapier::IDS[1].into(),
         summary: "rapier's bodies under this program's forces: symplectic Euler",
         follows: integrators::find("symplectic_euler"),
-        substeps: rapier::RapierSettings::FORCES.iterations,
-        dissipates: None,
-        source: Source::Forces,
-        ..joints(rapier::RapierSettings::FORCES)
+        ..forces(rapier::RapierSettings::FORCES)
     };
-    [joints(rapier::RapierSettings::DEFAULT), forces, converged]
+    let user_forces = Solver {
+        id: rapier::IDS[3].into(),
+        summary: "rapier's bodies at its defaults under this program's forces, once a step: gains energy",
+        gains: Some(
+            "it holds the forces of a step's start over {n} substeps, which multiplies an undamped \
+             oscillator's energy by 1 + 3/8 z² a step: take one substep, or new forces in each",
+        ),
+        ..forces(rapier::RapierSettings::DEFAULT)
+    };
+    let defaults = joints(rapier::RapierSettings::DEFAULT);
+    [defaults, own_forces, converged, user_forces]
+}
+
+/// rapier's bodies under forces computed here.
+fn forces(settings: rapier::RapierSettings) -> Solver {
+    Solver {
+        dissipates: None,
+        source: Source::Forces(settings),
+        ..joints(settings)
+    }
 }
 
 /// rapier's spring joints with these settings; its texts describe the defaults.
@@ -257,11 +303,12 @@ pub fn catalogue() -> impl Iterator<Item = Solver> {
 
 /// The solver of this id.
 pub fn find(id: &str) -> Option<Solver> {
-    catalogue().find(|solver| solver.id == id)
+    catalogue().find(|solver| solver.id == integrators::meant(id))
 }
 
 /// The integrator of the id `own`, which a scene names, and then the other methods.
 pub fn own_first(own: &str, methods: impl Iterator<Item = Solver>) -> Vec<Solver> {
+    let own = integrators::meant(own);
     let first = integrators::fixed().iter().find(|method| method.id == own);
     (first.map(Solver::method).into_iter())
         .chain(methods.filter(|method| method.id != own))

@@ -285,7 +285,8 @@ fn a_method_is_right_to_its_order_or_refuses() {
         "explicit_euler",
         "rk4",
         "symplectic_euler",
-        "linearized_implicit",
+        "linearized_implicit_predicted",
+        "linearized_implicit_at_start",
     ];
     for id in explicit {
         assert_eq!(method(id).takes(), ForceKinds::ANY, "{id}");

@@ -6,7 +6,7 @@ use crate::testkit::{Build, method, own};
 use springcheck::conformance::measured_limit;
 
 /// Published limits with damping ratio ζ; None is no limit.
-const DAMPED: [(&str, [Option<f64>; 4]); 9] = [
+const DAMPED: [(&str, [Option<f64>; 4]); 11] = [
     (
         "explicit_euler",
         [Some(0.2), Some(1.0), Some(2.0), Some(0.535_898)],
@@ -22,6 +22,24 @@ const DAMPED: [(&str, [Option<f64>; 4]); 9] = [
     (
         "ralston",
         [Some(1.049_755), Some(2.0), Some(2.0), Some(0.535_898)],
+    ),
+    (
+        "rk3",
+        [
+            Some(2.154_049),
+            Some(2.521_659),
+            Some(2.512_745),
+            Some(0.673_288),
+        ],
+    ),
+    (
+        "ssprk3",
+        [
+            Some(2.154_049),
+            Some(2.521_659),
+            Some(2.512_745),
+            Some(0.673_288),
+        ],
     ),
     (
         "rk4",
@@ -84,10 +102,10 @@ fn limits_with_damping_are_the_published_ones() {
 
 #[test]
 fn limits_with_damping_kill_mutants() {
-    let verlet = DAMPED[7];
+    let verlet = DAMPED[9];
     let explicit = mutant(mutants::verlet_with_explicit_damping);
     assert!(damped_limit_law(verlet.0, verlet.1, &explicit).is_err());
-    let symplectic = DAMPED[5];
+    let symplectic = DAMPED[7];
     let half = mutant(mutants::symplectic_euler_at_half_the_step);
     assert!(damped_limit_law(symplectic.0, symplectic.1, &half).is_err());
 }

@@ -34,7 +34,10 @@ fn first_step_law(id: &str, build: Build) -> Result<(), String> {
             (x1, v + h * (-W * W * x1 + push(t + h)))
         }
         // Linear in x, so that one Newton step is the whole solution.
-        "implicit_euler" | "linearized_implicit" | "linearized_implicit_material" => {
+        "implicit_euler"
+        | "linearized_implicit_predicted"
+        | "linearized_implicit_at_start"
+        | "linearized_implicit_material" => {
             let v1 = (v + h * (-W * W * x + push(t + h))) / (1.0 + h * h * W * W);
             (x + h * v1, v1)
         }

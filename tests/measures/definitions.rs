@@ -238,7 +238,8 @@ fn classes_of_the_undamped_oscillator() {
         ("trapezoidal", EnergyClass::Bounded),
         ("rk4", EnergyClass::Dissipating),
         ("implicit_euler", EnergyClass::Dissipating),
-        ("linearized_implicit", EnergyClass::Dissipating),
+        ("linearized_implicit_predicted", EnergyClass::Dissipating),
+        ("linearized_implicit_at_start", EnergyClass::Dissipating),
     ] {
         assert_eq!(class(&outcome(&scene, id)), Some(wanted), "{id}");
     }
@@ -294,13 +295,13 @@ fn an_implicit_step_that_cannot_be_solved_is_a_typed_failure_with_its_step() {
     // Half compressed, a spring's stiffness across is -k, and h² k = m: nothing holds the particle
     // sideways in the linearised step, to the last bit.
     let scene = parsed(
-        "solver: {type: linearized_implicit, timestep: 0.125, gravity: 0}\n\
+        "solver: {type: linearized_implicit_at_start, timestep: 0.125, gravity: 0}\n\
          particles:\n\
          - {pos: [0, 0, 0], fixed: true}\n\
          - {pos: [0.5, 0, 0], mass: 1}\n\
          springs: [{particle_ids: [0, 1], stiffness: 64, rest_length: 1}]\n",
     );
-    let found = outcome(&scene, "linearized_implicit");
+    let found = outcome(&scene, "linearized_implicit_at_start");
     assert_eq!(found.status, Status::Failed, "{:?}", found.reason);
     let reason = found.reason.expect("a reason");
     assert!(
@@ -309,7 +310,7 @@ fn an_implicit_step_that_cannot_be_solved_is_a_typed_failure_with_its_step() {
     );
     assert_eq!(found.stopped_at_s, Some(0.0));
     // The others went on.
-    let all = report(&scene, &["linearized_implicit", "implicit_euler"]);
+    let all = report(&scene, &["linearized_implicit_at_start", "implicit_euler"]);
     assert_eq!(all.outcomes()[1].status, Status::Completed);
 }
 

@@ -249,6 +249,7 @@ fn shipped_scenes_read_back() {
         solvers: usual.solvers,
         timestep: scene.solver.timestep,
         map: None,
+        largest: None,
         admissible: Vec::new(),
     };
     reads_back(&plan.execute(&Quiet).expect("limits"));

@@ -14,7 +14,7 @@ const MAP: [&str; 6] = [
     "--steps",
     "1e-3..10:6",
     "--budget",
-    "120000",
+    "140000",
 ];
 
 fn json(args: &[&str]) -> Value {
@@ -47,6 +47,7 @@ fn the_json_has_exactly_the_contracts_keys() {
         "excluded",
         "rows",
         "map",
+        "largest",
         "admissible",
     ];
     assert_eq!(keys(stability), set(&wanted));
@@ -85,8 +86,8 @@ fn the_json_has_exactly_the_contracts_keys() {
         "engines",
     ];
     assert_eq!(keys(map), set(&wanted));
-    // 120,000 over 3 engines, 5 values, 6 timesteps and 2 particles.
-    assert_eq!(map["steps_per_cell"], 666);
+    // 140,000 over 3 engines, 5 values, 6 timesteps and 2 particles.
+    assert_eq!(map["steps_per_cell"], 777);
     assert_eq!(array(&map["engines"]).len(), 3);
     for engine in array(&map["engines"]) {
         assert_eq!(keys(engine), set(&["engine", "cells", "predicted_limit_s"]));
@@ -144,6 +145,135 @@ fn the_map_changes_where_theory_says() {
 
 /// Its bodies move as symplectic Euler moves them, so the same limit is predicted; rapier's own joints
 /// are no method, so none is.
+/// What `--largest` finds of each engine: the outcome, and the value where there is one.
+fn largest(args: &[&str]) -> Vec<(String, String, Option<f64>)> {
+    let report = json(args);
+    let largest = &report["stability"]["largest"];
+    assert_eq!(
+        keys(largest),
+        set(&["vary", "unit", "timestep_s", "tried", "rows"])
+    );
+    let rows = array(&largest["rows"]).iter().map(|row| {
+        assert_eq!(keys(row), set(&["engine", "found", "value", "reason"]));
+        let word = |key: &str| row[key].as_str().expect(key).to_owned();
+        (word("engine"), word("found"), row["value"].as_f64())
+    });
+    rows.collect()
+}
+
+#[test]
+fn the_largest_stable_value_is_that_of_the_closed_forms() {
+    // 1 kg on a spring without damping at h = 0.15 s: z = h √k is 2 for Verlet, 2√2 for RK4.
+    let undamped = largest(&[
+        "scenes/oscillator/step_150.yml",
+        "--integrators",
+        "velocity_verlet,rk4,explicit_euler,implicit_euler",
+        "--largest",
+        "springs.stiffness",
+    ]);
+    let h2 = 0.15 * 0.15;
+    let wanted = [
+        ("velocity_verlet", "value", Some(4.0 / h2)),
+        ("rk4", "value", Some(8.0 / h2)),
+        ("explicit_euler", "no_value", None),
+        ("implicit_euler", "every_value", None),
+        ("rapier", "not_known", None),
+    ];
+    let same = |found: &[(String, String, Option<f64>)], wanted: &[(&str, &str, Option<f64>)]| {
+        assert_eq!(found.len(), wanted.len());
+        for (found, wanted) in found.iter().zip(wanted) {
+            assert_eq!((found.0.as_str(), found.1.as_str()), (wanted.0, wanted.1));
+            // The search's width is 1e-6.
+            let off = found
+                .2
+                .zip(wanted.2)
+                .map(|(found, wanted)| (found / wanted - 1.0).abs());
+            assert_eq!(off.is_some(), wanted.2.is_some(), "{found:?}");
+            assert!(
+                off.is_none_or(|off| off < 2e-6),
+                "{found:?}, not {wanted:?}"
+            );
+        }
+    };
+    same(&undamped, &wanted);
+    // With m = 1 kg and h = 0.1 s: 4 - 2 h c - h² k >= 0 for symplectic Euler, and h k <= c for explicit Euler below
+    // critical damping.
+    let (h, c, k) = (0.1, std::f64::consts::SQRT_2, 50.0);
+    let common = [
+        "scenes/oscillator/damped_under.yml",
+        "--timestep",
+        "0.1",
+        "--engines",
+        "none",
+        "--integrators",
+        "symplectic_euler,explicit_euler",
+    ];
+    let of = |key: &str| largest(&[&common[..], &["--largest", key]].concat());
+    same(
+        &of("springs.stiffness"),
+        &[
+            (
+                "symplectic_euler",
+                "value",
+                Some((4.0 - 2.0 * h * c) / (h * h)),
+            ),
+            ("explicit_euler", "value", Some(c / h)),
+        ],
+    );
+    same(
+        &of("springs.damping"),
+        &[
+            (
+                "symplectic_euler",
+                "value",
+                Some((4.0 - h * h * k) / (2.0 * h)),
+            ),
+            // Above it h = 2 / λ with λ + k / λ = c.
+            ("explicit_euler", "value", Some(2.0 / h + 0.5 * h * k)),
+        ],
+    );
+}
+
+#[test]
+fn a_run_that_stays_stable_is_not_told_to_take_a_smaller_step() {
+    // Just beyond the limits of the scene linearised about its start, 0.02087 s: in the run Heun's energy stays,
+    // and the midpoint rule's grows.
+    let report = program::json(&[
+        "run",
+        "scenes/pa1/scene04.yml",
+        "--integrators",
+        "heun,midpoint",
+        "--engines",
+        "none",
+        "--truth",
+        "none",
+        "--timestep",
+        "0.022",
+    ]);
+    let said = |engine: &str| {
+        let row = program::outcomes(&report)
+            .iter()
+            .find(|row| row["engine"] == engine);
+        let row = row.expect(engine);
+        let remarks = array(&row["remarks"]).iter();
+        let remarks: Vec<&str> = remarks.filter_map(Value::as_str).collect();
+        (row["energy"]["class"].clone(), remarks.join("; "))
+    };
+    let (class, heun) = said("heun");
+    assert_eq!(class, "bounded");
+    assert!(heun.contains("this run stays stable"), "{heun}");
+    assert!(
+        !heun.contains("is beyond its stability limit") && !heun.contains("take"),
+        "{heun}"
+    );
+    let (class, midpoint) = said("midpoint");
+    assert_eq!(class, "growing");
+    assert!(
+        midpoint.contains("beyond its stability limit 0.02087 s here"),
+        "{midpoint}"
+    );
+}
+
 #[test]
 fn an_engine_that_equals_a_method_has_its_prediction() {
     let report = json(&[

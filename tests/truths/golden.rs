@@ -189,7 +189,11 @@ fn the_spring_test_of_soft_constraints() {
         });
         matches
     };
-    for id in ["implicit_euler", "linearized_implicit"] {
+    for id in [
+        "implicit_euler",
+        "linearized_implicit_predicted",
+        "linearized_implicit_at_start",
+    ] {
         assert_eq!(right(&scene, &choice(&[id], &[], SIXTIETH)), 3, "{id}");
     }
     assert_eq!(right(&scene, &choice(&[], &[rapier(1)], SIXTIETH)), 3);

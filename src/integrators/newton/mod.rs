@@ -281,6 +281,36 @@ impl Newton {
         ROUNDING * f64::EPSILON * squares.sqrt()
     }
 
+    /// Replaces `u` by Newton's first iterate from it: u + (M - γ C - γ² K)⁻¹ r, with everything taken at
+    /// (y + γ u, u). Returns the powers there.
+    ///
+    /// As in [`single`](Self::single) there is no line search, and the matrix is used as it is.
+    pub(super) fn first(
+        &mut self,
+        system: &dyn System,
+        t: f64,
+        gamma: f64,
+        b: &[f64],
+        y: &[f64],
+        u: &mut [f64],
+    ) -> Result<Power, StepError> {
+        let stage = StageEquation {
+            system,
+            t,
+            gamma,
+            b,
+            y,
+        };
+        fit(&mut self.d, u.len());
+        self.at.u.clear();
+        self.at.u.extend_from_slice(u);
+        self.at.evaluate(&stage);
+        self.assemble(&stage, Linearization::Exact);
+        self.matrix.gather(&self.at.residual, &mut self.z);
+        self.correct(system, u)?;
+        Ok(self.at.power)
+    }
+
     /// One Newton step of backward Euler from the state itself:
     /// (M - h C - h² K) Δv = h (f0 + h K v0), with everything taken at (x0, v0). Returns the powers there.
     ///
@@ -311,10 +341,17 @@ impl Newton {
         }
         self.assembled(system, h);
         self.matrix.gather(&right, &mut self.z);
+        self.correct(system, u)?;
+        Ok(power)
+    }
+
+    /// Adds the solution of the assembled system, with the right side `self.z`, to `u`.
+    fn correct(&mut self, system: &dyn System, u: &mut [f64]) -> Result<(), StepError> {
+        let inverse_mass = system.inverse_mass();
         self.solves += 1;
         let (solver, matrix) = (&mut self.solver, &self.matrix);
         // A few unknowns are always solved by LU: at huge steps the result is all rounding, and is then the same
-        // for both methods that use this function.
+        // for the methods that use this function.
         if solver::is_small(matrix) || !solver.solve(matrix, inverse_mass, PLAIN, &mut self.z)? {
             solver.solve_lu(matrix, &mut self.z)?;
         }
@@ -323,7 +360,7 @@ impl Newton {
             *u += du;
         }
         if u.iter().all(|u| u.is_finite()) {
-            Ok(power)
+            Ok(())
         } else {
             Err(StepError::NotFinite {
                 particle: worst_particle(u),

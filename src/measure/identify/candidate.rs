@@ -1,28 +1,37 @@
-//! The schemes a trajectory may follow: a method, whole or in substeps, or one of the common mistakes.
+//! A scheme that a trajectory may follow: a method under certain forces, whole or in substeps, or a map
+//! that no method of the registry is.
 
+use super::compose::{Around, Rounded};
 use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError};
 use crate::physics::{ParticleSystem, State, System};
-use crate::solvers::advance;
+use std::borrow::Cow;
+use std::sync::Arc;
 
-/// A scheme to replay: known method, known mistake, or a guess at what went wrong.
+/// Forces that candidates share.
+pub type Forces = Arc<dyn System + Send + Sync>;
+
+/// A scheme to replay: known method, composed scheme, known mistake, or a guess at what went wrong.
 #[derive(Clone)]
 pub struct Candidate {
-    /// As reports name it: `rk4`, `midpoint_end_velocity`, `gravity_forgotten(rk4)`.
+    /// As reports name it: `rk4`, `in_place(midpoint)`, `gravity_forgotten(rk4)`.
     pub id: String,
     /// Steps it takes inside one timestep.
     pub substeps: u32,
     /// Registry id of the method it is, or was meant to be.
     pub meant: &'static str,
-    /// What is wrong with it, for people; None for a method as it should be.
-    pub mistake: Option<&'static str>,
+    /// What it does, for people, where its name does not say it all.
+    pub says: Option<Cow<'static, str>>,
+    /// Whether it is a known mistake.
+    pub mistake: bool,
     /// Its step depends on the state one step before: it can be replayed only from the first state
     /// and from states whose predecessor is known.
     pub remembers: bool,
     /// Length of the step it takes, in timesteps: 1, unless h itself is wrong.
     stretch: f64,
     /// The forces it really computes: the scene's, or altered ones.
-    system: ParticleSystem,
+    forces: Forces,
     scheme: Scheme,
+    scaling: Option<Scaling>,
 }
 
 /// How a candidate steps.
@@ -31,65 +40,108 @@ pub enum Scheme {
     Method(&'static Method),
     /// A map of its own.
     Map(Map),
+    /// A step, applied in another way than to all particles at once.
+    Around(Around, Step),
+}
+
+/// A step that something is built around.
+#[derive(Clone, Copy)]
+pub enum Step {
+    Method(&'static Method),
+    Map(Map),
 }
 
 /// A one-step map over h from a state in place, given the state one step (of the same h) before it,
 /// if that is known.
 pub type Map = fn(&dyn System, f64, Option<&State>, &mut State) -> Result<(), StepError>;
 
-impl Candidate {
-    /// A registry method in this many substeps.
-    pub fn method(system: &ParticleSystem, method: &'static Method, substeps: u32) -> Self {
-        Self {
-            id: method.id.to_owned(),
-            substeps,
-            meant: method.id,
-            mistake: None,
-            remembers: false,
-            stretch: 1.0,
-            system: system.clone(),
-            scheme: Scheme::Method(method),
+/// A multiplication of velocities beside the step proper.
+#[derive(Clone)]
+pub struct Scaling {
+    /// The factor, from the coordinate's `rate` and the length of the step in s.
+    pub factor: fn(f64, f64) -> f64,
+    /// A number of each coordinate: a rate in 1/s, or the factor itself.
+    pub rates: Arc<[f64]>,
+    pub at: ScaledAt,
+}
+
+/// When in a step velocities are multiplied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ScaledAt {
+    Start,
+    /// After the kick of symplectic Euler, before its drift.
+    Kick,
+    End,
+}
+
+impl ScaledAt {
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Start => "before the kick",
+            Self::Kick => "after the kick",
+            Self::End => "at the end of the step",
         }
     }
+}
 
-    /// A map that is no method of the registry.
-    pub fn map(
-        system: &ParticleSystem,
-        id: &str,
-        meant: &'static str,
-        mistake: &'static str,
-        map: Map,
-    ) -> Self {
+impl Candidate {
+    /// A candidate under these forces, in one step.
+    pub fn new(forces: &Forces, scheme: Scheme, meant: &'static str) -> Self {
         Self {
-            id: id.to_owned(),
+            id: meant.to_owned(),
             substeps: 1,
             meant,
-            mistake: Some(mistake),
+            says: None,
+            mistake: false,
             remembers: false,
             stretch: 1.0,
-            system: system.clone(),
-            scheme: Scheme::Map(map),
+            forces: Arc::clone(forces),
+            scheme,
+            scaling: None,
         }
     }
 
-    /// A method under other forces than the scene's, as `wrong(method)`.
-    pub fn altered(
-        system: &ParticleSystem,
-        method: &'static Method,
-        wrong: &str,
-        mistake: &'static str,
-    ) -> Self {
+    /// A registry method in this many substeps.
+    pub fn method(system: &ParticleSystem, method: &'static Method, substeps: u32) -> Self {
+        let forces: Forces = Arc::new(system.clone());
+        Self::new(&forces, Scheme::Method(method), method.id).in_substeps(substeps)
+    }
+
+    /// The same in this many substeps.
+    pub fn in_substeps(self, substeps: u32) -> Self {
+        Self { substeps, ..self }
+    }
+
+    /// The same under another name.
+    pub fn named(self, id: impl Into<String>, says: impl Into<Cow<'static, str>>) -> Self {
         Self {
-            id: format!("{wrong}({})", method.id),
-            mistake: Some(mistake),
-            ..Self::method(system, method, 1)
+            id: id.into(),
+            says: Some(says.into()),
+            ..self
+        }
+    }
+
+    /// The same, as a known mistake.
+    pub fn mistaken(self) -> Self {
+        Self {
+            mistake: true,
+            ..self
         }
     }
 
     /// The same scheme under other forces.
     pub fn under(&self, system: &ParticleSystem) -> Self {
         Self {
-            system: system.clone(),
+            forces: Arc::new(system.clone()),
+            ..self.clone()
+        }
+    }
+
+    /// The same scheme under another candidate's forces, in its steps.
+    pub(super) fn forced_as(&self, other: &Self) -> Self {
+        Self {
+            forces: Arc::clone(&other.forces),
+            stretch: other.stretch,
             ..self.clone()
         }
     }
@@ -103,44 +155,66 @@ impl Candidate {
         }
     }
 
+    /// The same with velocities multiplied beside it.
+    pub fn scaled(self, scaling: Scaling) -> Self {
+        Self {
+            scaling: Some(scaling),
+            ..self
+        }
+    }
+
     /// Marks a map that uses the state one step before.
     pub fn remembering(self, remembers: bool) -> Self {
         Self { remembers, ..self }
     }
 
+    /// The method it applies, if it applies one.
+    fn applied(&self) -> Option<&'static Method> {
+        match self.scheme {
+            Scheme::Method(method) | Scheme::Around(_, Step::Method(method)) => Some(method),
+            Scheme::Map(_) | Scheme::Around(_, Step::Map(_)) => None,
+        }
+    }
+
     /// About how many roundings of positions or velocities one of its whole steps makes.
     pub fn roundings(&self) -> u32 {
-        let stages = match self.scheme {
+        let stages = match self.applied() {
             // Force, matrix, factors and their solve; iterations before the last are corrected.
-            Scheme::Method(_) if self.solves() => 4,
-            Scheme::Method(method) => match method.evaluations {
+            Some(_) if self.solves() => 4,
+            Some(method) => match method.evaluations {
                 // The force, and what it is added to.
                 PerStep::Exactly(n) => 2 * n.max(1),
                 PerStep::PerIteration { plus } => 2 * (1 + plus),
             },
-            // Taken as many as RK4's: more than any of the mistakes has.
-            Scheme::Map(_) => 8,
+            // Taken as many as RK4's: more than any of the maps has.
+            None => 8,
         };
         stages.saturating_mul(self.substeps.max(1))
     }
 
     /// Whether its steps solve linear systems, which costs as much as many that do not.
     pub fn solves(&self) -> bool {
-        match self.scheme {
-            Scheme::Method(method) => matches!(
+        self.applied().is_some_and(|method| {
+            matches!(
                 method.oscillator.stable,
                 Stable::Always | Stable::AlwaysAlong { .. }
-            ),
-            Scheme::Map(_) => false,
-        }
+            )
+        })
     }
 
     /// Whether its steps end when a residual is small, not when a formula is through.
     pub fn iterates(&self) -> bool {
-        match self.scheme {
-            Scheme::Method(method) => matches!(method.evaluations, PerStep::PerIteration { .. }),
-            Scheme::Map(_) => false,
-        }
+        let method = match self.scheme {
+            Scheme::Method(method) => method,
+            _ => return false,
+        };
+        matches!(method.evaluations, PerStep::PerIteration { .. })
+    }
+
+    /// Whether it moves particles one by one, with all forces for each.
+    pub fn one_by_one(&self) -> bool {
+        matches!(self.scheme, Scheme::Around(..)) && self.id.contains("in_place")
+            || self.id.contains("one_by_one")
     }
 
     /// Its name in the reports' `equivalent`: the id, and after a slash the substeps if there are several.
@@ -152,9 +226,11 @@ impl Candidate {
     pub fn replayer(&self, settings: &Settings) -> Replayer<'_> {
         Replayer {
             candidate: self,
+            settings: *settings,
+            pattern: None,
             integrator: match self.scheme {
                 Scheme::Method(method) => Some(method.build(settings)),
-                Scheme::Map(_) => None,
+                Scheme::Map(_) | Scheme::Around(..) => None,
             },
         }
     }
@@ -171,13 +247,20 @@ pub(super) fn label(id: &str, substeps: u32) -> String {
 /// Takes a candidate's steps.
 pub struct Replayer<'a> {
     candidate: &'a Candidate,
+    settings: Settings,
     integrator: Option<Box<dyn Integrator>>,
+    pattern: Option<u64>,
 }
 
 impl<'a> Replayer<'a> {
     /// The candidate whose steps it takes.
     pub fn candidate(&self) -> &'a Candidate {
         self.candidate
+    }
+
+    /// From now on moves every force by its rounding in the direction of a pattern, or by nothing.
+    pub(super) fn nudge(&mut self, pattern: Option<u64>) {
+        self.pattern = pattern;
     }
 
     /// Advances `state`, which is at step `step`, by `span` steps of `h` seconds. `before` is the
@@ -194,7 +277,17 @@ impl<'a> Replayer<'a> {
         before: Option<&State>,
         state: &mut State,
     ) -> Result<(), StepError> {
-        let n = self.candidate.substeps;
+        let forces = self.candidate.forces.as_ref();
+        let rounded = self.pattern.map(|pattern| Rounded::new(forces, pattern));
+        let system: &dyn System = match &rounded {
+            Some(rounded) => rounded,
+            None => forces,
+        };
+        // Substeps under forces that are held are the scheme's own.
+        let n = match self.candidate.scheme {
+            Scheme::Around(..) => 1,
+            _ => self.candidate.substeps,
+        };
         let part_of_h = h / f64::from(n);
         let inner = part_of_h * self.candidate.stretch;
         let mut previous = before.cloned();
@@ -206,19 +299,42 @@ impl<'a> Replayer<'a> {
             for part in 0..n {
                 // As solvers count time: n h, not a running sum.
                 state.t = (at * u64::from(n) + u64::from(part)) as f64 * part_of_h;
+                let start = state.clone();
+                self.scale(ScaledAt::Start, inner, &start.x, state);
                 match (&mut self.integrator, self.candidate.scheme) {
-                    (Some(integrator), _) => {
-                        advance(integrator.as_mut(), &self.candidate.system, inner, state)?;
-                    }
-                    (None, Scheme::Map(map)) => {
-                        let start = state.clone();
-                        map(&self.candidate.system, inner, previous.as_ref(), state)?;
-                        previous = Some(start);
+                    (Some(integrator), _) => integrator.step(system, inner, state)?,
+                    (None, Scheme::Map(map)) => map(system, inner, previous.as_ref(), state)?,
+                    (None, Scheme::Around(around, step)) => {
+                        let one = |system: &dyn System, h: f64, state: &mut State| match step {
+                            Step::Method(method) => {
+                                method.build(&self.settings).step(system, h, state)
+                            }
+                            Step::Map(map) => map(system, h, None, state),
+                        };
+                        around(&one, system, inner, self.candidate.substeps, state)?;
                     }
                     (None, Scheme::Method(_)) => {}
                 }
+                self.scale(ScaledAt::Kick, inner, &start.x, state);
+                self.scale(ScaledAt::End, inner, &start.x, state);
+                previous = Some(start);
             }
         }
         Ok(())
+    }
+
+    /// Multiplies the velocities, if this is when. `x` is where the step began.
+    fn scale(&self, at: ScaledAt, h: f64, x: &[f64], state: &mut State) {
+        let Some(scaling) = self.candidate.scaling.as_ref().filter(|s| s.at == at) else {
+            return;
+        };
+        for (i, rate) in scaling.rates.iter().enumerate() {
+            let factor = (scaling.factor)(*rate, h);
+            state.v[i] *= factor;
+            if at == ScaledAt::Kick {
+                // The drift was h v.
+                state.x[i] = x[i] + factor * (state.x[i] - x[i]);
+            }
+        }
     }
 }

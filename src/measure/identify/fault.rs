@@ -14,9 +14,9 @@ mod words;
 pub use anchor::moved_anchor;
 
 use super::candidate::{Candidate, Replayer};
-use super::replay::{BEYOND, Replay};
+use super::replay::{FIT, Replay};
 use super::transition::Transition;
-use super::{Identity, Question, Sameness, candidates};
+use super::{Identity, Question, Undecided, candidates};
 use crate::integrators;
 use crate::measure::identify::Fault;
 use crate::trajectory::Rows;
@@ -30,24 +30,28 @@ const CHUNK: usize = 64;
 /// not in all.
 const NUDGES: u64 = 32;
 /// Beyond this defect no direction makes a difference.
-const CLEARLY: f64 = 64.0 * BEYOND;
+const CLEARLY: f64 = 64.0 * FIT;
 
 /// The first transition that does not follow the identity; for a mistake, the method it was meant
 /// to be. None where all follow, and where nothing was identified. All rows are looked at, whatever
 /// `question.transitions` is.
 pub fn first_fault(question: &Question, identity: &Identity) -> Option<Fault> {
-    if identity.same == Sameness::NothingFits || followed_everywhere(question.rows, identity) {
+    let near = identity.undecided == Some(Undecided::Near);
+    if near || followed_everywhere(question.rows, identity) {
         return None;
     }
-    let named = |c: &Candidate| c.id == identity.method && c.substeps == identity.substeps;
-    let all = candidates(question.scene, question.system);
-    first_departure(question, all.iter().find(|c| named(c))?)
+    let named = |c: &Candidate| {
+        (c.id.as_str(), c.substeps, &c.says)
+            == (&identity.method, identity.substeps, &identity.says)
+    };
+    let mut all = candidates(question.scene, question.system);
+    first_departure(question, &all.find(named)?)
 }
 
 /// Whether the replay that found the identity has already seen every row follow it.
 fn followed_everywhere(rows: &Rows, identity: &Identity) -> bool {
     let all = identity.transitions + 1 == rows.len();
-    all && identity.followed == identity.transitions && identity.mistake.is_none()
+    all && identity.followed == identity.transitions && !identity.mistake
 }
 
 /// The first transition that does not follow a candidate of the caller's choice.
@@ -61,19 +65,22 @@ pub fn first_departure(question: &Question, candidate: &Candidate) -> Option<Fau
     } = *question;
     let replay = Replay::new(scene, system, rows, settings)?;
     let method = || integrators::find(candidate.meant);
-    let followed = match candidate.mistake {
-        None => candidate.clone(),
-        Some(_) => Candidate::method(system, method()?, candidate.substeps),
+    let followed = if candidate.mistake {
+        Candidate::method(system, method()?, candidate.substeps)
+    } else {
+        candidate.clone()
     };
     let transitions = transitions(rows);
     let departures = departures(&replay, &followed, &transitions);
     // A closer look at one may find that rounding explains it after all.
     let spot = (0..departures.len())
         .find_map(|k| Spot::new(question, &replay, &followed, &transitions, &departures[k..]))?;
-    Some(match candidate.mistake {
-        None => spot.explained(),
-        Some(says) => spot.fault(spot.step(), says.to_owned()),
-    })
+    Some(
+        match candidate.says.as_ref().filter(|_| candidate.mistake) {
+            None => spot.explained(),
+            Some(says) => spot.throughout(says.to_string()),
+        },
+    )
 }
 
 /// The transitions between neighbouring rows, wherever a replay can start.
@@ -110,7 +117,7 @@ fn departs(replay: &Replay, replayer: &mut Replayer, transition: &Transition) ->
         return replay.predict(replayer, transition).is_ok();
     }
     let units = replay.defect(replayer, transition).units;
-    if units <= BEYOND {
+    if units <= FIT {
         return false;
     }
     // The defect is also infinite where the data leaves no room at all.
@@ -119,6 +126,6 @@ fn departs(replay: &Replay, replayer: &mut Replayer, transition: &Transition) ->
     };
     units > CLEARLY || {
         let units = replay.units(replayer, transition, &predicted, NUDGES);
-        units.is_ok_and(|units| replay.farthest(transition, &predicted, &units) > BEYOND)
+        units.is_ok_and(|units| replay.farthest(transition, &predicted, &units) > FIT)
     }
 }

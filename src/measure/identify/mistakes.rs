@@ -8,13 +8,16 @@
 mod maps;
 mod physics;
 mod rows;
+mod springs;
 
 pub use rows::MISTAKES;
 
-use super::{Candidate, Map};
-use crate::integrators::{self, Method};
-use crate::physics::{ParticleSystem, System};
+use super::candidate::{Candidate, Forces, Map, Scheme};
+use super::compose::treated;
+use crate::integrators;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
+use std::sync::Arc;
 
 /// A common mistake.
 pub struct Mistake {
@@ -23,6 +26,8 @@ pub struct Mistake {
     /// What is wrong and what to change, for the program's author.
     pub says: &'static str,
     pub wrong: Wrong,
+    /// The parts of the scene that it changes, as deviations name them, and their factors.
+    pub deviates: &'static [(&'static str, f64)],
 }
 
 /// What a mistake alters.
@@ -34,8 +39,6 @@ pub enum Wrong {
         map: Map,
         /// Whether it uses the state one step before.
         remembers: bool,
-        /// Whether without damping it is the method it was meant to be.
-        only_damped: bool,
     },
     /// The forces or masses, in any method. None where the scene gives it nothing to get wrong.
     Physics(fn(&Scene) -> Option<ParticleSystem>),
@@ -46,26 +49,32 @@ pub enum Wrong {
 /// The mistakes that can be made in this scene: wrong steps once, wrong physics and lengths with
 /// every method, as `mistake(method)`. `system` is the scene's own.
 pub fn mistakes(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
-    let mut candidates = Vec::new();
-    let mut with_every_method = |build: &dyn Fn(&'static Method) -> Candidate| {
-        candidates.extend(integrators::fixed().iter().map(build));
-    };
-    for mistake in MISTAKES {
-        let (id, says) = (mistake.id, mistake.says);
-        match mistake.wrong {
-            Wrong::Step { .. } => {}
-            Wrong::Physics(build) => {
-                if let Some(wrong) = build(scene) {
-                    with_every_method(&|method| Candidate::altered(&wrong, method, id, says));
-                }
-            }
-            Wrong::Length(factor) => with_every_method(&|method| {
-                Candidate::altered(system, method, id, says).stretched(factor)
-            }),
-        }
-    }
     let steps = MISTAKES.iter().filter_map(|m| m.as_step(system));
-    steps.chain(candidates).collect()
+    let mut candidates: Vec<Candidate> = steps.collect();
+    for mistake in MISTAKES {
+        let (wrong, length) = match mistake.wrong {
+            Wrong::Step { .. } => continue,
+            Wrong::Physics(build) => match build(scene) {
+                Some(wrong) => (wrong, 1.0),
+                None => continue,
+            },
+            Wrong::Length(factor) => (system.clone(), factor),
+        };
+        let methods = integrators::fixed().iter();
+        let methods = methods.map(|method| Candidate::method(&wrong, method, 1));
+        candidates.extend(methods.chain(treated(&wrong)).map(|candidate| {
+            let id = format!("{}({})", mistake.id, candidate.id);
+            let candidate = candidate.stretched(length);
+            candidate.named(id, mistake.says).mistaken()
+        }));
+    }
+    candidates
+}
+
+/// The row of a mistake that a candidate's id names, alone or as `mistake(method)`.
+pub fn mistake(id: &str) -> Option<&'static Mistake> {
+    let name = id.split('(').next().unwrap_or(id);
+    MISTAKES.iter().find(|mistake| mistake.id == name)
 }
 
 impl Mistake {
@@ -76,9 +85,10 @@ impl Mistake {
                 meant,
                 map,
                 remembers,
-                only_damped,
-            } if system.kinds().depends_on_velocity() || !only_damped => {
-                let candidate = Candidate::map(system, self.id, meant, self.says, map);
+            } => {
+                let forces: Forces = Arc::new(system.clone());
+                let candidate = Candidate::new(&forces, Scheme::Map(map), meant);
+                let candidate = candidate.named(self.id, self.says).mistaken();
                 Some(candidate.remembering(remembers))
             }
             _ => None,

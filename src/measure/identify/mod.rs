@@ -1,45 +1,49 @@
 //! Identity by one-step replay: which scheme a trajectory really follows.
 //!
 //! From each recorded row one step of every known scheme is taken and compared with the next row.
-//! The difference is measured in units of what rounding of the data can explain, so no threshold
+//! The difference is measured in units of what rounding can explain, so no threshold
 //! depends on the scene, and it works in chaos, where trajectories part but steps do not.
+//!
+//! A scheme is named where rounding explains every row. A trajectory that follows none is *near* one, or is
+//! [explained] by what its forces deviate in, or is unexplained.
 //!
 //! Not to be confused with comparing trajectories: a replay never sees an accumulated error.
 
 mod candidate;
-mod contest;
-mod decision;
-mod defect;
+mod channels;
+mod compose;
+mod explain;
 mod fault;
-mod judge;
 mod mistakes;
+mod race;
 mod replay;
 mod result;
 mod same;
-mod stretch;
-mod sweep;
 mod transition;
 mod velocity;
 
-pub use candidate::{Candidate, Map, Replayer, Scheme};
+pub use candidate::{Candidate, Forces, Map, Replayer, ScaledAt, Scaling, Scheme, Step};
+pub use compose::{Around, OneStep, composed, ids as composed_ids};
+
+pub use explain::TRUTH;
 pub use fault::{first_departure, first_fault, moved_anchor};
 pub use mistakes::{MISTAKES, Mistake, Wrong, mistakes};
-pub use replay::{BEYOND, Defect, FIT, Replay};
-pub use result::{Fault, Identified, Quantity, Undecided};
+pub use replay::{Defect, FIT, Replay};
+pub use result::{Deviation, Explained, Fault, Identified, Quantity, Undecided};
 pub use transition::Transition;
 
 use crate::integrators::{Settings, fixed};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::trajectory::Rows;
-use contest::{Entry, Race};
-use decision::Decision;
+use crate::trajectory::{Precision, Rows};
+use race::{Entry, Race, Ranking, defects_of_all, quantile};
 use same::Comparison;
+use std::borrow::Cow;
 use transition::Weighed;
 
 /// Substeps that are tried.
 const MOST_SUBSTEPS: u32 = 16;
-/// Half of the transitions a race goes over; all count for those that may have won.
+/// Half of the transitions a race goes over; all count for the winner.
 const HALF_SAMPLE: usize = 32;
 
 /// The question: which scheme these rows follow.
@@ -50,39 +54,45 @@ pub struct Question<'a> {
     pub rows: &'a Rows,
     /// Settings of implicit methods.
     pub settings: Settings,
-    /// Most transitions to use, spread evenly; None for all. With a limit, large scenes are tried in
-    /// fewer substeps, too.
+    /// Most transitions to use, spread evenly; None for all.
     pub transitions: Option<usize>,
-    /// What the trajectory is said to be, method and substeps: its name among equals.
+    /// Most steps times particles to replay, a linear solve counting as many; candidates beyond it are
+    /// left out, the more elaborate first.
+    pub budget: u64,
+    /// What the trajectory is said to be, method and substeps: its name among equals, and the only scheme
+    /// that it may be near.
     pub hint: Option<(&'static str, u32)>,
 }
 
-/// The scheme a trajectory follows.
+/// The scheme a trajectory follows, exactly or nearly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identity {
-    /// Id of a method, or of a mistake.
+    /// Id of a method, of a composed scheme, or of a mistake.
     pub method: String,
     /// Steps it takes in a timestep.
     pub substeps: u32,
+    /// What it does, where its name does not say it.
+    pub says: Option<Cow<'static, str>>,
+    /// Whether it is a known mistake.
+    pub mistake: bool,
     /// Largest distance of a replayed row from the recorded one, in units of what rounding explains,
-    /// over the transitions that follow it; where nothing fits, the median over all.
+    /// over the transitions that follow it; the median over all where it is only near.
     pub defect: f64,
-    /// The nearest candidate that can be told from it.
+    /// The same in parts of what the transition moves.
+    pub relative: f64,
+    /// The nearest candidate that is told from it.
     pub runner_up: Option<RunnerUp>,
-    /// Whether no other candidate explains the data, and either this one does to rounding, or it is
-    /// a thousand times nearer than all others and off by less than a thousandth of what the steps
-    /// move (as a solver is that stops early).
-    pub decisive: bool,
-    /// The candidates that cannot be told from it here, each method once with the fewest substeps:
+    /// The candidates that the data cannot tell from it, each method once with the fewest substeps:
     /// `heun`, `implicit_euler/4`.
     pub equivalent: Vec<String>,
-    pub same: Sameness,
-    /// What is wrong with the scheme, if it is a known mistake.
-    pub mistake: Option<&'static str>,
+    /// Why it is not the only one; None where it is.
+    pub undecided: Option<Undecided>,
     /// Transitions replayed.
     pub transitions: usize,
     /// How many of them follow the scheme.
     pub followed: usize,
+    /// Candidates that were not tried, for want of time.
+    pub left_out: Vec<String>,
     /// Steps taken to find out, substeps included.
     pub steps: u64,
 }
@@ -92,28 +102,26 @@ pub struct Identity {
 pub struct RunnerUp {
     pub method: String,
     pub substeps: u32,
-    /// As [`Identity::defect`], over the sample of transitions that told it apart.
+    /// As [`Identity::defect`], over the transitions that told it apart.
     pub defect: f64,
 }
 
-/// How the winner is like its equivalents.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sameness {
-    /// It has none.
-    Alone,
-    /// They are the same map where this trajectory goes; no data could tell.
-    Mathematically,
-    /// They differ, but less than the data is rounded.
-    TooCoarse,
-    /// Rounding explains none of them: the trajectory follows no known scheme, or a step of it is
-    /// only nearly solved.
-    NothingFits,
+/// What is known of a trajectory's scheme.
+#[derive(Debug, Clone, Default)]
+pub struct Found {
+    /// The scheme it follows, or nearly follows.
+    pub identity: Option<Identity>,
+    /// What it deviates in where it follows none exactly, or follows a mistake.
+    pub explained: Option<Explained>,
 }
 
-/// Names the scheme; None where there is nothing to replay: fewer than two rows, three without
-/// velocities, rows of another scene, or rows more than 20,000 steps apart. Rows far apart in a large
-/// scene are tried in fewer substeps.
-pub fn identify(question: &Question) -> Option<Identity> {
+/// Finds the scheme. Nothing is found where there is nothing to replay: fewer than two rows, three without
+/// velocities, rows of another scene, or rows more than 20,000 steps apart.
+pub fn identify(question: &Question) -> Found {
+    found(question).unwrap_or_default()
+}
+
+fn found(question: &Question) -> Option<Found> {
     let Question {
         scene,
         system,
@@ -124,53 +132,182 @@ pub fn identify(question: &Question) -> Option<Identity> {
     let used = transition::choose(rows, system, question.transitions);
     let sample = transition::sample(&used, HALF_SAMPLE);
     let probes = transition::probes(&sample);
-    let all = bare(&used);
-    let sample = bare(&sample);
-    let candidates = candidates(scene, system);
-    let brief = question.transitions.is_some();
-    let first = probes.first()?;
-    let candidates = contest::affordable(&replay, candidates, brief, question.hint, first);
-    let race = contest::race(&replay, candidates, &probes, &sample, brief);
-    let Race { entries, sample } = race;
-    let place = |(id, substeps): (&str, u32)| {
-        let named =
-            |entry: &Entry| entry.candidate.id == id && entry.candidate.substeps == substeps;
-        entries.iter().position(named)
-    };
-    let hint = question.hint.and_then(place);
-    // Velocities found from positions are not what was computed with.
-    let bits = rows.v.is_some();
-    let ranking = judge::rank(&entries, hint, bits)?;
-    // Over longer stretches of positions alone, the velocity to start from is too uncertain.
-    let ranking = match bits {
-        true => stretch::rank(&replay, &entries, ranking, hint),
-        false => ranking,
-    };
-    let comparison = Comparison::new(scene, system, &replay, &sample);
-    let decision = Decision {
+    let (all, sample) = (bare(&used), bare(&sample));
+    probes.first()?;
+    let mut race = Race {
         replay: &replay,
-        comparison: &comparison,
-        entries: &entries,
-        all: &all,
-        hint,
+        probes: &probes,
+        sample: &sample,
+        budget: question.budget,
+        entries: Vec::new(),
+        left_out: Vec::new(),
     };
-    Some(decision.identity(&ranking))
+    let plain = |n: u32| {
+        fixed()
+            .iter()
+            .map(move |method| Candidate::method(system, method, n))
+    };
+    race.enter(expected(question).into_iter().collect(), None);
+    race.enter(plain(1).collect(), None);
+    // Digits that are few tell fewer schemes apart, and that is to be said.
+    let coarse = rows.precision != Precision::Double;
+    if coarse || !race.decided() {
+        race.enter(
+            (2..=MOST_SUBSTEPS).flat_map(plain).collect(),
+            Some("substeps"),
+        );
+    }
+    if !race.decided() {
+        race.enter(composed(scene, system), Some("composed schemes"));
+    }
+    if !race.decided() {
+        race.enter(mistakes(scene, system), Some("mistakes"));
+    }
+    let named =
+        |entry: &Entry| question.hint == Some((&entry.candidate.id, entry.candidate.substeps));
+    let first = race.entries.iter().position(named);
+    if let Some(ranking) = race.ranking(first, rows.v.is_some())
+        && let Some(identity) = decide(question, &race, &ranking, &all, &sample)
+    {
+        if race.exact(ranking.winner) && Some(ranking.winner) != first {
+            return Some(explain::of_truth(&identity));
+        }
+        let identity = compose::staggered(system, scene, rows, identity);
+        let explained = explain::of_mistake(scene, &identity);
+        return Some(Found {
+            identity: Some(identity),
+            explained,
+        });
+    }
+    Some(explain::of_none(question, &race, &all))
+}
+
+/// The scheme that is expected.
+fn expected(question: &Question) -> Option<Candidate> {
+    let (id, substeps) = question.hint?;
+    if let Some(method) = crate::integrators::find(id) {
+        return Some(Candidate::method(question.system, method, substeps));
+    }
+    let mut composed = composed(question.scene, question.system).into_iter();
+    composed.find(|c| c.id == id && c.substeps == substeps)
+}
+
+/// The identity over all transitions; None where the winner follows less than half of them.
+fn decide(
+    question: &Question,
+    race: &Race,
+    ranking: &Ranking,
+    all: &[Transition],
+    sample: &[Transition],
+) -> Option<Identity> {
+    let winner = &race.entries[ranking.winner];
+    let defects = if winner.defects.len() == all.len() {
+        // The sample was all of them.
+        winner.defects.clone()
+    } else {
+        defects_of_all(race.replay, &winner.candidate, all)
+    };
+    let followed = defects.iter().filter(|d| d.fits()).count();
+    let share = followed as f64 / defects.len().max(1) as f64;
+    if share < 0.5 {
+        return None;
+    }
+    let candidate = &winner.candidate;
+    let meant = || crate::integrators::find(candidate.meant);
+    if let Some(meant) = meant().filter(|_| candidate.mistake) {
+        // Where the mistake makes no difference, it is none.
+        let right = Candidate::method(question.system, meant, candidate.substeps);
+        if defects_of_all(race.replay, &right, all)
+            .iter()
+            .all(Defect::fits)
+        {
+            return Some(Identity {
+                defect: quantile(&defects_of_all(race.replay, &right, all), 1.0),
+                undecided: Some(Undecided::DataTooCoarse),
+                equivalent: vec![candidate.label()],
+                transitions: all.len(),
+                followed: all.len(),
+                left_out: race.left_out.clone(),
+                steps: race.replay.steps(),
+                ..Identity::of(&right)
+            });
+        }
+    }
+    let comparison = Comparison::new(question.scene, question.system, race.replay, sample);
+    let equals = race.equals(ranking, all, &defects, &comparison);
+    let runner_up = race.runner_up(ranking, &equals, share);
+    let candidate = |i: usize| &race.entries[i].candidate;
+    let undecided = match equals.iter().all(|(_, same)| *same) {
+        _ if equals.is_empty() => None,
+        true => Some(Undecided::SameMap),
+        false => Some(Undecided::DataTooCoarse),
+    };
+    Some(Identity {
+        defect: quantile(&defects, share),
+        relative: median_relative(&defects),
+        runner_up: runner_up.map(|(i, defect)| RunnerUp {
+            method: candidate(i).id.clone(),
+            substeps: candidate(i).substeps,
+            defect,
+        }),
+        equivalent: equals.iter().map(|(i, _)| candidate(*i).label()).collect(),
+        undecided,
+        transitions: all.len(),
+        followed,
+        left_out: race.left_out.clone(),
+        steps: race.replay.steps(),
+        ..Identity::of(&winner.candidate)
+    })
+}
+
+fn median_relative(defects: &[Defect]) -> f64 {
+    let mut relative: Vec<f64> = defects.iter().map(|d| d.relative).collect();
+    relative.sort_by(f64::total_cmp);
+    let middle = relative.get(relative.len() / 2).copied();
+    middle.unwrap_or(f64::INFINITY)
 }
 
 fn bare(weighed: &[Weighed]) -> Vec<Transition> {
     weighed.iter().map(|w| w.transition).collect()
 }
 
-/// Every scheme that is known, in the order of preference among equals.
-fn candidates(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
-    let methods = fixed().iter().flat_map(|method| {
-        let substeps = 1..=MOST_SUBSTEPS;
-        substeps.map(|n| Candidate::method(system, method, n))
-    });
-    methods.chain(mistakes(scene, system)).collect()
+/// Every scheme that has a name here, the simplest first: methods whole and in substeps, composed schemes,
+/// mistakes.
+fn candidates(scene: &Scene, system: &ParticleSystem) -> impl Iterator<Item = Candidate> {
+    let methods = (1..=MOST_SUBSTEPS).flat_map(|n| fixed().iter().map(move |m| (m, n)));
+    let methods = methods.map(|(method, n)| Candidate::method(system, method, n));
+    let methods: Vec<Candidate> = methods.collect();
+    methods
+        .into_iter()
+        .chain(composed(scene, system))
+        .chain(mistakes(scene, system))
 }
 
 impl Identity {
+    /// The name alone.
+    pub(super) fn of(candidate: &Candidate) -> Self {
+        Self {
+            method: candidate.id.clone(),
+            substeps: candidate.substeps,
+            says: candidate.says.clone(),
+            mistake: candidate.mistake,
+            defect: f64::INFINITY,
+            relative: f64::INFINITY,
+            runner_up: None,
+            equivalent: Vec::new(),
+            undecided: None,
+            transitions: 0,
+            followed: 0,
+            left_out: Vec::new(),
+            steps: 0,
+        }
+    }
+
+    /// Whether no other candidate explains the data, and this one does to rounding.
+    pub fn decisive(&self) -> bool {
+        self.undecided.is_none()
+    }
+
     /// The identity as reports write it; None if its defect is no number.
     pub fn report(&self) -> Option<Identified> {
         self.defect.is_finite().then(|| {
@@ -178,17 +315,15 @@ impl Identity {
             Identified {
                 method: self.method.clone(),
                 substeps: self.substeps,
+                says: self.says.clone().map(Cow::into_owned),
                 defect: self.defect,
+                relative: Some(self.relative).filter(|r| r.is_finite()),
                 runner_up: runner_up.map(RunnerUp::label),
                 runner_up_defect: runner_up.map(|r| r.defect).filter(|d| d.is_finite()),
-                decisive: self.decisive,
+                decisive: self.decisive(),
                 equivalent: self.equivalent.clone(),
-                undecided: match self.same {
-                    _ if self.decisive => None,
-                    Sameness::Mathematically => Some(Undecided::SameMap),
-                    Sameness::Alone | Sameness::TooCoarse => Some(Undecided::DataTooCoarse),
-                    Sameness::NothingFits => Some(Undecided::NothingFits),
-                },
+                undecided: self.undecided,
+                left_out: self.left_out.clone(),
             }
         })
     }

@@ -2,7 +2,7 @@
 //! of rounding.
 
 use super::candidate::{Candidate, Replayer};
-use super::defect::{CLEAR, HOPELESS, NUDGES, largest_ratio};
+use super::compose::sign;
 use super::transition::Transition;
 use super::velocity;
 use crate::integrators::{Settings, StepError};
@@ -11,8 +11,52 @@ use crate::scene::Scene;
 use crate::trajectory::Rows;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-pub use super::defect::{BEYOND, Defect, FIT};
+/// A transition follows a scheme if its defect is at most this many units.
+///
+/// A unit holds every rounding of the data once at its largest, and those of the forces and of the step; what
+/// becomes of them in a step is measured in random directions, of which the unit takes the largest
+/// result: one standard deviation or more, where the sum of many uniform roundings stays below 3 and
+/// that of a few in the worst case below 4. The rest is for programs that take more operations.
+pub const FIT: f64 = 16.0;
 
+/// A defect so small needs no finer unit.
+const CLEAR: f64 = 0.25 * FIT;
+/// Nor does one so large: more directions never raise a unit by as much.
+const HOPELESS: f64 = 32.0 * FIT;
+/// Most directions in which inputs and forces are moved by their rounding.
+const NUDGES: u64 = 16;
+
+/// How far a replay ends from the data.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Defect {
+    /// Largest over the coordinates of |predicted - recorded|, in units of what rounding explains;
+    /// infinite where the candidate cannot take the steps.
+    pub units: f64,
+    /// The same difference relative to what the transition moves.
+    pub relative: f64,
+}
+
+impl Defect {
+    /// The candidate cannot take these steps.
+    pub(super) const IMPOSSIBLE: Self = Self {
+        units: f64::INFINITY,
+        relative: f64::INFINITY,
+    };
+
+    /// Whether rounding explains it.
+    pub fn fits(&self) -> bool {
+        self.units <= FIT
+    }
+}
+
+/// The largest of `a / b`, with 0 / anything = 0.
+fn largest_ratio(a: &[f64], b: &[f64]) -> f64 {
+    let ratios = a.iter().zip(b).filter(|(a, _)| **a > 0.0);
+    ratios.fold(0.0, |most, (a, b)| f64::max(most, a / b))
+}
+
+/// Rows that show whether velocities are differences.
+const DIFFERENCED: usize = 8;
 /// A velocity is found from positions in about this many tries.
 const FIND: u64 = 8;
 /// A step that solves costs as much as this many that do not: 20 to 100, on a chain of 20.
@@ -25,7 +69,9 @@ pub struct Replay<'a> {
     /// Positions of the fixed coordinates, m; None for the free.
     fixed: Vec<Option<f64>>,
     /// The longest rest length, m: forces are rounded by as much even where positions are small.
-    pub(super) length: f64,
+    length: f64,
+    /// Whether velocities are differences of positions over the step, and round as those do.
+    differenced: bool,
     /// Whether the rows themselves are known no better than an iterative solve's tolerance.
     pub(super) iterated: bool,
     steps: AtomicU64,
@@ -54,6 +100,7 @@ impl<'a> Replay<'a> {
             settings,
             fixed: fixed.map(|(x, w)| (*w == 0.0).then_some(*x)).collect(),
             length: lengths.fold(0.0, f64::max),
+            differenced: is_differenced(rows),
             iterated: false,
             steps: AtomicU64::new(0),
         })
@@ -82,9 +129,9 @@ impl<'a> Replay<'a> {
     /// What rounding explains of each coordinate at `transition.to`: positions, then velocities
     /// (none where there are none). `predicted` is what [`predict`](Self::predict) gave.
     ///
-    /// Half a unit of the recorded number; what half units of the inputs and the candidate's own
-    /// roundings become, measured by replaying from inputs moved by as much in `nudges` random
-    /// directions; and for iterative schemes the tolerance of their solve.
+    /// Half a unit of the recorded number; what half units of the inputs, the rounding of every force
+    /// ([`System::rounding`]) and that of the step's sums become, measured by replays that are moved by as
+    /// much in `nudges` random directions; and for iterative schemes the tolerance of their solve.
     ///
     /// # Errors
     /// As [`predict`](Self::predict).
@@ -100,28 +147,6 @@ impl<'a> Replay<'a> {
             self.grow(replayer, transition, predicted, pattern, &mut grown)?;
         }
         Ok(self.with_own(replayer, transition, predicted, &grown))
-    }
-
-    /// Predicted minus recorded, each in units of the last digits of the numbers it came from, and
-    /// of the largest of its kind in doubles: near the true units, and free.
-    pub(super) fn last_digits_off(&self, transition: &Transition, predicted: &State) -> Vec<f64> {
-        let rows = self.rows;
-        let [v0, v1] = [transition.from, transition.to].map(|k| rows.v(k).unwrap_or(&[]));
-        let (x0, x1) = (rows.x(transition.from), rows.x(transition.to));
-        let mut off = Vec::new();
-        for (from, recorded, predicted, precision) in [
-            (x0, x1, &predicted.x, rows.precision),
-            (v0, v1, &predicted.v, rows.precision_v),
-        ] {
-            let round = |value: f64| precision.half_unit(value);
-            let size = recorded.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-            let least = (0.5 * f64::EPSILON * size).max(f64::MIN_POSITIVE);
-            let triples = from.iter().zip(recorded).zip(predicted);
-            off.extend(triples.map(|((from, recorded), predicted)| {
-                (predicted - recorded) / (round(*recorded) + round(*from) + least)
-            }));
-        }
-        off
     }
 
     /// The defect of a candidate at a transition.
@@ -144,7 +169,6 @@ impl<'a> Replay<'a> {
         if off.iter().all(|d| *d == 0.0) {
             return Ok(Defect {
                 units: 0.0,
-                exact: true,
                 relative: 0.0,
             });
         }
@@ -159,9 +183,13 @@ impl<'a> Replay<'a> {
             if clear || pattern == NUDGES {
                 let moved: Vec<f64> = self.moved(transition).collect();
                 let motion = largest_ratio(&moved, &units);
+                let digits = self.digits(transition);
+                if defect > motion && largest_ratio(&off, &digits) > FIT {
+                    // Rounding would explain anything here.
+                    return Ok(Defect::IMPOSSIBLE);
+                }
                 return Ok(Defect {
                     units: defect,
-                    exact: false,
                     relative: if motion > 0.0 {
                         defect / motion
                     } else {
@@ -234,7 +262,7 @@ impl<'a> Replay<'a> {
             let solve = if i < dim { seconds * solve } else { solve };
             // A number that ends near 0 was larger in between.
             let bit = f64::EPSILON * from.abs();
-            self.rows.half_unit(i, value) + bit + solve
+            self.half_unit(transition.to, i, value) + bit + solve
         });
         grown.iter().zip(own).map(|(g, own)| g + own).collect()
     }
@@ -249,6 +277,25 @@ impl<'a> Replay<'a> {
     fn from(&self, transition: &Transition) -> impl Iterator<Item = f64> + '_ {
         let v = self.rows.v(transition.from).unwrap_or(&[]);
         self.rows.x(transition.from).iter().chain(v).copied()
+    }
+
+    /// Half a unit of the last digit that a number of row `k` is given to, or computed to.
+    fn half_unit(&self, k: usize, i: usize, value: f64) -> f64 {
+        let rows = self.rows;
+        let half = rows.half_unit(i, value);
+        match i.checked_sub(rows.dim).filter(|_| self.differenced) {
+            Some(at) => half + f64::EPSILON * rows.x(k)[at].abs() / rows.timestep,
+            None => half,
+        }
+    }
+
+    /// The rounding of each recorded number, and of the number it came from.
+    fn digits(&self, transition: &Transition) -> Vec<f64> {
+        let pairs = self.recorded(transition).zip(self.from(transition));
+        let digits = pairs.enumerate().map(|(i, (to, from))| {
+            self.half_unit(transition.to, i, to) + f64::EPSILON * from.abs()
+        });
+        digits.collect()
     }
 
     /// How far each recorded number moves.
@@ -268,6 +315,7 @@ impl<'a> Replay<'a> {
         let step = rows.steps[transition.from];
         let total = span.saturating_mul(u64::from(replayer.candidate().roundings()));
         let nudge = pattern.map(|pattern| (pattern, total as f64));
+        replayer.nudge(pattern);
         let mut state = self.state(transition.from, nudge);
         let mut before = transition.before.map(|k| (k, self.state(k, nudge)));
         if rows.v.is_none() {
@@ -340,8 +388,8 @@ impl<'a> Replay<'a> {
             } else if let Some((pattern, roundings)) = nudge {
                 let own = 0.5 * f64::EPSILON * roundings;
                 let row = (k as u64, pattern);
-                let round = [rows.half_unit(i, x[i]), rows.half_unit(dim + i, v[i])];
-                x[i] += sign(row, 2 * i) * (round[0] + own * (x[i].abs() + self.length));
+                let round = [self.half_unit(k, i, x[i]), self.half_unit(k, dim + i, v[i])];
+                x[i] += sign(row, 2 * i) * (round[0] + own * x[i].abs());
                 v[i] += sign(row, 2 * i + 1) * (round[1] + own * v[i].abs());
             }
         }
@@ -351,14 +399,23 @@ impl<'a> Replay<'a> {
     }
 }
 
-/// 1 or -1, the same in every run (SplitMix64's mixing, Steele et al. 2014).
-fn sign((row, pattern): (u64, u64), at: usize) -> f64 {
-    let mut z = row
-        .wrapping_mul(0x9E37_79B9_7F4A_7C15)
-        .wrapping_add(pattern << 40)
-        .wrapping_add(at as u64)
-        .wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    if (z ^ (z >> 31)) & 1 == 0 { 1.0 } else { -1.0 }
+/// Whether the velocities of some rows are those that positions one or two steps apart give by a division, to
+/// the last bits: a program that steps positions alone computes them so.
+fn is_differenced(rows: &Rows) -> bool {
+    let moving = (1..rows.len().saturating_sub(1)).filter(|&k| {
+        rows.steps[k] == rows.steps[k - 1] + 1 && rows.steps[k + 1] == rows.steps[k] + 1
+    });
+    let moving: Vec<usize> = moving.take(DIFFERENCED).collect();
+    let is = |back: usize, ahead: usize| {
+        moving.iter().all(|&k| {
+            let Some(v) = rows.v(k) else { return false };
+            let (from, to) = (rows.x(k - back), rows.x(k + ahead));
+            let seconds = (back + ahead) as f64 * rows.timestep;
+            let pairs = v.iter().zip(to.iter().zip(from));
+            pairs.into_iter().all(|(v, (to, from))| {
+                (v - (to - from) / seconds).abs() <= 2.0 * f64::EPSILON * v.abs()
+            })
+        })
+    };
+    moving.len() == DIFFERENCED && (is(1, 0) || is(1, 1) || is(0, 1))
 }

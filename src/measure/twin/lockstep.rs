@@ -1,9 +1,10 @@
 //! Two solvers over the same few instants.
 
-use crate::integrators::{self, StepError};
-use crate::physics::{ParticleSystem, State};
+use crate::integrators::{self, Integrator, StepError};
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
 use crate::solvers::{Setting, Solver, Unsupported};
+use crate::vector::axpy;
 
 /// The states at the start and after each of a few world steps.
 pub(super) struct Path {
@@ -55,6 +56,36 @@ impl Path {
         }
         let finite = self.states.iter().all(State::is_finite);
         (!finite).then(|| "it leaves the finite numbers".to_owned())
+    }
+}
+
+/// Symplectic Euler in `substeps` of a step, under the forces of its start: what rapier's bodies do.
+pub(super) struct ForcesHeld {
+    substeps: u32,
+    a: Vec<f64>,
+}
+
+impl ForcesHeld {
+    pub(super) fn new(substeps: u32) -> Self {
+        Self {
+            substeps,
+            a: Vec::new(),
+        }
+    }
+}
+
+impl Integrator for ForcesHeld {
+    fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
+        self.a.resize(state.x.len(), 0.0);
+        let power = system.acceleration(state.t, &state.x, &state.v, &mut self.a);
+        let part = h / f64::from(self.substeps);
+        for _ in 0..self.substeps {
+            axpy(&mut state.v, part, &self.a);
+            axpy(&mut state.x, part, &state.v);
+        }
+        state.work.advance(power, h);
+        state.t += h;
+        Ok(())
     }
 }
 

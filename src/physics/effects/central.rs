@@ -1,8 +1,8 @@
 //! Forces along the line between two particles that depend on their distance alone: the cubic part of
 //! springs that stiffen as they stretch, and Newtonian attraction.
 
-use super::springs::{SHORTEST, difference, dot};
-use super::{Effect, EffectRow, boxed};
+use super::springs::{Line, SHORTEST, difference, dot};
+use super::{Effect, EffectRow, FEW_OPERATIONS, boxed};
 use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;
 use nalgebra::{Matrix3, Vector3};
@@ -168,6 +168,31 @@ impl Effect for Central {
             }
         }
         Power::default()
+    }
+
+    fn add_rounding(&self, _t: f64, x: &[f64], _v: &[f64], f: &mut [f64]) {
+        for (law, [i, j], d) in self.separations(x) {
+            let Some(pull) = law.pull(dot(d, d).sqrt()) else {
+                continue;
+            };
+            let line = Line::new(x, i, j);
+            // The force as a power of what it depends on: its relative rounding is so many times larger.
+            let relative = match *law {
+                Law::Cubic { rest_length, .. } => {
+                    let stretch = (line.length - rest_length).abs();
+                    3.0 * (line.off + 2.0 * f64::EPSILON * rest_length) / stretch.max(line.off)
+                }
+                Law::Gravitational { .. } => 3.0 * line.off / line.length,
+            };
+            for axis in 0..3 {
+                let size = pull.abs() * line.length;
+                let off = size
+                    * (line.turned[axis]
+                        + (relative + 2.0 * FEW_OPERATIONS) * line.direction[axis].abs());
+                f[i + axis] += off;
+                f[j + axis] += off;
+            }
+        }
     }
 
     fn potential(&self, _t: f64, x: &[f64]) -> f64 {

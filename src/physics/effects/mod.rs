@@ -36,6 +36,19 @@ pub trait Effect: Send + Sync {
     /// *Adds* its force, N, to `f`; returns its powers at this point, W.
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power;
 
+    /// *Adds* a bound of how far rounding moves the force, N, to `f`: what two programs that compute the same
+    /// formula from the same state, in any order of operations, may differ by. The coordinates are taken to be
+    /// off by a rounding each, as those of a stage within a step are.
+    ///
+    /// The default is that of a force of a few operations without cancellation.
+    fn add_rounding(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        let mut own = vec![0.0; f.len()];
+        self.add_force(t, x, v, &mut own);
+        for (f, own) in f.iter_mut().zip(own) {
+            *f += FEW_OPERATIONS * own.abs();
+        }
+    }
+
     /// Potential energy, J; 0 for a force without a potential.
     fn potential(&self, _t: f64, _x: &[f64]) -> f64 {
         0.0
@@ -70,6 +83,9 @@ pub trait Effect: Send + Sync {
         false
     }
 }
+
+/// The relative rounding of a product or a sum of a few factors, by any order of operations.
+const FEW_OPERATIONS: f64 = 4.0 * f64::EPSILON;
 
 /// One effect's facts.
 pub struct EffectRow {

@@ -49,6 +49,14 @@ impl Effect for Scaled {
         }
     }
 
+    fn add_rounding(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        let mut own = vec![0.0; f.len()];
+        self.effect.add_rounding(t, x, v, &mut own);
+        for (f, own) in f.iter_mut().zip(own) {
+            *f += self.factor.abs() * own;
+        }
+    }
+
     fn potential(&self, t: f64, x: &[f64]) -> f64 {
         self.factor * self.effect.potential(t, x)
     }

@@ -1,8 +1,9 @@
 //! rapier worlds that mirror a scene.
 //!
-//! There are three engines, since each answers another question. `rapier` is what people use.
+//! There are four engines, since each answers another question. `rapier` is what people use.
 //! `rapier-converged` proves that its world is the same scene: it takes enough sweeps for the joint solve to
 //! converge. `rapier-forces` proves that the harness is unbiased: rapier only applies forces computed here.
+//! `rapier-user-forces` is the other way people make springs: forces once a step, at rapier's own substeps.
 //! None of them is the truth; [`RapierEngine`] describes the method of rapier's joints.
 //!
 //! rapier uses glam; its types stay inside this folder.
@@ -18,4 +19,9 @@ pub use joints::RapierEngine;
 pub use settings::RapierSettings;
 
 /// The ids of rapier's worlds at fixed settings, in the order reports list them.
-pub const IDS: [&str; 3] = ["rapier", "rapier-forces", "rapier-converged"];
+pub const IDS: [&str; 4] = [
+    "rapier",
+    "rapier-forces",
+    "rapier-converged",
+    "rapier-user-forces",
+];

@@ -82,7 +82,7 @@ fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result
 }
 
 fn find_in(methods: &'static [Method], id: &str) -> Option<Solver> {
-    let found = methods.iter().find(|method| method.id == id);
+    let found = (methods.iter()).find(|method| method.id == integrators::meant(id));
     found.map(Solver::method)
 }
 
@@ -105,12 +105,12 @@ fn look_up(
     find: impl Fn(&str) -> Option<Solver>,
     known: impl Fn() -> String,
 ) -> anyhow::Result<Vec<Solver>> {
-    let mut rows = Vec::new();
-    for (at, id) in ids.iter().enumerate() {
-        if ids[..at].contains(id) {
-            continue;
+    let mut rows: Vec<Solver> = Vec::new();
+    for id in ids {
+        let row = find(id).with_context(|| format!("unknown `{id}`; known {}", known()))?;
+        if !rows.iter().any(|known| known.id == row.id) {
+            rows.push(row);
         }
-        rows.push(find(id).with_context(|| format!("unknown `{id}`; known {}", known()))?);
     }
     Ok(rows)
 }

@@ -48,8 +48,8 @@ pub struct Args {
     output: Output,
 }
 
-/// The exit code where no scheme, or more than one, explains the file.
-const UNDECIDED: u8 = 3;
+/// The exit code where no scheme explains the file to rounding.
+const NOT_EXACT: u8 = 3;
 
 /// Runs the verb.
 pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
@@ -107,7 +107,8 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The exit code. 0: it follows a scheme throughout; 1: it has a fault; 3: its scheme is undecided.
+/// The exit code. 0: it follows a scheme throughout; 1: it follows a known mistake, or leaves its scheme; 3: no scheme
+/// explains it to rounding.
 fn code(report: &Report) -> u8 {
     if let Body::Compare { fault: Some(_), .. } = report.body {
         return 1;
@@ -117,9 +118,9 @@ fn code(report: &Report) -> u8 {
         .first()
         .and_then(|o| o.identified.as_ref());
     match found.map(|found| found.undecided) {
-        // Schemes that are the same map here cannot be told apart by any data.
-        Some(None | Some(Undecided::SameMap)) => 0,
-        _ => UNDECIDED,
+        None | Some(Some(Undecided::Near)) => NOT_EXACT,
+        // Schemes that no data, or not this data, tells apart.
+        Some(None | Some(Undecided::SameMap | Undecided::DataTooCoarse)) => 0,
     }
 }
 
@@ -156,11 +157,13 @@ fn report(
     };
     let plan = Plan::new(scene, &choice);
     let mut report = plan.execute(session)?;
-    let (identified, fault) = identity::of_rows(&plan, rows);
+    let (found, fault) = identity::of_rows(&plan, rows);
+    let identified = found.identity.and_then(|identity| identity.report());
     if let Body::Run { outcomes } = &mut report.body {
         let mut outcomes = std::mem::take(outcomes);
         for outcome in &mut outcomes {
             outcome.identified.clone_from(&identified);
+            outcome.explained.clone_from(&found.explained);
         }
         report.body = Body::Compare { outcomes, fault };
     }

@@ -50,8 +50,9 @@ pub fn answer(setup: &Setup, choice: &CostChoice, sweeps: &[Sweep], curves: Vec<
 /// Why a reference engine's curve lies where it does: reference engines are explained, not ranked.
 fn explanation(solver: &Solver) -> Option<String> {
     let rapier = solver.kind == SolverKind::Rapier;
-    rapier.then(|| match (solver.dissipates(), solver.follows) {
-        (None, Some(method)) => format!(
+    rapier.then(|| match (solver.by_design(true), solver.by_design(false), solver.follows) {
+        (Some(gains), ..) => format!("it is of order 1: {gains}"),
+        (None, None, Some(method)) => format!(
             "it moves its bodies by {} under the forces computed here, so its errors are that method's, \
              and what it takes longer is the engine around it",
             method.id

@@ -17,7 +17,12 @@ pub fn proofs(plan: &Plan) -> Vec<Check> {
     if !plan.choice.prove || !plan.cases.iter().any(computed) {
         return Vec::new();
     }
-    twin::prove(plan.scene, plan.scene.solver.timestep)
+    let timestep = plan.scene.solver.timestep;
+    let mut proofs = twin::prove(plan.scene, timestep);
+    if (plan.cases.iter()).any(|case| case.solver.id == "rapier-user-forces") {
+        proofs.push(twin::prove_user_forces(plan.scene, plan.scene, timestep));
+    }
+    proofs
 }
 
 /// Steps times coordinates of the scene's own run up to which orders are measured by default. Measuring

@@ -3,9 +3,8 @@
 use super::plan::{Case, Plan};
 use super::program::begin_with;
 use crate::integrators::Settings;
-use crate::measure::identify::{Fault, Identified, Question, first_fault, identify, moved_anchor};
+use crate::measure::identify::{Fault, Found, Question, first_fault, identify, moved_anchor};
 use crate::physics::ParticleSystem;
-use crate::solvers::SolverKind;
 use crate::trajectory::{Rows, Trajectory};
 use std::borrow::Cow;
 
@@ -13,37 +12,36 @@ use std::borrow::Cow;
 /// replayed whole.
 const TRANSITIONS: usize = 16;
 
-/// Identifies the scheme of a run by replaying some of its steps.
-pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Option<Identified> {
+/// Steps times particles that may be replayed whatever a run took: some hundredths of a second.
+const LEAST: u64 = 1_000_000;
+/// The same for a file, which is judged for its own sake: some seconds.
+const OF_FILE: u64 = 60_000_000;
+
+/// Identifies the scheme of a run by replaying some of its steps, at no more cost than the run's own.
+pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Found {
+    let steps = run.rows().steps.last().copied().unwrap_or(0);
+    let particles = plan.scene.particles.len() as u64;
     let question = Question {
         transitions: Some(TRANSITIONS),
-        hint: expected(plan, case),
+        hint: case.solver.law(plan.scene),
+        budget: steps.saturating_mul(particles).max(LEAST),
         ..question(plan, run.rows())
     };
-    identify(&question)?.report()
-}
-
-/// The scheme and number of substeps that a run is expected to follow.
-fn expected(plan: &Plan, case: &Case) -> Option<(&'static str, u32)> {
-    let joints = case.solver.kind == SolverKind::Rapier && plan.scene.springs.len() > 1;
-    let rapier = joints.then_some(("linearized_implicit_material", case.solver.substeps));
-    case.solver
-        .as_method()
-        .map(|method| (method.id, 1))
-        .or(rapier)
+    identify(&question)
 }
 
 /// Identifies the scheme of rows by replaying all their steps, and finds the first step that deviates from it.
-pub fn of_rows(plan: &Plan, rows: &Rows) -> (Option<Identified>, Option<Fault>) {
+pub fn of_rows(plan: &Plan, rows: &Rows) -> (Found, Option<Fault>) {
     let rows = &from_the_start(plan, rows);
     let question = question(plan, rows);
     // A fixed particle must not move under any scheme.
     let moved = moved_anchor(plan.scene, rows);
-    let Some(identity) = identify(&question) else {
-        return (None, moved);
-    };
-    let fault = moved.or_else(|| first_fault(&question, &identity));
-    (identity.report(), fault)
+    let found = identify(&question);
+    let fault = moved.or_else(|| {
+        let identity = found.identity.as_ref()?;
+        first_fault(&question, identity)
+    });
+    (found, fault)
 }
 
 /// The rows, preceded by the scene's start where they begin a few steps later: those steps are replayed, too.
@@ -65,6 +63,7 @@ fn question<'a>(plan: &'a Plan, rows: &'a Rows) -> Question<'a> {
         rows,
         settings: Settings::stated(plan.scene.solver.tolerance),
         transitions: None,
+        budget: OF_FILE,
         hint: None,
     }
 }

@@ -28,6 +28,9 @@ pub fn all(
         let diverged = record.status == Status::Diverged;
         let early = trajectory.is_some() && record.status != Status::Completed;
         let judged = |series| measure::judge(series, scale, diverged);
+        let replayed = trajectory.filter(|_| plan.choice.identify);
+        let found = replayed.map(|run| identity::of_run(plan, case, run));
+        let found = found.unwrap_or_default();
         let mut outcome = Outcome {
             engine: case.label.engine.clone(),
             kind: case.solver.kind,
@@ -47,9 +50,8 @@ pub fn all(
                 linear_solves: record.counts.linear_solves,
                 wall_s: record.wall.clone(),
             },
-            identified: trajectory
-                .filter(|_| plan.choice.identify)
-                .and_then(|run| identity::of_run(plan, case, run)),
+            identified: found.identity.and_then(|identity| identity.report()),
+            explained: found.explained,
             remarks: Vec::new(),
         };
         outcome.remarks = remarks::remarks(plan, case, &outcome, limits.as_ref());

@@ -19,10 +19,13 @@ pub fn remarks(
     // What is steady needs no explanation.
     let steady = energy.and_then(Energy::behaviour) == Some(Behaviour::Steady);
     let class = energy.and_then(|energy| energy.class).filter(|_| !steady);
+    let calm = outcome.status == Status::Completed && energy.is_some_and(is_calm);
     let method = case.solver.as_method();
     let prediction = linearised.zip(method);
     let prediction = prediction.map(|(scene, method)| scene.predict(method, case.label.timestep));
-    let warning = prediction.as_ref().and_then(|p| step_warning(p, case));
+    let warning = prediction
+        .as_ref()
+        .and_then(|p| step_warning(p, case, calm));
     let mut remarks = Vec::new();
     match outcome.status {
         Status::Unsupported | Status::Failed => {
@@ -33,11 +36,12 @@ pub fn remarks(
             let time = outcome.stopped_at_s.unwrap_or(0.0);
             let damped = plan.system.kinds().depends_on_velocity();
             // The limit on this scene says more than the method's general facts.
-            let why = match (&warning, method, prediction.as_ref().map(|p| &p.limit)) {
-                (None, Some(_), Some(Limit::At(limit))) => format!(
+            let limit = prediction.as_ref().map(|p| (&p.limit, p.error));
+            let why = match (&warning, method, limit) {
+                (None, Some(_), Some((Limit::At(limit), error))) => format!(
                     "; the step is within the stability limit {} s of the scene at its start, \
                      which the motion leaves",
-                    short(*limit)
+                    known(*limit, error)
                 ),
                 (None, Some(method), _) => why_unstable(method, damped),
                 _ => String::new(),
@@ -109,7 +113,7 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<S
             let law = by_law(method, class, damped).filter(|_| has_springs);
             law.or_else(|| damped.then(|| by_balance(method, class, lost)))
         }
-        None if class != EnergyClass::Growing && has_springs => case.solver.dissipates(),
+        None if has_springs => case.solver.by_design(class == EnergyClass::Growing),
         None => None,
     }
 }
@@ -190,13 +194,35 @@ pub fn linearised(plan: &Plan) -> Option<Linearised> {
 /// A relative growth of amplitudes over a whole run below this is invisible in a plot.
 const VISIBLE: f64 = 0.01;
 
+/// The largest error of the energy, in units of S, of a run that is called stable.
+const CALM: f64 = 1.0;
+
+/// Whether a run shows itself stable: its energy neither rises nor is far off.
+fn is_calm(energy: &Energy) -> bool {
+    let keeps = matches!(
+        energy.behaviour(),
+        Some(
+            Behaviour::Steady | Behaviour::Bounded | Behaviour::FewSamples | Behaviour::Dissipating
+        )
+    );
+    keeps && energy.relative_error_max.is_some_and(|error| error <= CALM)
+}
+
 /// The warning that a timestep exceeds the stability limit of its method on this scene; None where it is stable
-/// or the limit is unknown.
-fn step_warning(prediction: &Prediction, case: &Case) -> Option<String> {
+/// or the limit is unknown. Of a `calm` run, which stays stable, it only says where the linearised scene's limit
+/// is.
+fn step_warning(prediction: &Prediction, case: &Case, calm: bool) -> Option<String> {
     let h = case.label.timestep;
     match prediction.limit {
         // Exactly at the limit nothing grows, and a timestep rounded to a few digits may be meant to lie there.
+        Limit::At(limit) if h > limit * (1.0 + 1e-9) && calm => Some(format!(
+            "this run stays stable, though its step is beyond the limit of the scene linearised about its start, \
+             {} s{}",
+            known(limit, prediction.error),
+            reason_in_brackets(prediction)
+        )),
         Limit::At(limit) if h > limit * (1.0 + 1e-9) => Some(beyond_limit(h, limit, prediction)),
+        Limit::Never | Limit::Unknown(_) if calm => None,
         Limit::Never => never_stable(h, case.label.end(), prediction),
         // The scene is too large to know all its modes, but one that grows is enough.
         Limit::Unknown(_) => {
@@ -213,11 +239,13 @@ fn step_warning(prediction: &Prediction, case: &Case) -> Option<String> {
 
 fn beyond_limit(h: f64, limit: f64, prediction: &Prediction) -> String {
     let mode = reason_in_brackets(prediction);
-    let advice = round_below(limit).map_or_else(String::new, |step| format!(": take {step} s"));
+    // What is surely stable.
+    let sure = limit * (1.0 - prediction.error);
+    let advice = round_below(sure).map_or_else(String::new, |step| format!(": take {step} s"));
     format!(
         "h = {} s is beyond its stability limit {} s here{mode}{advice}",
         short(h),
-        short(limit)
+        known(limit, prediction.error)
     )
 }
 
@@ -241,7 +269,13 @@ fn reason_in_brackets(prediction: &Prediction) -> String {
 
 /// A number with four digits, without trailing zeros.
 fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    known(value, 0.0)
+}
+
+/// A number with as many digits as its relative error leaves, two to four, without trailing zeros.
+fn known(value: f64, error: f64) -> String {
+    let digits = (-error.max(1e-4).log10()).floor().clamp(2.0, 4.0) as usize;
+    let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
     if rounded != 0.0 && !(1e-4..1e5).contains(&rounded.abs()) {
         format!("{rounded:e}")
     } else {
@@ -280,5 +314,8 @@ mod tests {
         assert_eq!(short(0.05), "0.05");
         assert_eq!(short(0.028_284_27), "0.02828");
         assert_eq!(short(1.234_6e6), "1.235e6");
+        for (error, digits) in [(0.0, "0.02828"), (5e-4, "0.0283"), (0.2, "0.028")] {
+            assert_eq!(known(0.028_284_27, error), digits, "{error}");
+        }
     }
 }

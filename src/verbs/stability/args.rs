@@ -9,7 +9,7 @@ use crate::verbs::cli::solvers::{Custom, chosen, without_timestep};
 use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::run::{Choice, Plan};
 use crate::verbs::session::TimeEstimate;
-use crate::verbs::stability::{MapPlan, Range, StabilityPlan, StabilityRow, Vary};
+use crate::verbs::stability::{MapPlan, Range, StabilityPlan, StabilityRow, VariedKey, Vary};
 use anyhow::{Context, bail};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -54,6 +54,11 @@ pub struct Args {
     /// 256 steps a cell where that is more.
     #[arg(long, value_name = "STEPS", requires = "vary", value_parser = count)]
     budget: Option<u64>,
+
+    /// Find the largest value of this that is stable at the timestep: `springs.stiffness`, of one member
+    /// `particles[1].drag`.
+    #[arg(long, value_name = "KEY")]
+    largest: Option<String>,
 
     /// Draw from where a step does not enlarge the spring's force, at these stiffnesses, N/m. For two
     /// free particles on one spring.
@@ -110,6 +115,8 @@ fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> 
             budget: args.budget,
         }),
     };
+    let largest = args.largest.as_ref();
+    let largest = largest.map(|key| VariedKey::parse(key, scene));
     for h in args.steps.iter().flat_map(|range| [range.low, range.high]) {
         within(h, limits::TIMESTEP).context("--steps")?;
     }
@@ -129,6 +136,7 @@ fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> 
         )?,
         timestep,
         map,
+        largest: largest.transpose().context("--largest")?,
         admissible: args.admissible.clone(),
     };
     if plan.solvers.is_empty() {
@@ -168,7 +176,18 @@ fn estimates(plan: &StabilityPlan) -> anyhow::Result<Vec<TimeEstimate>> {
     for (case, steps) in runs.cases.iter_mut().zip(by_row) {
         case.label.steps = steps + of_map;
     }
-    Ok(runs.estimate())
+    let mut estimates = runs.estimate();
+    // Of the trajectory followed each step costs what one of the scene's own integrator does, or the first's.
+    let followed = plan.steps_followed();
+    let own = |estimate: &&TimeEstimate| estimate.label.engine == plan.scene.solver.method;
+    let stepped = estimates.iter().find(own).or(estimates.first()).cloned();
+    estimates.extend(stepped.filter(|_| followed > 0).map(|mut estimate| {
+        estimate.seconds *= followed as f64 / estimate.label.steps.max(1) as f64;
+        estimate.label.steps = followed;
+        estimate.label.engine = "the trajectory followed".to_owned();
+        estimate
+    }));
+    Ok(estimates)
 }
 
 /// The command to run next: a map, or after a map a run at a step well inside the limit.

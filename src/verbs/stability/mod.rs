@@ -5,6 +5,7 @@ mod admissible;
 mod args;
 mod explain;
 mod figures;
+mod largest;
 mod map;
 mod path;
 mod result;
@@ -15,10 +16,13 @@ mod vary;
 pub(super) use figures::FIGURES;
 pub use map::MapPlan;
 pub(super) use text::{page, view};
-pub use vary::{COUNT, Range, Vary, VaryError};
+pub use vary::{COUNT, Range, VariedKey, Vary, VaryError};
 
 pub use args::{Args, stability};
-pub use result::{Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow};
+pub use result::{
+    Admissible, AdmissiblePanel, Largest, LargestFound, LargestRow, MapPanel, Stability,
+    StabilityMap, StabilityRow,
+};
 
 use crate::measure::stability::{Effort, Linearised, is_linear};
 use crate::physics::ParticleSystem;
@@ -40,6 +44,8 @@ pub struct StabilityPlan<'a> {
     /// The timestep at which growth is taken, seconds.
     pub timestep: f64,
     pub map: Option<MapPlan>,
+    /// The quantity whose largest stable value at `timestep` is wanted.
+    pub largest: Option<VariedKey>,
     /// Stiffnesses, N/m, at which to draw where a step does not enlarge a spring's force; empty for no
     /// picture.
     pub admissible: Vec<f64>,
@@ -89,6 +95,9 @@ impl StabilityPlan<'_> {
         let rows = solvers.par_iter().map(row).collect();
         let map = self.map.as_ref();
         let map = map.map(|map| map.run(scene, solvers, steps_per_cell, tally, session));
+        let largest = self.largest;
+        let largest =
+            largest.map(|key| Box::new(largest::find(key, scene, solvers, self.timestep)));
         let Shared {
             system, linearised, ..
         } = &shared;
@@ -101,6 +110,7 @@ impl StabilityPlan<'_> {
             excluded: linearised.excluded().to_vec(),
             rows,
             map,
+            largest,
             admissible,
         };
         let truth = Truth::none("stability compares nothing with a truth");
@@ -134,6 +144,15 @@ impl StabilityPlan<'_> {
     fn cells(&self) -> Result<[u64; 2], StabilityError> {
         let cells = |map: &MapPlan| map.cells(self.scene, self.solvers.len());
         self.map.as_ref().map_or(Ok([0, 0]), cells)
+    }
+
+    /// The steps of the trajectory that is followed before the rows; 0 where every force is linear.
+    pub fn steps_followed(&self) -> u64 {
+        if is_linear(self.scene) {
+            0
+        } else {
+            path::steps(self.scene)
+        }
     }
 
     /// The steps each row's search usually takes, in the order of the rows.

@@ -4,6 +4,7 @@ use super::StabilityPlan;
 use crate::integrators::Method;
 use crate::measure::stability::{Linearised, LinearisedTrajectory};
 use crate::physics::{ParticleSystem, State};
+use crate::scene::Scene;
 use crate::solvers::{Setting, Solver};
 use crate::trajectory::Observer;
 use crate::verbs::facts;
@@ -49,8 +50,7 @@ pub fn of(
     let (false, Some(&method)) = (linear, chosen) else {
         return start_only;
     };
-    let particles = scene.particles.len().max(1) as u64;
-    let steps = scene.steps(h).min((MAX_WORK / particles).max(STATES));
+    let steps = steps(scene);
     let setting = Setting::Steps { timestep: h, steps };
     let Ok(mut run) = Solver::method(method).start(scene, system, &setting) else {
         return start_only;
@@ -67,6 +67,13 @@ pub fn of(
         along: Some(LinearisedTrajectory::new(system, &kept.states)),
         method: Some(method),
     }
+}
+
+/// The steps it takes where forces are not linear.
+pub fn steps(scene: &Scene) -> u64 {
+    let particles = scene.particles.len().max(1) as u64;
+    let affordable = (MAX_WORK / particles).max(STATES);
+    scene.steps(scene.solver.timestep).min(affordable)
 }
 
 struct KeptStates {

@@ -24,6 +24,8 @@ pub struct Stability {
     pub rows: Vec<StabilityRow>,
     /// Timestep against a quantity of the scene; null without one.
     pub map: Option<StabilityMap>,
+    /// How large one quantity may be at the timestep; null where it was not asked for.
+    pub largest: Option<Box<Largest>>,
     /// Where a step does not enlarge the force of a spring; null without the picture.
     pub admissible: Option<Admissible>,
 }
@@ -85,6 +87,45 @@ impl StabilityRow {
         // A limit is known to a thousandth of itself.
         self.limit().map(|limit| timestep <= limit * 1.001)
     }
+}
+
+/// The largest value of one quantity of the scene at which a step is within the predicted limit.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Largest {
+    /// The key, such as `springs.stiffness`.
+    pub vary: String,
+    /// The unit of the values.
+    pub unit: String,
+    pub timestep_s: f64,
+    /// The smallest and the largest value tried.
+    pub tried: [f64; 2],
+    /// In the order of the rows.
+    pub rows: Vec<LargestRow>,
+}
+
+/// One engine's largest value.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct LargestRow {
+    pub engine: String,
+    pub found: LargestFound,
+    /// The largest value that is stable; null unless one was found.
+    pub value: Option<f64>,
+    /// Why it is not known; else null.
+    pub reason: Option<String>,
+}
+
+/// What the search for a largest value found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LargestFound {
+    /// Up to this one values are stable.
+    Value,
+    /// The step is stable at every value tried.
+    EveryValue,
+    /// It is stable at none.
+    NoValue,
+    /// Nobody knows.
+    NotKnown,
 }
 
 /// The outcomes of runs at several timesteps, as one quantity of the scene varies.

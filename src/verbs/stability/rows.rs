@@ -9,6 +9,7 @@ use crate::solvers::{Run, Setting, Solver, SolverKind, Tally, Unsupported};
 use crate::verbs::session::Session;
 use crate::verbs::stability::StabilityRow;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Budget of the search for one limit, in particles passed over: some ten seconds. A probe takes 20,000
 /// steps and a search some twenty probes, so small scenes never reach it. Large ones get shorter probes,
@@ -115,8 +116,16 @@ pub fn row(shared: &Shared, solver: &Solver, session: &dyn Session) -> Stability
         let near = [predicted_limit_s, along].into_iter().flatten();
         let near = near.filter(|h| *h > 0.0).reduce(f64::min);
         let budget = budget(scene, solver, timestep, &shared.tally);
-        let tick = |steps| session.progress(steps);
+        // A row counts as what it usually takes, neither more nor less, so that what is left only falls.
+        let usual = budget.min(USUAL_STEPS);
+        let left = AtomicU64::new(usual);
+        let tick = |steps: u64| {
+            let less = |left: u64| Some(left.saturating_sub(steps));
+            let before = left.fetch_update(Relaxed, Relaxed, less).unwrap_or(0);
+            session.progress(steps.min(before));
+        };
         let measured = measure(scene, &shared.system, &start, timestep, near, budget, &tick);
+        session.progress(left.into_inner());
         (row.measured_limit_s, row.measured_unconditional) = as_keys(&measured.limit);
         if let Limit::Between(low, high) = measured.limit {
             row.measured_between_s = Some([low, high]);

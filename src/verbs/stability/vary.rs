@@ -1,4 +1,4 @@
-//! `springs.stiffness=1e2..1e8:24`: the quantity a map varies, its range, and the number of values.
+//! `springs.stiffness=1e2..1e8:24`: the quantity that varies, its range, and the number of values.
 
 use crate::scene::limits::Bounds;
 use crate::scene::model::{PARTICLES, PARTS, Part, Row, ValueKind};
@@ -80,12 +80,13 @@ impl Range {
     }
 }
 
-/// A number of the scene that acts on the motion, in one member of its part or in all.
+/// A number of the scene that acts on the motion, in one member of its part or in all that are free.
 #[derive(Debug, Clone, Copy)]
-struct VariedKey {
+pub struct VariedKey {
     part: &'static Part,
     row: &'static Row,
-    quantity: Bounds,
+    /// The values a scene file may give it, and their unit.
+    pub quantity: Bounds,
     member: Option<usize>,
 }
 
@@ -106,7 +107,24 @@ fn keys() -> impl Iterator<Item = VariedKey> {
 
 impl VariedKey {
     /// Reads `springs.stiffness`, or `springs[3].stiffness` for one member where there is a list.
-    fn find(id: &str) -> Result<VariedKey, VaryError> {
+    ///
+    /// # Errors
+    /// [`VaryError`] when the key is unknown, or acts on nothing in this scene.
+    pub fn parse(id: &str, scene: &Scene) -> Result<Self, VaryError> {
+        let key = Self::find(id)?;
+        let refused = |why: String| Err(VaryError(format!("{id}: {why}")));
+        let count = (key.part.count)(scene);
+        match key.member {
+            Some(at) if at >= count => refused(format!("the scene has {count} of these, from 0")),
+            Some(at) if !key.free(scene, at) => {
+                refused(format!("particle {at} is fixed: it changes nothing"))
+            }
+            None if count == 0 => refused("the scene has none".into()),
+            _ => Ok(key),
+        }
+    }
+
+    fn find(id: &str) -> Result<Self, VaryError> {
         let (list, rest) = id.split_once('[').unwrap_or((id, ""));
         let (index, field) = rest.split_once(']').unwrap_or(("", rest));
         let plain = format!("{list}{field}");
@@ -125,6 +143,30 @@ impl VariedKey {
                 known.join(", ")
             ))
         })
+    }
+
+    /// The scene with this value, in the one member or in all that are free.
+    pub fn apply(&self, scene: &Scene, value: f64) -> Scene {
+        let mut varied = scene.clone();
+        for at in self.members(scene) {
+            (self.row.set)(&mut varied, at, 0, Value::Number(value));
+        }
+        varied
+    }
+
+    /// The largest magnitude among the values the scene has.
+    pub fn largest(&self, scene: &Scene) -> f64 {
+        let magnitude = |at| match (self.row.get)(scene, at, 0) {
+            Some(Value::Number(value)) => value.abs(),
+            _ => 0.0,
+        };
+        self.members(scene).map(magnitude).fold(0.0, f64::max)
+    }
+
+    fn members<'s>(&'s self, scene: &'s Scene) -> impl Iterator<Item = usize> + 's {
+        let count = (self.part.count)(scene);
+        let members = self.member.map_or(0..count, |at| at..at + 1);
+        members.filter(|at| self.free(scene, *at))
     }
 
     /// Whether the key acts on this member: a fixed particle has neither inertia nor drag.
@@ -159,20 +201,7 @@ impl Vary {
             .split_once('=')
             .ok_or_else(|| VaryError(format!("expected KEY=A..B or KEY=A..B:N, found `{text}`")))?;
         let refused = |why: String| VaryError(format!("{id}: {why}"));
-        let key = VariedKey::find(id)?;
-        let count = (key.part.count)(scene);
-        match key.member {
-            Some(at) if at >= count => {
-                return Err(refused(format!("the scene has {count} of these, from 0")));
-            }
-            Some(at) if !key.free(scene, at) => {
-                return Err(refused(format!(
-                    "particle {at} is fixed: it changes nothing"
-                )));
-            }
-            None if count == 0 => return Err(refused("the scene has none".into())),
-            _ => {}
-        }
+        let key = VariedKey::parse(id, scene)?;
         let range: Range = range.parse().map_err(|VaryError(why)| refused(why))?;
         let Bounds { low, high, unit } = key.quantity;
         let outside = |end: &f64| !(low..=high).contains(end);
@@ -195,16 +224,8 @@ impl Vary {
         self.key.quantity.unit
     }
 
-    /// The scene with this value, in the one member or in all that are free.
+    /// The scene with this value.
     pub fn apply(&self, scene: &Scene, value: f64) -> Scene {
-        let VariedKey {
-            part, row, member, ..
-        } = self.key;
-        let members = member.map_or(0..(part.count)(scene), |at| at..at + 1);
-        let mut varied = scene.clone();
-        for at in members.filter(|at| self.key.free(scene, *at)) {
-            (row.set)(&mut varied, at, 0, Value::Number(value));
-        }
-        varied
+        self.key.apply(scene, value)
     }
 }

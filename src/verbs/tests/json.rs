@@ -53,6 +53,7 @@ fn json_has_the_contract_s_keys() {
             "energy",
             "engine",
             "identified",
+            "explained",
             "kind",
             "momentum",
             "position_error_m",

@@ -157,6 +157,7 @@ pub fn outcome(engine: &str, kind: SolverKind, timestep: f64) -> Outcome {
             }),
         },
         identified: None,
+        explained: None,
         remarks: Vec::new(),
     }
 }

@@ -52,6 +52,7 @@ pub fn limits() -> Report {
             rapier,
         ],
         map: None,
+        largest: None,
         admissible: None,
     };
     report.body = Body::Stability {

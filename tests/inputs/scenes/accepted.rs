@@ -207,6 +207,34 @@ fn tiny_wind_directions_keep_their_direction() {
     assert!((wind.direction[0] - 0.6).abs() < 1e-15 && (wind.direction[2] - 0.8).abs() < 1e-15);
 }
 
+/// A short id means its row everywhere in a file, and a row is named once.
+#[test]
+fn short_ids_mean_their_rows() {
+    for (short, id) in springcheck::integrators::ALIASES {
+        let yaml = |more: &str| {
+            format!(
+                "solver: {{type: {short}, timestep: 0.01}}\n\
+                 particles: [{{pos: [0, 0, 0], mass: 1}}]\n\
+                 expect:\n  {short}: {{identified.method: {short}}}\n{more}"
+            )
+        };
+        let read = |more: &str| scene::parse(yaml(more).as_bytes(), "x.yml", verbs::names());
+        let scene = read("").unwrap();
+        assert_eq!(scene.solver.method, *id);
+        let expected = scene.expected_of(id, true);
+        assert_eq!(expected.len(), 1);
+        assert_eq!(expected[0].wanted, Wanted::Words(vec![(*id).to_owned()]));
+        let twice = read(&format!("  {id}: {{status: completed}}\n")).unwrap_err();
+        assert!(twice.to_string().contains("given twice"), "{twice}");
+        // Nobody else has the short name.
+        assert!(
+            springcheck::integrators::REGISTRY
+                .iter()
+                .all(|row| row.id != *short)
+        );
+    }
+}
+
 #[test]
 fn shipped_scenes_load() {
     let scenes: Vec<Scene> = shipped()

@@ -18,7 +18,7 @@ const METHODS: &[&str] = &[
     "rk4",
     "velocity_verlet",
     "implicit_euler",
-    "linearized_implicit",
+    "linearized_implicit_at_start",
 ];
 
 /// With these few integrators, so that messages that list them stay as they are.

@@ -144,7 +144,7 @@ const PARTS: &[Row] = &[
     ("unknown class in a list", "expect: {rk4: {energy.class: [bounded, »shrinking]}}", &["expect.rk4.energy.class[1]", "unknown word `shrinking`"]),
     ("word twice", "expect: {rk4: {energy.class: [bounded, »bounded]}}", &["expect.rk4.energy.class[1]", "given twice"]),
     ("no words", "expect: {rk4: {status: »[]}}", &["expect.rk4.status", "at least one word"]),
-    ("unknown scheme", "expect: {rk4: {identified.method: »rk5}}", &["unknown word `rk5`", "did you mean `rk4`?"]),
+    ("unknown scheme", "expect: {rk4: {identified.method: »rk44}}", &["unknown word `rk44`", "did you mean `rk4`?"]),
     ("bounds of a word", "expect: {rk4: {status: »{below: 3}}}", &["expect.rk4.status", "expected completed or diverged", "found bounds"]),
     ("a word for a number", "expect: {rk4: {energy.drift_per_s: »small}}", &["expect.rk4.energy.drift_per_s", "expected `below` or `above`"]),
     ("a number for bounds", "expect: {rk4: {work.steps: »100}}", &["expect.rk4.work.steps", "bounds such as {below: 1e-3}, found the number `100`"]),

@@ -151,11 +151,16 @@ fn one_method_does_not_pass_for_another() {
     one(
         "stability-across",
         "linearized_implicit_material",
-        "linearized_implicit",
+        "linearized_implicit_at_start",
     );
     one(
         "stability-across",
-        "linearized_implicit",
+        "linearized_implicit_at_start",
+        "linearized_implicit_material",
+    );
+    one(
+        "stability-across",
+        "linearized_implicit_predicted",
         "linearized_implicit_material",
     );
     // One evaluation more than iterations is not two, nor two one; and a step needs an iteration.

@@ -126,13 +126,15 @@ const ELSEWHERE: &[(&str, &str, &[&str])] = &[(
     "hundred_thousand_steps",
     &[
         "implicit_euler",
-        "linearized_implicit",
+        "linearized_implicit_predicted",
+        "linearized_implicit_at_start",
         "linearized_implicit_material",
         "trapezoidal",
         "tr_bdf2",
         "rapier",
         "rapier-forces",
         "rapier-converged",
+        "rapier-user-forces",
     ],
 )];
 

@@ -266,7 +266,7 @@ fn the_hard_law_kills_mutants() {
         let loose = || method(id).build(&Settings { tolerance: 1e-9 });
         let (wrong, _) = hard_law(id, &loose);
         assert!(!wrong.is_empty(), "{id}");
-        let (wrong, _) = hard_law(id, &own(method("linearized_implicit")));
+        let (wrong, _) = hard_law(id, &own(method("linearized_implicit_at_start")));
         assert!(!wrong.is_empty(), "{id}");
     }
 }

@@ -1,7 +1,7 @@
 //! The proof every run repeats: passes on what is the same scene, fails on what is not.
 
 use super::{mutated, scenes};
-use springcheck::measure::twin::{prove, prove_pair};
+use springcheck::measure::twin::{prove, prove_pair, prove_user_forces};
 use springcheck::measure::{Check, CheckStatus};
 use springcheck::scene::{DampingModel, Scene, Spring};
 
@@ -33,6 +33,32 @@ fn every_scene_passes() {
                 assert_eq!(proof.status, expected, "{}", show(&scene, h, proof));
             }
             assert_eq!(proofs.len() == 3, scene.springs.is_empty());
+        }
+    }
+}
+
+/// Bit for bit at any step, and not with a spring a millionth stiffer or a mass a millionth larger.
+#[test]
+fn user_forces_are_proved_on_every_scene() {
+    for scene in scenes::mirrored() {
+        for h in [scene.solver.timestep, 1.0 / 60.0, 0.3] {
+            let proof = prove_user_forces(&scene, &scene, h);
+            let passed = proof.status == CheckStatus::Pass && proof.measured == Some(0.0);
+            assert!(passed, "{}", show(&scene, h, &proof));
+        }
+        if !scene.springs.is_empty() {
+            let h = scene.solver.timestep;
+            let heavier = mutated(&scene, |s| {
+                s.particles.iter_mut().for_each(|p| p.mass *= 1.000_001);
+                s.springs.iter_mut().for_each(|s| s.stiffness *= 1.000_002);
+            });
+            let proof = prove_user_forces(&scene, &heavier, h);
+            assert_eq!(
+                proof.status,
+                CheckStatus::Fail,
+                "{}",
+                show(&scene, h, &proof)
+            );
         }
     }
 }

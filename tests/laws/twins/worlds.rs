@@ -85,7 +85,15 @@ fn the_order_of_springs_matters_until_the_sweeps_converge() {
 fn the_registry_is_consistent() {
     let rapier = catalogue().filter(|solver| solver.kind == SolverKind::Rapier);
     let ids: Vec<_> = rapier.map(|solver| solver.id).collect();
-    assert_eq!(ids, ["rapier", "rapier-forces", "rapier-converged"]);
+    assert_eq!(
+        ids,
+        [
+            "rapier",
+            "rapier-forces",
+            "rapier-converged",
+            "rapier-user-forces"
+        ]
+    );
     assert_eq!(ids, IDS);
     assert_eq!(find("rapier").map(|row| row.substeps), Some(4));
     assert_eq!(find("rapier-forces").map(|row| row.substeps), Some(1));

@@ -19,7 +19,7 @@ fn pairs_are_swept_over_tolerance_and_take_fewest_evaluations() {
     let pairs = integrators::pairs().iter().map(Solver::method);
     choice.solvers.extend(pairs);
     choice.targets = vec![1e-7];
-    choice.budget_s = 2.0;
+    choice.budget_s = 3.0;
     let cost = cost(&scene, &choice);
     for method in integrators::pairs() {
         let curve = of(&cost, method.id);

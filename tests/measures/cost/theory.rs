@@ -80,7 +80,7 @@ static SWAPPED: LazyLock<Method> = LazyLock::new(|| Method {
         b: &[1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0, 1.0 / 3.0],
         c: &[0.0, 0.5, 0.5, 1.0],
     }),
-    ..integrators::fixed()[8]
+    ..*integrators::find("rk4").expect("a method")
 });
 
 #[test]
@@ -134,6 +134,9 @@ const TERMS: &[Term] = &[
     // 2 atan(z/2) = z - z³/12 + ...
     growing("implicit_midpoint", 2, 1.0 / 12.0),
     growing("trapezoidal", 2, 1.0 / 12.0),
+    // The fourth term of exp.
+    growing("rk3", 3, 1.0 / 24.0),
+    growing("ssprk3", 3, 1.0 / 24.0),
     // The fifth term of exp.
     growing("rk4", 4, 1.0 / 120.0),
 ];

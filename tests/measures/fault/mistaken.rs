@@ -3,16 +3,21 @@
 use super::record::{PRECISIONS, fault_of, question, rows, run, thinned};
 use crate::testkit::{distance, everything, mutants, part, swinging_triangle};
 use springcheck::integrators::{Settings, fixed};
-use springcheck::measure::identify::{Candidate, MISTAKES, Wrong, first_fault, identify, mistakes};
+use springcheck::measure::identify::{
+    Candidate, Forces, MISTAKES, Scheme, Wrong, first_fault, identify, mistakes,
+};
 use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Scene};
 use springcheck::trajectory::Precision;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A step long enough that schemes part, short enough that implicit ones solve.
 fn scene(model: DampingModel) -> Scene {
     let mut scene = everything(model);
     scene.solver.timestep = 0.01;
+    // One spring pushes.
+    scene.springs[0].rest_length *= 1.5;
     scene
 }
 
@@ -68,16 +73,12 @@ fn every_mistake_is_a_map_of_its_own() {
         let mut ends = ends(&scene);
         all_differ(&ends, bound).unwrap_or_else(|error| panic!("{error}"));
         // A second name for a scheme that is there already.
-        let again = Candidate::map(
-            &ParticleSystem::new(&scene),
-            "another_name",
-            "midpoint",
-            "nothing",
-            |system, h, _, state| {
-                mutants::midpoint_drifting_with_the_end_velocity(system, h, state);
-                Ok(())
-            },
-        );
+        let forces: Forces = Arc::new(ParticleSystem::new(&scene));
+        let map = Scheme::Map(|system, h, _, state| {
+            mutants::midpoint_drifting_with_the_end_velocity(system, h, state);
+            Ok(())
+        });
+        let again = Candidate::new(&forces, map, "midpoint").named("another_name", "nothing");
         ends.push((again.id.clone(), second_step(&scene, &again)));
         assert!(all_differ(&ends, bound).is_err());
     }
@@ -130,14 +131,14 @@ fn names_itself(scene: &Scene, made: &Candidate, expected: &Candidate) -> Result
     let states = run(scene, 12, |_| made, |_, _| {});
     let rows = rows(scene, &states, Precision::Double);
     let question = question(scene, &system, &rows);
-    let identity = identify(&question).ok_or("nothing identified")?;
-    if identity.method != expected.id || !identity.decisive {
+    let identity = identify(&question).identity.ok_or("nothing identified")?;
+    if identity.method != expected.id || !identity.decisive() {
         return Err(format!("{} taken for {identity:?}", expected.id));
     }
     let fault = first_fault(&question, &identity).ok_or("no fault")?;
     // What adds up or comes late is right in the first step.
     let first = u64::from(expected.remembers);
-    let says = expected.mistake.ok_or("no mistake")?;
+    let says = expected.says.as_deref().ok_or("no mistake")?;
     if fault.step != first || !fault.explanation.starts_with(says) {
         return Err(format!("{}: {fault:?}", expected.id));
     }

@@ -80,6 +80,7 @@ pub fn question<'a>(scene: &'a Scene, system: &'a ParticleSystem, rows: &'a Rows
         rows,
         settings: Settings::default(),
         transitions: None,
+        budget: u64::MAX,
         hint: None,
     }
 }

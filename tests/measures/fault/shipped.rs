@@ -71,7 +71,7 @@ fn the_effects_of_shipped_scenes_are_missed_where_they_are_missing() {
                 let states = run(scene, 100, by, |_, _| {});
                 let rows = rows(scene, &states, Precision::Double);
                 let question = question(scene, &system, &rows);
-                let identity = identify(&question).expect("an identity");
+                let identity = identify(&question).identity.expect("an identity");
                 let fault = first_fault(&question, &identity).expect("a fault");
                 assert_eq!(fault.step, at, "{}: {fault:?}", scene.file);
                 let says = format!("in this step only: the effect `{}` is missing", row.id);

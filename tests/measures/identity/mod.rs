@@ -10,7 +10,7 @@ mod scenes;
 mod strangers;
 
 use springcheck::integrators::{self, Settings};
-use springcheck::measure::identify::{Identity, Question, identify};
+use springcheck::measure::identify::{Found, Identity, Question, identify};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
 use springcheck::solvers::{Engine, IntegratorEngine};
@@ -75,12 +75,17 @@ fn name(scene: &Scene, rows: &Rows) -> Identity {
 }
 
 fn name_of(scene: &Scene, rows: &Rows, transitions: Option<usize>) -> Option<Identity> {
+    found(scene, rows, transitions).identity
+}
+
+fn found(scene: &Scene, rows: &Rows, transitions: Option<usize>) -> Found {
     identify(&Question {
         scene,
         system: &ParticleSystem::new(scene),
         rows,
         settings: Settings::default(),
         transitions,
+        budget: u64::MAX,
         hint: None,
     })
 }

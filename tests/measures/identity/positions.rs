@@ -3,7 +3,7 @@
 use super::*;
 use crate::testkit::{crossed, swinging_triangle};
 use springcheck::integrators::fixed;
-use springcheck::measure::identify::Sameness;
+use springcheck::measure::identify::Undecided;
 use springcheck::scene::DampingModel;
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ fn class(method: &str, damped: bool) -> BTreeSet<&str> {
     class
 }
 
-fn found(identity: &Identity) -> BTreeSet<&str> {
+fn names(identity: &Identity) -> BTreeSet<&str> {
     let ids = identity
         .equivalent
         .iter()
@@ -41,13 +41,13 @@ fn positions_tell_methods_up_to_what_truly_coincides() {
         let rows = without_velocities(run(&scene, method.id, substeps, 60));
         let identity = name(&scene, &rows);
         let class = class(method.id, damping > 0.0);
-        assert_eq!(found(&identity), class, "{}: {identity:?}", method.id);
+        assert_eq!(names(&identity), class, "{}: {identity:?}", method.id);
         assert_eq!(identity.substeps, substeps, "{}: {identity:?}", method.id);
         let same = match class.len() {
-            1 => Sameness::Alone,
-            _ => Sameness::Mathematically,
+            1 => None,
+            _ => Some(Undecided::SameMap),
         };
-        assert_eq!((identity.same, identity.decisive), (same, class.len() == 1));
+        assert_eq!(identity.undecided, same, "{identity:?}");
         // Found from positions, velocities round once more; measured up to 1.3.
         assert!(identity.defect <= 3.0, "{identity:?}");
         assert_eq!(identity.followed, identity.transitions);
@@ -67,7 +67,7 @@ fn uneven_rows_of_positions_tell_too() {
             ..all.clone()
         };
         let identity = name(&scene, &rows);
-        assert!(identity.decisive && identity.method == id, "{identity:?}");
+        assert!(identity.decisive() && identity.method == id, "{identity:?}");
     }
 }
 
@@ -84,10 +84,10 @@ fn coarse_positions_at_a_small_step_tell_nothing() {
     rows.precision_v = rows.precision;
     let identity = name(&scene, &rows);
     assert!(
-        !identity.decisive && identity.same == Sameness::TooCoarse,
+        !identity.decisive() && identity.undecided == Some(Undecided::DataTooCoarse),
         "{identity:?}"
     );
-    let found = found(&identity);
+    let found = names(&identity);
     assert!(
         found.contains("rk4") && found.contains("velocity_verlet"),
         "{identity:?}"

@@ -16,6 +16,7 @@ fn picture(scene: &Scene, stiffnesses: &[f64]) -> Admissible {
         solvers: Vec::new(),
         timestep: scene.solver.timestep,
         map: None,
+        largest: None,
         admissible: stiffnesses.to_vec(),
     };
     let report = plan.execute(&Quiet).expect("two free particles");
@@ -99,6 +100,7 @@ fn other_scenes_are_refused() {
             solvers: Vec::new(),
             timestep: 0.5,
             map: None,
+            largest: None,
             admissible: vec![1.0],
         };
         plan.execute(&Quiet).expect_err("no picture").to_string()

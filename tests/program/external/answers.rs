@@ -3,7 +3,7 @@
 use crate::testkit::scenes::parsed;
 use springcheck::integrators::{self, Settings};
 use springcheck::measure::EnergyClass;
-use springcheck::measure::identify::Undecided;
+use springcheck::measure::identify::{Identified, Undecided};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
 use springcheck::solvers::Solver;
@@ -221,6 +221,7 @@ fn a_programs_scheme_is_told_from_the_digits_it_gives() {
         ("explicit_euler", None)
     );
     // Taken for doubles the same rows are nobody's.
-    let untold = rounded(Precision::Double).identified.expect("rows");
-    assert_eq!(untold.undecided, Some(Undecided::NothingFits));
+    let untold = rounded(Precision::Double).identified;
+    let near = |found: &Identified| found.undecided == Some(Undecided::Near);
+    assert!(untold.as_ref().is_none_or(near), "{untold:?}");
 }

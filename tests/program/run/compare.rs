@@ -91,12 +91,15 @@ fn comparisons_have_the_contracts_keys() {
         set(&[
             "method",
             "substeps",
+            "says",
             "defect",
+            "relative",
             "runner_up",
             "runner_up_defect",
             "decisive",
             "equivalent",
-            "undecided"
+            "undecided",
+            "left_out"
         ])
     );
     assert_eq!(clean["outcomes"][0]["kind"], "external");
@@ -183,9 +186,10 @@ fn what_no_scheme_explains_is_undecided() {
         }
     });
     let (code, report) = compared(&file, &[]);
-    let identified = &report["outcomes"][0]["identified"];
-    assert_eq!(code, 3, "{identified:#}");
-    assert_eq!(identified["decisive"], false);
+    assert_eq!(code, 3, "{report:#}");
+    assert!(report["outcomes"][0]["identified"].is_null());
+    let explained = &report["outcomes"][0]["explained"];
+    assert!(explained["scheme"].is_null(), "{explained:#}");
     assert!(report["fault"].is_null());
 }
 

@@ -54,6 +54,7 @@ fn the_json_has_exactly_the_contracts_keys() {
                 "momentum",
                 "work",
                 "identified",
+                "explained",
                 "remarks",
             ])
         );

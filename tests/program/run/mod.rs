@@ -208,10 +208,7 @@ fn lists_show_every_row() {
                 .map(|row| row.id)
                 .collect(),
         ),
-        (
-            "engines",
-            vec!["rapier", "rapier-forces", "rapier-converged"],
-        ),
+        ("engines", springcheck::solvers::rapier::IDS.to_vec()),
     ];
     for (what, ids) in rows {
         let (code, out, _) = output(&["list", what]);

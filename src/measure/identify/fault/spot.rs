@@ -3,7 +3,7 @@
 
 use super::super::Question;
 use super::super::candidate::Candidate;
-use super::super::replay::{BEYOND, Replay};
+use super::super::replay::{FIT, Replay};
 use super::super::transition::Transition;
 use super::NUDGES;
 use super::words;
@@ -120,7 +120,7 @@ impl<'a> Spot<'a> {
 
     pub(super) fn is_off(&self, quantity: Quantity, i: usize) -> bool {
         let difference = self.difference(quantity, i).abs();
-        difference.is_nan() || difference > BEYOND * self.unit(quantity, i)
+        difference.is_nan() || difference > FIT * self.unit(quantity, i)
     }
 
     /// The number recorded at the end of the transition.
@@ -208,6 +208,14 @@ impl<'a> Spot<'a> {
         let first = self.departures.first().copied().unwrap_or(0);
         let after = self.transitions.len().saturating_sub(first + 1);
         words::how_often(self.span(), self.again(), after)
+    }
+
+    /// The fault of a scheme that is wrong in every step.
+    pub(super) fn throughout(&self, says: String) -> Fault {
+        Fault {
+            explanation: says,
+            ..self.fault(self.step(), String::new())
+        }
     }
 
     /// The fault with this step and explanation; the number of particles that are off is added.

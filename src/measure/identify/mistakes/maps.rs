@@ -4,28 +4,11 @@ use crate::integrators::{
     DampingTreatment, Implicit, ImplicitScheme, Integrator, RungeKutta, Settings, Splitting, Stage,
     StepError, Tableau,
 };
+use crate::measure::identify::compose::{DRIFT_FIRST, acceleration, finish, plus};
 use crate::physics::{State, System};
 
 /// The result of a step.
 type Stepped = Result<(), StepError>;
-
-fn acceleration(system: &dyn System, t: f64, x: &[f64], v: &[f64]) -> Vec<f64> {
-    let mut a = vec![0.0; x.len()];
-    system.acceleration(t, x, v, &mut a);
-    a
-}
-
-/// y + h x.
-fn plus(y: &[f64], h: f64, x: &[f64]) -> Vec<f64> {
-    y.iter().zip(x).map(|(y, x)| y + h * x).collect()
-}
-
-fn finish(state: &mut State, h: f64, x: Vec<f64>, v: Vec<f64>) -> Stepped {
-    state.x = x;
-    state.v = v;
-    state.t += h;
-    Ok(())
-}
 
 pub(super) fn tableau(tableau: Tableau, system: &dyn System, h: f64, state: &mut State) -> Stepped {
     RungeKutta::new(tableau).step(system, h, state)
@@ -197,33 +180,6 @@ pub(super) fn verlet_missing_half(
     let a = acceleration(system, s.t, &s.x, &s.v);
     let x = plus(&s.x, h, &plus(&s.v, h, &a));
     let v = mean_kick(system, h, s, &a, &x, &plus(&s.v, 0.5 * h, &a));
-    finish(s, h, x, v)
-}
-
-/// Position Verlet.
-pub(super) const DRIFT_FIRST: &[Stage] = &[Stage::Drift(0.5), Stage::Kick(1.0), Stage::Drift(0.5)];
-
-pub(super) fn verlet_predicted_velocity(
-    system: &dyn System,
-    h: f64,
-    _: Option<&State>,
-    s: &mut State,
-) -> Stepped {
-    let a = acceleration(system, s.t, &s.x, &s.v);
-    let x = plus(&s.x, h, &plus(&s.v, 0.5 * h, &a));
-    let v = mean_kick(system, h, s, &a, &x, &plus(&s.v, h, &a));
-    finish(s, h, x, v)
-}
-
-pub(super) fn verlet_old_velocity(
-    system: &dyn System,
-    h: f64,
-    _: Option<&State>,
-    s: &mut State,
-) -> Stepped {
-    let a = acceleration(system, s.t, &s.x, &s.v);
-    let x = plus(&s.x, h, &plus(&s.v, 0.5 * h, &a));
-    let v = mean_kick(system, h, s, &a, &x, &s.v);
     finish(s, h, x, v)
 }
 

@@ -90,11 +90,20 @@ pub(super) fn rest_length_ignored(scene: &Scene) -> Option<ParticleSystem> {
 }
 
 pub(super) fn springs_twice(scene: &Scene) -> Option<ParticleSystem> {
+    springs(scene, 2.0)
+}
+
+pub(super) fn springs_forgotten(scene: &Scene) -> Option<ParticleSystem> {
+    springs(scene, 0.0)
+}
+
+/// Springs and their dampers times `factor`.
+fn springs(scene: &Scene, factor: f64) -> Option<ParticleSystem> {
     changed(scene, !scene.springs.is_empty(), |wrong| {
         for spring in &mut wrong.springs {
-            spring.stiffness *= 2.0;
-            spring.cubic *= 2.0;
-            spring.damping *= 2.0;
+            spring.stiffness *= factor;
+            spring.cubic *= factor;
+            spring.damping *= factor;
         }
     })
 }

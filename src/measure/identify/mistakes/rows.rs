@@ -1,8 +1,6 @@
 //! The registry of mistakes.
 
-use super::{Map, Mistake, Wrong, maps, physics};
-use crate::integrators::DampingTreatment::Explicit;
-use crate::integrators::Stage;
+use super::{Map, Mistake, Wrong, maps, physics, springs};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 
@@ -12,9 +10,13 @@ const fn step(id: &'static str, meant: &'static str, map: Map, says: &'static st
         meant,
         map,
         remembers: false,
-        only_damped: false,
     };
-    Mistake { id, says, wrong }
+    Mistake {
+        id,
+        says,
+        wrong,
+        deviates: &[],
+    }
 }
 
 /// One that needs the state before the last.
@@ -23,30 +25,29 @@ const fn late(id: &'static str, meant: &'static str, map: Map, says: &'static st
         meant,
         map,
         remembers: true,
-        only_damped: false,
     };
-    Mistake { id, says, wrong }
+    Mistake {
+        id,
+        says,
+        wrong,
+        deviates: &[],
+    }
 }
 
-/// One that shows only with damping.
-const fn damped(id: &'static str, meant: &'static str, map: Map, says: &'static str) -> Mistake {
-    let wrong = Wrong::Step {
-        meant,
-        map,
-        remembers: false,
-        only_damped: true,
-    };
-    Mistake { id, says, wrong }
-}
-
-/// Wrong forces or masses in any method.
+/// Wrong forces or masses in any method, and the part of the scene that they change.
 const fn physics(
     id: &'static str,
     build: fn(&Scene) -> Option<ParticleSystem>,
+    deviates: &'static [(&'static str, f64)],
     says: &'static str,
 ) -> Mistake {
     let wrong = Wrong::Physics(build);
-    Mistake { id, says, wrong }
+    Mistake {
+        id,
+        says,
+        wrong,
+        deviates,
+    }
 }
 
 /// Every mistake. No two are the same map in general, nor is one a method of the registry.
@@ -150,54 +151,12 @@ pub static MISTAKES: &[Mistake] = &[
         maps::verlet_missing_half,
         "the position moves by h v + h² a: the second term is h² a / 2",
     ),
-    damped(
-        "position_verlet_explicit_damping",
-        "position_verlet",
-        |f, h, _, s| maps::splitting(maps::DRIFT_FIRST, Explicit, f, h, s),
-        "the kick takes the dampers at the velocity before it, which is of order 1 only: solve the \
-         damped kick exactly",
-    ),
-    damped(
-        "velocity_verlet_explicit_damping",
-        "velocity_verlet",
-        |f, h, _, s| maps::splitting(Stage::VERLET, Explicit, f, h, s),
-        "each half kick takes the dampers at the velocity before it, which is of order 1 only: \
-         solve the damped half kicks exactly, or one at the old and one at the new velocity",
-    ),
-    damped(
-        "velocity_verlet_predicted_velocity",
-        "velocity_verlet",
-        maps::verlet_predicted_velocity,
-        "the second half kick takes the dampers at the predicted velocity v0 + h a0: of order 2, but \
-         stable for smaller steps only; solve the damped half kicks exactly",
-    ),
-    damped(
-        "velocity_verlet_old_velocity",
-        "velocity_verlet",
-        maps::verlet_old_velocity,
-        "the second half kick takes the dampers at the velocity from the start of the step: give \
-         the new force the new velocity",
-    ),
     step(
         "yoshida4_swapped_coefficients",
         "yoshida4",
         maps::yoshida4_swapped_coefficients,
         "the coefficients stand in the wrong order: the negative one, 1 - 2 w1 = -1.70, belongs in \
          the middle",
-    ),
-    damped(
-        "yoshida4_explicit_damping",
-        "yoshida4",
-        |f, h, _, s| maps::splitting(Stage::YOSHIDA4, Explicit, f, h, s),
-        "each kick takes the dampers at the velocity before it, which is of order 1 only: solve the \
-         damped kicks exactly",
-    ),
-    damped(
-        "pefrl_explicit_damping",
-        "pefrl",
-        |f, h, _, s| maps::splitting(Stage::PEFRL, Explicit, f, h, s),
-        "each kick takes the dampers at the velocity before it, which is of order 1 only: solve the \
-         damped kicks exactly",
     ),
     step(
         "implicit_euler_old_velocity",
@@ -216,65 +175,130 @@ pub static MISTAKES: &[Mistake] = &[
     physics(
         "gravity_forgotten",
         physics::gravity_forgotten,
+        &[("gravity", 0.0)],
         "gravity is missing: add m g to every free particle",
     ),
     physics(
         "gravity_twice",
         physics::gravity_twice,
+        &[("gravity", 2.0)],
         "gravity acts twice: add m g once per force evaluation, and no g to the velocity besides",
     ),
     physics(
         "gravity_upward",
         physics::gravity_upward,
+        &[("gravity", -1.0)],
         "gravity has the wrong sign: the scene's value is signed, along the axis `up`",
     ),
     physics(
         "gravity_without_mass",
         physics::gravity_without_mass,
+        &[("gravity", 1.0)],
         "gravity is added as a force of g newtons whatever the mass: the force is m g",
     ),
     physics(
         "damping_sign",
         physics::damping_sign,
+        &[("springs.damping", -1.0), ("drag", -1.0)],
         "damping has the wrong sign, so it drives: a damper's force opposes the velocity",
     ),
     physics(
         "damping_forgotten",
         physics::damping_forgotten,
+        &[("springs.damping", 0.0), ("drag", 0.0)],
         "damping is missing: add the springs' dampers and the drag to the forces",
     ),
     physics(
         "damping_isotropic",
         physics::damping_isotropic,
+        &[("springs.damping", 1.0)],
         "the dampers resist the whole relative velocity of a spring's ends: the scene asks for its \
          part along the spring alone (`damping_model: axial`)",
     ),
     physics(
         "damping_axial",
         physics::damping_axial,
+        &[("springs.damping", 1.0)],
         "the dampers resist only the relative velocity along the spring: the scene asks for all of \
          it (`damping_model: isotropic`)",
     ),
     physics(
         "rest_length_ignored",
         physics::rest_length_ignored,
+        &[("springs.rest_length", 0.0)],
         "springs pull as if their rest length were 0: the force is k (length - rest length)",
     ),
     physics(
         "springs_twice",
         physics::springs_twice,
+        &[
+            ("springs.stiffness", 2.0),
+            ("springs.cubic", 2.0),
+            ("springs.damping", 2.0),
+        ],
         "springs act twice, as when each is visited from both its ends: add the force of a spring \
          once to either end",
     ),
     physics(
+        "springs_forgotten",
+        physics::springs_forgotten,
+        &[
+            ("springs.stiffness", 0.0),
+            ("springs.cubic", 0.0),
+            ("springs.damping", 0.0),
+        ],
+        "springs are missing: add the force of each to both its ends",
+    ),
+    physics(
+        "spring_reversed",
+        springs::reversed,
+        &[("springs.stiffness", -1.0)],
+        "springs push where they should pull: the force on the first end is k (length - rest length) along the \
+         direction to the second",
+    ),
+    physics(
+        "spring_direction_not_normalised",
+        springs::not_normalised,
+        &[("springs.direction", 1.0)],
+        "the direction of a spring is not normalised, so its force grows with its length besides: divide the \
+         separation of the ends by its length",
+    ),
+    physics(
+        "spring_tension_only",
+        springs::tension_only,
+        &[("springs.compression", 0.0)],
+        "springs pull, but do not push when they are compressed: the force k (length - rest length) has either \
+         sign",
+    ),
+    physics(
+        "damper_own_velocity",
+        springs::own_velocity,
+        &[("springs.damping", 1.0)],
+        "each end is damped by its own velocity: a damper resists the difference of its ends' velocities",
+    ),
+    physics(
+        "first_end_only",
+        springs::first_end_only,
+        &[("springs.second_end", 0.0)],
+        "only the first end of each spring feels it: the second feels the opposite force",
+    ),
+    physics(
+        "second_end_only",
+        springs::second_end_only,
+        &[("springs.first_end", 0.0)],
+        "only the second end of each spring feels it: the first feels the opposite force",
+    ),
+    physics(
         "mass_ignored",
         physics::mass_ignored,
+        &[("mass", 1.0)],
         "mass is ignored: divide every particle's force by its mass; only gravity is an \
          acceleration already",
     ),
     physics(
         "force_as_acceleration",
         physics::force_as_acceleration,
+        &[("mass", 1.0)],
         "forces, weight included, are taken for accelerations: divide their sum by the particle's \
          mass",
     ),
@@ -283,10 +307,12 @@ pub static MISTAKES: &[Mistake] = &[
         says: "each step advances the state by h/2 only: use the whole timestep, or write a row \
                every second step",
         wrong: Wrong::Length(0.5),
+        deviates: &[("timestep", 0.5)],
     },
     Mistake {
         id: "step_doubled",
         says: "each step advances the state by 2 h: use the timestep the rows are apart",
         wrong: Wrong::Length(2.0),
+        deviates: &[("timestep", 2.0)],
     },
 ];

@@ -26,6 +26,12 @@ const SEEN: f64 = 1e8;
 const PROBES: u64 = 24;
 /// Fewest steps of a full probe.
 const FEWEST: u64 = 500;
+/// Linear solves a step that a probe of [`STEPS`] is meant for: where Newton's iteration takes more, far out,
+/// the probe is shorter. And the steps that are taken to see how many it takes.
+const SOLVES: u64 = 4;
+const SAMPLE: u64 = 64;
+/// Such a probe is not shorter than this: slow growth needs some thousand steps to show.
+const LEAST: u64 = 4_000;
 /// Steps over which a map is seen to be linear or not.
 const LINEAR_STEPS: usize = 4;
 /// Newton's residuals and rounding are far below this, a direction that turns far above.
@@ -47,6 +53,8 @@ pub(super) struct Experiment<'a> {
     scale: f64,
     /// Steps of a full probe.
     pub steps: u64,
+    /// Steps of the shortest full probe so far.
+    pub shortest: u64,
     /// The shortest time scale, s.
     pub unit: f64,
     pub budget: Budget<'a>,
@@ -88,6 +96,8 @@ impl<'a> Experiment<'a> {
         let linear = linear(scene, make, &large, 0.5 * unit)?;
         let scale = energy_scale(scene, system, None).unwrap_or(1.0);
         let scale = scale.max(SEEN * rounding(scene));
+        // A probe takes two runs where the map is linear.
+        let steps = (budget / PROBES / if linear { 2 } else { 1 }).clamp(FEWEST, STEPS);
         Ok(Self {
             scene,
             system,
@@ -99,8 +109,8 @@ impl<'a> Experiment<'a> {
                 Perturbation::slight(system, scale)
             },
             scale,
-            // A probe takes two runs where the map is linear.
-            steps: (budget / PROBES / if linear { 2 } else { 1 }).clamp(FEWEST, STEPS),
+            steps,
+            shortest: steps,
             unit,
             budget: Budget::new(budget, tick),
             known: (None, None),
@@ -123,6 +133,11 @@ impl<'a> Experiment<'a> {
 
     /// Probes whether `h` is stable, over `steps` steps.
     pub fn probe(&mut self, h: f64, steps: u64, extensions: u32) -> Result<Probed, Stop> {
+        let full = steps == self.steps;
+        let steps = self.affordable(h, steps)?;
+        if full {
+            self.shortest = self.shortest.min(steps);
+        }
         let watch = Watch {
             steps,
             extensions,
@@ -140,6 +155,22 @@ impl<'a> Experiment<'a> {
             probe(&mut runs, &mut gauge, watch, &mut self.budget)
         };
         probed.ok_or(Stop::Spent)
+    }
+
+    /// Of `steps` steps at `h` those that cost no more linear solves than as many steps nearby: Newton's
+    /// iteration solves a step of a linear map at once.
+    fn affordable(&mut self, h: f64, steps: u64) -> Result<u64, Stop> {
+        if self.is_linear() {
+            return Ok(steps);
+        }
+        let scene = self.perturbation.apply(self.scene);
+        let mut runs = Runs::new(self.make, h, &[&scene])?;
+        let taken = (0..SAMPLE).take_while(|_| runs.step().is_ok()).count() as u64;
+        if !self.budget.spend(taken, runs.passes()) {
+            return Err(Stop::Spent);
+        }
+        let most = SOLVES * steps * taken.max(1) / runs.solves().max(1);
+        Ok(steps.min(most.max(LEAST)))
     }
 
     /// Probes two runs of a linear map.

@@ -105,6 +105,12 @@ impl Runs {
         difference
     }
 
+    /// Linear solves so far, where solvers count them.
+    pub fn solves(&self) -> u64 {
+        let solves = self.0.iter().filter_map(|run| run.counts().linear_solves);
+        solves.sum()
+    }
+
     /// Force passes so far, linear solves counted as such, where solvers count them.
     pub fn passes(&self) -> u64 {
         let passes = self.0.iter().map(|run| {

@@ -14,8 +14,9 @@ struct Tried {
 
 /// Relative width to which a limit is promised.
 const PROMISED: f64 = 1e-3;
-/// The width the search goes to: half of that.
-const WIDTH: f64 = 5e-4;
+/// The width the search goes to where the map is linear: half of that. Elsewhere limits are not sharper than
+/// what is promised.
+pub(super) const WIDTH: f64 = 5e-4;
 /// Largest step tried, in shortest time scales.
 const FAR: f64 = 1e6;
 /// Smallest step tried, in shortest time scales.
@@ -45,8 +46,8 @@ impl Experiment<'_> {
         let bracket = self.bracket(near);
         match bracket.and_then(|(stable, unstable)| self.within(stable, unstable)) {
             Ok((limit, mut reason)) | Err(Stop::Found((limit, mut reason))) => {
-                if self.steps < STEPS {
-                    reason += &format!("; seen over {} steps at most", self.steps);
+                if self.shortest < STEPS {
+                    reason += &format!("; seen over {} steps at most", self.shortest);
                 }
                 (limit, Some(reason))
             }
@@ -187,7 +188,8 @@ impl Experiment<'_> {
     fn bisect(&mut self, stable: Tried, unstable: Tried) -> Result<Found, Stop> {
         let (first, mut failing) = (stable.h, unstable);
         self.known = (Some(first), Some(failing.h));
-        let low = bisect(first, failing.h, |h| -> Result<bool, Stop> {
+        let width = if self.is_linear() { WIDTH } else { PROMISED };
+        let low = bisect(first, failing.h, width, |h| -> Result<bool, Stop> {
             let tried = self.full(h)?;
             if tried.probed.unstable() {
                 self.known.1 = Some(h);
@@ -205,13 +207,15 @@ impl Experiment<'_> {
     }
 }
 
-/// The largest step found at which something holds that does so at `low` and not at `high`: to [`WIDTH`].
+/// The largest step found at which something holds that does so at `low` and not at `high`: to a relative
+/// `width`.
 pub(super) fn bisect<E>(
     mut low: f64,
     mut high: f64,
+    width: f64,
     mut holds: impl FnMut(f64) -> Result<bool, E>,
 ) -> Result<f64, E> {
-    while high - low > WIDTH * low {
+    while high - low > width * low {
         // Halves ratios while they are large.
         let h = if high > 2.0 * low {
             (low * high).sqrt()

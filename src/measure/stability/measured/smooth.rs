@@ -2,7 +2,7 @@
 
 use super::experiment::Experiment;
 use super::perturbation::Perturbation;
-use super::search::bisect;
+use super::search::{WIDTH, bisect};
 use crate::measure::stability::{Effort, Linearised};
 use crate::physics::{ForceKinds, ParticleSystem, System};
 use crate::scene::Scene;
@@ -57,7 +57,7 @@ pub(super) fn below(experiment: &mut Experiment, upto: Option<f64>) -> Option<f6
         }
         low = high;
     }
-    bisect(low, high, |h| smooth(h).ok_or(())).ok()
+    bisect(low, high, WIDTH, |h| smooth(h).ok_or(())).ok()
 }
 
 /// Whether the mode that decays fastest keeps its sign in a step: whether its factor, told from

@@ -106,7 +106,7 @@ impl Definite {
         };
         let (largest, mut q) = krylov::top(n, &stiff, effort)?;
         let rounding = 1e-13 * (stiffness.norm() + material.norm());
-        let mut found = Prediction::only(Limit::Unconditional);
+        let mut found = Prediction::only(Limit::Unconditional).within(krylov::error(n, effort));
         if largest <= rounding {
             if self != Self::Explicit || damping.norm() == 0.0 {
                 return Some(found);
@@ -135,6 +135,10 @@ impl Definite {
                 h = next;
                 found.limit = Limit::At(h);
                 found.binding = Some(mode);
+            }
+            if at_most {
+                // Damping never lowers Verlet's limit.
+                found = found.within(1.0 - 2.0 / (largest.sqrt() * h));
             }
             if done || at_most {
                 break;

@@ -23,6 +23,12 @@ pub(super) fn top(n: usize, product: Product, effort: &Effort) -> Option<(f64, V
     found.then_some((value, vector))
 }
 
+/// The relative error of the root of an eigenvalue that [`top`] finds: an eigenvalue is at most its residual
+/// off, and better where no other is near.
+pub(super) fn error(n: usize, effort: &Effort) -> f64 {
+    if n <= SMALL { 0.0 } else { 0.5 * effort.found }
+}
+
 /// As [`top`], by Lanczos begun anew from its best vector until the residual is at most `enough` of the
 /// spectrum's size, and whether it came to that. Where it did not, the eigenvalue is a lower bound.
 pub(super) fn best(

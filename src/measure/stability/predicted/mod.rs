@@ -2,12 +2,14 @@
 //! each.
 
 mod definite;
+mod forced;
 mod krylov;
 mod maps;
 mod parts;
 mod prediction;
 mod regions;
 mod spectrum;
+mod stepmap;
 
 use super::Limit;
 use crate::integrators::{Amplification, Method};

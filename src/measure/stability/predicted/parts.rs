@@ -16,18 +16,36 @@ pub(super) struct Part {
     pub material: Matrix,
     /// Whether all three are symmetric.
     pub symmetric: bool,
+    /// How far rounding of the positions moves K, 1/s²: lengths far from the origin are known no better.
+    pub rounding: f64,
     /// How often it occurs.
     pub copies: usize,
 }
 
 impl Part {
-    pub fn n(&self) -> usize {
-        self.stiffness.n()
+    /// Matrices that are symmetric but for rounding are made so.
+    pub fn new(matrices: [Matrix; 3], rounding: f64, copies: usize) -> Self {
+        let mut symmetric = true;
+        let [stiffness, damping, material] = matrices.map(|matrix| {
+            if matrix.skewness() <= SYMMETRIC * matrix.norm() {
+                matrix.symmetric_part()
+            } else {
+                symmetric = false;
+                matrix
+            }
+        });
+        Self {
+            stiffness,
+            damping,
+            material,
+            symmetric,
+            rounding,
+            copies,
+        }
     }
 
-    /// A bound on the rates of its motion, 1/s.
-    pub fn rate(&self) -> f64 {
-        self.stiffness.norm().sqrt().max(self.damping.norm())
+    pub fn n(&self) -> usize {
+        self.stiffness.n()
     }
 
     fn matrices(&self) -> [&Matrix; 3] {
@@ -61,7 +79,14 @@ pub(super) fn parts<S: System + ?Sized>(system: &S, state: &State) -> Option<Vec
         scaled(&exact.velocity)?,
         scaled(&material.position)?,
     ];
-    let mut parts = separate(&whole, inverse_mass);
+    // The same one rounding away, in directions that stretch what lies along an axis.
+    let signs = [2.0, -2.0, 2.0, -2.0, 2.0, -2.0, -2.0].into_iter().cycle();
+    let away = x.iter().zip(signs);
+    let away: Vec<f64> = away.map(|(x, sign)| x + sign * f64::EPSILON * x).collect();
+    let mut there = Jacobian::default();
+    system.jacobian(*t, &away, v, Linearization::Exact, &mut there);
+    let moved = whole[0].combined(1.0, &scaled(&there.position)?, -1.0);
+    let mut parts = separate(&driven(whole), &moved, inverse_mass);
     parts.sort_by(Part::order);
     parts.dedup_by(|next, kept| {
         let same = next.matrices() == kept.matrices();
@@ -126,9 +151,26 @@ pub(in crate::measure::stability) fn shortest<S: System + ?Sized>(
     (rate > 0.0 && rate.is_finite()).then(|| 1.0 / rate)
 }
 
-/// Splits by what is coupled; fixed coordinates are in no part. Matrices that are symmetric but for
-/// rounding are made so.
-fn separate(whole: &[Matrix; 3], inverse_mass: &[f64]) -> Vec<Part> {
+/// The matrices without the columns of coordinates that no force moves: such a one drives others and nothing
+/// drives it, so eigenvalues are those of the rest.
+fn driven(mut whole: [Matrix; 3]) -> [Matrix; 3] {
+    loop {
+        let moved = |i: usize| whole.iter().any(|matrix| !matrix.rows[i].is_empty());
+        let moved: Vec<bool> = (0..whole[0].n()).map(moved).collect();
+        let count = |whole: &[Matrix; 3]| whole.iter().flat_map(Matrix::entries).count();
+        let before = count(&whole);
+        whole = whole.map(|matrix| {
+            let kept = matrix.entries().filter(|(_, column, _)| moved[*column]);
+            Matrix::new(matrix.n(), kept)
+        });
+        if count(&whole) == before {
+            return whole;
+        }
+    }
+}
+
+/// Splits by what is coupled; fixed coordinates are in no part. `moved` is what rounding moves K by.
+fn separate(whole: &[Matrix; 3], moved: &Matrix, inverse_mass: &[f64]) -> Vec<Part> {
     let n = inverse_mass.len();
     let mut parent: Vec<usize> = (0..n).collect();
     fn root(parent: &mut [usize], mut i: usize) -> usize {
@@ -151,23 +193,8 @@ fn separate(whole: &[Matrix; 3], inverse_mass: &[f64]) -> Vec<Part> {
     }
     members.retain(|coordinates| !coordinates.is_empty());
     let part = |coordinates: &Vec<usize>| {
-        let mut symmetric = true;
-        let [stiffness, damping, material] = whole.each_ref().map(|whole| {
-            let matrix = whole.part(coordinates, &place);
-            if matrix.skewness() <= SYMMETRIC * matrix.norm() {
-                matrix.symmetric_part()
-            } else {
-                symmetric = false;
-                matrix
-            }
-        });
-        Part {
-            stiffness,
-            damping,
-            material,
-            symmetric,
-            copies: 1,
-        }
+        let of = |matrix: &Matrix| matrix.part(coordinates, &place);
+        Part::new(whole.each_ref().map(of), of(moved).norm(), 1)
     };
     members.iter().map(part).collect()
 }

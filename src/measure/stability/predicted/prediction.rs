@@ -7,6 +7,8 @@ use super::spectrum::Mode;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
     pub limit: Limit,
+    /// How far the limit may be too large, relative: 0 where it is exact to rounding, 1 where nothing is sure.
+    pub error: f64,
     /// ln(spectral radius) / h of the amplitude at the given timestep, 1/s; at most 0 where it is stable, 0
     /// where all motion is free. None where it would take the full spectrum of too many coordinates.
     pub growth_per_s: Option<f64>,
@@ -28,11 +30,18 @@ impl Prediction {
     pub(super) fn only(limit: Limit) -> Self {
         Self {
             limit,
+            error: 0.0,
             growth_per_s: None,
             smooth_below_s: None,
             reason: None,
             binding: None,
         }
+    }
+
+    /// The same with a limit that may be too large by `error`, relative.
+    pub(super) fn within(self, error: f64) -> Self {
+        let error = error.clamp(0.0, 1.0).max(self.error);
+        Self { error, ..self }
     }
 
     /// The prediction for one mode, with its growth at `h`, s.

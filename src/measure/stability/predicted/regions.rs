@@ -12,7 +12,7 @@ pub(super) fn predict(rational: &Rational, spectrum: &Spectrum, h: f64) -> Optio
     let outermost = &spectrum.eigenvalues;
     match spectrum.coverage {
         Coverage::All => of(outermost),
-        Coverage::Sampled => stiffest_binds(of(outermost)?, &spectrum.modes),
+        Coverage::Sampled(error) => stiffest_binds(of(outermost)?.within(error), &spectrum.modes),
         Coverage::Outermost(Some(bound)) if outermost.is_empty() => {
             Some(of_bound(rational, bound, of(&bound.stiffest.eigenvalues())))
         }
@@ -74,13 +74,16 @@ fn of_outermost(
     };
     let inner = outermost.last().map_or(0.0, |(value, _)| value.norm());
     let growth_per_s = known.growth_per_s.filter(|growth| *growth > 0.0);
-    let reason = match known.limit {
+    let (reason, error) = match known.limit {
         Limit::Never => return known,
-        Limit::At(limit) if limit * inner <= radius => known.reason,
-        Limit::At(_) if radius > 0.0 => Some(format!(
-            "by the outermost modes of too many to know; others could lower it to {} s at most",
-            shown(radius / inner)
-        )),
+        Limit::At(limit) if limit * inner <= radius => (known.reason.clone(), 0.0),
+        Limit::At(limit) if radius > 0.0 => {
+            let why = format!(
+                "by the outermost modes of too many to know; others could lower it to {} s at most",
+                shown(radius / inner)
+            );
+            (Some(why), 1.0 - radius / inner / limit)
+        }
         _ => {
             let why =
                 "too many coordinates for the full spectrum, and any mode may be the tightest";
@@ -94,7 +97,7 @@ fn of_outermost(
         growth_per_s,
         smooth_below_s: None,
         reason,
-        ..known
+        ..known.within(error)
     }
 }
 
@@ -116,7 +119,7 @@ fn of_bound(rational: &Rational, bound: Bound, known: Option<Prediction>) -> Pre
                     shown(sure)
                 )
             }),
-            ..Prediction::only(Limit::At(limit))
+            ..Prediction::only(Limit::At(limit)).within(1.0 - sure / limit)
         },
         _ => of_outermost(rational, &[], None),
     }

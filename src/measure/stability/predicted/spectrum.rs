@@ -25,8 +25,8 @@ pub(super) struct Spectrum {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Coverage {
     All,
-    /// A sample of a large part's modes, the last the stiffest.
-    Sampled,
+    /// A sample of a large part's modes, the last the stiffest: its frequency's relative error.
+    Sampled(f64),
     /// A large part's outermost eigenvalues, the farthest first; the others lie within the last. None
     /// where they are too close together to be found.
     Outermost(Option<Bound>),
@@ -46,7 +46,7 @@ pub(super) struct Bound {
 pub(super) struct LeftOut {
     /// Number of modes without restoring force.
     pub at_rest: usize,
-    /// Number of modes that grow in truth.
+    /// Number of modes that grow in truth, with one growing eigenvalue each.
     pub unstable: usize,
 }
 
@@ -99,10 +99,7 @@ impl Spectrum {
     }
 }
 
-/// Rates below this part of the largest cannot be told from 0 in the eigenvalues of an unsymmetric
-/// matrix with a double 0 in it: about the root of rounding.
-const DOUBLE_ZERO: f64 = 1e-6;
-/// Growth or decay of an unsymmetric matrix's eigenvalue below this part of the largest is rounding.
+/// An unsymmetric matrix's eigenvalue, and its growth or decay, below this part of the largest is rounding.
 const NEUTRAL: f64 = 1e-11;
 /// An eigenvalue is real if its imaginary part is a smaller part of it than this: where two
 /// eigenvalues coincide, the root of rounding.
@@ -117,7 +114,16 @@ pub(super) fn solve(part: Part, effort: &Effort) -> Option<Spectrum> {
     match proportional {
         Some(damping) if n <= effort.symmetric => modes(part, damping),
         Some(damping) => sampled(part, damping, effort),
-        None if n <= effort.unsymmetric => eigenvalues(part),
+        None if n <= effort.unsymmetric => match part.forced() {
+            None => eigenvalues(part),
+            Some((left, at_rest)) => {
+                let mut spectrum = solve(left, effort)?;
+                if let Some(left_out) = &mut spectrum.left_out {
+                    left_out.at_rest += at_rest;
+                }
+                Some(spectrum)
+            }
+        },
         None => Some(outermost(part, effort)),
     }
 }
@@ -139,12 +145,10 @@ fn proportional(part: &Part) -> Option<(f64, f64)> {
     let b = c.at(0, 0) - a * k.at(0, 0);
     let identity = Matrix::new(k.n(), (0..k.n()).map(|i| (i, i, 1.0)));
     let left = c.combined(1.0, k, -a).combined(1.0, &identity, -b);
-    (left.norm() <= 1e-12 * (size + a.abs() * k.norm())).then_some((a, b))
-}
-
-/// Eigenvalues of a symmetric matrix that are rounding of 0.
-fn zero(n: usize, norm: f64) -> f64 {
-    8.0 * n as f64 * f64::EPSILON * norm
+    let rounding = 1e-12 * (size + a.abs() * k.norm());
+    // A b that is only rounding would damp what nothing damps.
+    let b = if b.abs() <= rounding { 0.0 } else { b };
+    (left.norm() <= rounding).then_some((a, b))
 }
 
 /// Stiffnesses of the modes, 1/s², ascending.
@@ -156,17 +160,24 @@ fn stiffnesses(part: &Part) -> Option<Vec<f64>> {
     dense.self_adjoint_eigenvalues(Side::Lower).ok()
 }
 
-fn damped(stiffness: f64, (a, b): (f64, f64)) -> Mode {
+/// The mode of this stiffness; damping below `rounding` is that of a stiffness that a and b cancel.
+fn damped(stiffness: f64, (a, b): (f64, f64), rounding: f64) -> Mode {
+    let damping = a * stiffness + b;
     Mode {
         stiffness,
-        damping: a * stiffness + b,
+        damping: if damping.abs() <= rounding {
+            0.0
+        } else {
+            damping
+        },
     }
 }
 
 fn modes(part: Part, damping: (f64, f64)) -> Option<Spectrum> {
-    let zero = zero(part.n(), part.stiffness.norm());
+    let zero = part.zero();
     let mut left_out = LeftOut::default();
     let mut modes = Vec::new();
+    let rounding = zero / part.stiffness.norm().max(f64::MIN_POSITIVE) * part.damping.norm();
     for stiffness in stiffnesses(&part)? {
         if stiffness < -zero {
             left_out.unstable += 1;
@@ -174,7 +185,7 @@ fn modes(part: Part, damping: (f64, f64)) -> Option<Spectrum> {
         }
         let stiffness = if stiffness <= zero { 0.0 } else { stiffness };
         left_out.at_rest += usize::from(stiffness == 0.0);
-        let mode = damped(stiffness, damping);
+        let mode = damped(stiffness, damping, rounding);
         // Without either there is nothing a step could enlarge; with damping there is its decay.
         if mode.damping < 0.0 {
             left_out.unstable += 1;
@@ -193,9 +204,10 @@ fn modes(part: Part, damping: (f64, f64)) -> Option<Spectrum> {
 fn sampled(part: Part, damping: (f64, f64), effort: &Effort) -> Option<Spectrum> {
     let product = |x: &[f64], y: &mut [f64]| part.stiffness.product(x, y);
     let (stiffest, _) = krylov::top(part.n(), &product, effort)?;
-    let sample = |i| damped(stiffest.max(0.0) * i as f64 / SAMPLES as f64, damping);
+    let sample = |i| damped(stiffest.max(0.0) * i as f64 / SAMPLES as f64, damping, 0.0);
     let modes = (1..=SAMPLES).map(sample).collect();
-    Some(Spectrum::of_modes(part, modes, Coverage::Sampled, None))
+    let coverage = Coverage::Sampled(krylov::error(part.n(), effort));
+    Some(Spectrum::of_modes(part, modes, coverage, None))
 }
 
 /// The factor s of (s x, v) that balances the two halves.
@@ -204,31 +216,35 @@ fn balance(part: &Part) -> f64 {
     if k > 0.0 { k.sqrt() } else { c }
 }
 
+/// The eigenvalues other than 0, from (s ξ, v), ξ being the displacements that change some force.
 fn eigenvalues(part: Part) -> Option<Spectrum> {
     let n = part.n();
     let s = balance(&part);
-    let mut first_order = Mat::<f64>::zeros(2 * n, 2 * n);
+    let felt = part.felt()?;
+    let rank = felt.ncols();
+    let force = part.stiffness.dense() * &felt;
+    let mut first_order = Mat::<f64>::zeros(rank + n, rank + n);
     for i in 0..n {
-        first_order[(i, n + i)] = s;
-    }
-    for (i, j, value) in part.stiffness.entries() {
-        first_order[(n + i, j)] = -value / s;
+        for j in 0..rank {
+            first_order[(j, rank + i)] = s * felt[(i, j)];
+            first_order[(rank + i, j)] = -force[(i, j)] / s;
+        }
     }
     for (i, j, value) in part.damping.entries() {
-        first_order[(n + i, n + j)] = -value;
+        first_order[(rank + i, rank + j)] = -value;
     }
     let all = first_order.eigenvalues().ok()?;
     let all = all.into_iter().map(|z| Complex::new(z.re, z.im));
-    let zero = zero(n, part.stiffness.norm());
-    let at_rest = stiffnesses(&part)?.into_iter();
-    let at_rest = at_rest.filter(|k| k.abs() <= zero).count();
     let largest = all.clone().map(|z| z.norm()).fold(0.0, f64::max);
-    let moving = all.filter(|root| at_rest == 0 || root.norm() > DOUBLE_ZERO * largest);
-    let settled = moving.filter_map(|root| settled(root, largest));
+    let settled = all.filter_map(|root| settled(root, largest));
     let (unstable, stable): (Vec<_>, Vec<_>) = settled.partition(|root| root.re > 0.0);
     let left_out = LeftOut {
-        at_rest,
-        unstable: unstable.len(),
+        at_rest: n - rank,
+        // What swings and grows is a pair.
+        unstable: unstable
+            .iter()
+            .map(|root| 1 + usize::from(root.im > 0.0))
+            .sum(),
     };
     let stable = stable.into_iter();
     Some(Spectrum::of_eigenvalues(
@@ -239,8 +255,11 @@ fn eigenvalues(part: Part) -> Option<Spectrum> {
     ))
 }
 
-/// An eigenvalue without its rounding; None for the lower one of a pair.
+/// An eigenvalue without its rounding; None for 0 and for the lower one of a pair.
 fn settled(root: Complex<f64>, largest: f64) -> Option<Complex<f64>> {
+    if root.norm() <= NEUTRAL * largest {
+        return None;
+    }
     let re = if root.re.abs() <= NEUTRAL * largest {
         0.0
     } else {

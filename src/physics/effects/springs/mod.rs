@@ -3,7 +3,7 @@
 mod kernel;
 mod network;
 
-use super::{Effect, EffectRow, boxed};
+use super::{Effect, EffectRow, FEW_OPERATIONS, boxed};
 use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::{DampingModel, Scene, Spring};
 use kernel::Motion;
@@ -112,6 +112,17 @@ impl Effect for Springs {
         }
     }
 
+    fn add_rounding(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.network.springs().for_each(|spring| {
+            let [i, j] = spring.ends.map(|end| 3 * end);
+            let off = rounding(&spring, self.damping, x, v);
+            for axis in 0..3 {
+                f[i + axis] += off[axis];
+                f[j + axis] += off[axis];
+            }
+        });
+    }
+
     fn potential(&self, _t: f64, x: &[f64]) -> f64 {
         let mut energy = 0.0;
         // `for_each` runs a plain inner loop over each part, which a `for` over nested iterators does not.
@@ -199,6 +210,67 @@ fn blocks(
         }
     }
     (position, velocity)
+}
+
+/// The line from one particle to another, and how far rounding moves it: cancellation makes both large where
+/// the particles lie close together and far from the origin.
+pub(super) struct Line {
+    pub(super) direction: [f64; 3],
+    /// m; never below [`SHORTEST`].
+    pub(super) length: f64,
+    /// The rounding of the length, m.
+    pub(super) off: f64,
+    /// The rounding of each component of the direction.
+    pub(super) turned: [f64; 3],
+}
+
+impl Line {
+    pub(super) fn new(x: &[f64], i: usize, j: usize) -> Self {
+        let d = difference(x, i, j);
+        let length = dot(d, d).sqrt().max(SHORTEST);
+        let direction = d.map(|d| d / length);
+        let rounded = [0, 1, 2].map(|axis| f64::EPSILON * (x[i + axis].abs() + x[j + axis].abs()));
+        let off = dot(direction.map(f64::abs), rounded) + 2.0 * f64::EPSILON * length;
+        let turned = [0, 1, 2].map(|axis| {
+            let across = rounded[axis] + direction[axis].abs() * off;
+            (across / length).min(1.0) + FEW_OPERATIONS * direction[axis].abs()
+        });
+        Self {
+            direction,
+            length,
+            off,
+            turned,
+        }
+    }
+}
+
+/// The rounding of one spring's force, N: that of k (l - L), whose difference cancels near rest, and of the
+/// damper's, whose relative velocity does where both ends move alike.
+fn rounding(spring: &Spring, damping: Damping, x: &[f64], v: &[f64]) -> [f64; 3] {
+    let [i, j] = spring.ends.map(|end| 3 * end);
+    let line = Line::new(x, i, j);
+    let (n, turned) = (line.direction.map(f64::abs), line.turned);
+    let (k, c) = (spring.stiffness.abs(), spring.damping.abs());
+    let stretch = (line.length - spring.rest_length).abs();
+    let relative = difference(v, i, j).map(f64::abs);
+    let rounded = [0, 1, 2].map(|axis| f64::EPSILON * (v[i + axis].abs() + v[j + axis].abs()));
+    let mut along = k * (line.off + 2.0 * f64::EPSILON * spring.rest_length);
+    let mut size = k * stretch;
+    let mut off = [0.0; 3];
+    match damping {
+        Damping::None => {}
+        Damping::Axial => {
+            along += c * (dot(n, rounded) + dot(relative, turned));
+            size += c * dot(n, relative);
+        }
+        Damping::Isotropic => {
+            off = [0, 1, 2].map(|axis| c * (rounded[axis] + FEW_OPERATIONS * relative[axis]));
+        }
+    }
+    for axis in 0..3 {
+        off[axis] += along * n[axis] + size * (turned[axis] + FEW_OPERATIONS * n[axis]);
+    }
+    off
 }
 
 /// The vector from the particle at offset `i` to the one at offset `j`.

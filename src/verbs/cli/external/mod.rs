@@ -53,7 +53,9 @@ impl FromStr for External {
 
 /// Refuses names that are taken or repeated, before any work is done.
 pub fn distinct(externals: &[External]) -> anyhow::Result<()> {
-    let taken = [&integrators::ids(integrators::fixed())[..], &rapier::IDS].concat();
+    let methods = integrators::ids(integrators::fixed());
+    let aliases = integrators::ALIASES.iter().map(|(short, _)| *short);
+    let taken: Vec<&str> = (methods.into_iter().chain(aliases).chain(rapier::IDS)).collect();
     for (at, External { name, .. }) in externals.iter().enumerate() {
         // Some file systems ignore case, and names are part of file names.
         let same = |other: &str| other.eq_ignore_ascii_case(name);

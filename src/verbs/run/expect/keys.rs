@@ -1,7 +1,7 @@
 //! The table of outcome keys that a scene's `expect` may name.
 
 use crate::integrators;
-use crate::measure::identify::{MISTAKES, Wrong};
+use crate::measure::identify::{MISTAKES, Wrong, composed_ids};
 use crate::scene::{KeyKind, Names, OutcomeKey};
 use crate::solvers::rapier;
 use std::sync::LazyLock;
@@ -11,6 +11,7 @@ use std::sync::LazyLock;
 pub fn names() -> &'static Names {
     static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
         methods: integrators::ids(integrators::fixed()),
+        aliases: integrators::ALIASES,
         engines: rapier::IDS.to_vec(),
         keys: keys(),
     });
@@ -57,12 +58,13 @@ fn keys() -> Vec<OutcomeKey> {
         ("identified.method", word(&schemes())),
         ("identified.substeps", KeyKind::Number),
         ("identified.defect", KeyKind::Number),
+        ("identified.relative", KeyKind::Number),
         ("identified.runner_up", KeyKind::Text),
         ("identified.runner_up_defect", KeyKind::Number),
         ("identified.decisive", word(&["true", "false"])),
         (
             "identified.undecided",
-            word(&["same_map", "data_too_coarse", "nothing_fits"]),
+            word(&["same_map", "data_too_coarse", "near"]),
         ),
     ];
     let mut keys = Vec::new();
@@ -81,13 +83,14 @@ fn keys() -> Vec<OutcomeKey> {
     keys
 }
 
-/// The ids of methods and of wrong steps.
+/// The ids of methods, composed schemes and wrong steps.
 fn schemes() -> Vec<&'static str> {
     let steps = MISTAKES
         .iter()
         .filter(|mistake| matches!(mistake.wrong, Wrong::Step { .. }));
     integrators::ids(integrators::fixed())
         .into_iter()
+        .chain(composed_ids().into_iter().map(|id| &*id.leak()))
         .chain(steps.map(|mistake| mistake.id))
         .collect()
 }

@@ -1,7 +1,7 @@
 //! Words for a trajectory's identity and its first deviating step.
 
 use crate::integrators;
-use crate::measure::identify::{Fault, Identified, Quantity, Undecided};
+use crate::measure::identify::{Explained, Fault, Identified, Quantity, TRUTH, Undecided};
 use crate::report::words::{self, listed};
 use crate::solvers::SolverKind;
 use crate::verbs::run::Outcome;
@@ -10,47 +10,86 @@ use crate::verbs::{Body, Report};
 /// The number of equivalent schemes named, at most.
 const MAX_NAMED: usize = 6;
 
-/// The identity that replay found for an outcome; None where it found none, or the one that the row states anyway.
+/// The scheme that replay found for an outcome, or what it deviates in; None where it found the one that the row
+/// states anyway.
 pub fn sentence(outcome: &Outcome) -> Option<String> {
-    let found = outcome.identified.as_ref()?;
+    let Some(found) = &outcome.identified else {
+        return outcome.explained.as_ref().map(explained);
+    };
     let itself = outcome.kind == SolverKind::Integrator
         && found.substeps == 1
         && (found.method == outcome.engine || found.equivalent.contains(&outcome.engine));
     let scheme = scheme(found, outcome.timestep);
-    let defect = format!("defect {} of rounding", words::short_sci(found.defect));
-    let next = found.runner_up.as_ref().zip(found.runner_up_defect);
-    let next = next.map_or(String::new(), |(other, defect)| {
-        format!(
-            "; next {}: {}",
-            words::one_line(other),
-            words::short_sci(defect)
-        )
-    });
-    let is = format!("step by step it is {scheme} ({defect}");
     let text = match found.undecided {
-        _ if found.decisive => format!("{is}{next})"),
-        Some(Undecided::NothingFits) => {
-            let nearest = format!("the nearest is {scheme} ({defect}{next})");
-            format!("no known scheme explains its steps; {nearest}")
-        }
+        Some(Undecided::Near) if outcome.kind == SolverKind::Rapier => format!(
+            "step by step it is nearly {scheme}: its sweeps have not converged, and it is off by {}",
+            share(found)
+        ),
+        Some(Undecided::Near) => format!(
+            "step by step it is nearly {scheme}: off by {}",
+            share(found)
+        ),
+        None => format!("step by step it is {scheme}"),
         Some(Undecided::DataTooCoarse) => {
             let why = "which at this step and with these digits cannot be told from";
-            format!("{is}), {why} {}", equivalent(found))
+            format!("step by step it is {scheme}, {why} {}", equivalent(found))
         }
-        _ => format!("{is}), which here is the same as {}", equivalent(found)),
+        Some(Undecided::SameMap) => {
+            let why = "which here is the same as";
+            format!("step by step it is {scheme}, {why} {}", equivalent(found))
+        }
     };
     (!itself).then_some(text)
+}
+
+/// `0.3 % of what a step moves`.
+fn share(found: &Identified) -> String {
+    let relative = found.relative.unwrap_or(f64::NAN);
+    if relative < 1e-6 {
+        return format!("{} of what a step moves", words::short_sci(relative));
+    }
+    format!("{} % of what a step moves", words::short(100.0 * relative))
+}
+
+/// What a trajectory deviates in.
+fn explained(explained: &Explained) -> String {
+    let Some(scheme) = &explained.scheme else {
+        return "no known scheme explains its steps".to_owned();
+    };
+    if scheme == TRUTH {
+        return "step by step it is exact to rounding: it steps finer than its rows lie apart, and no scheme can be \
+                told from them"
+            .to_owned();
+    }
+    let says: Vec<&str> = explained
+        .deviations
+        .iter()
+        .map(|d| d.sentence.as_str())
+        .collect();
+    let left = explained.largest_at.map_or(String::new(), |step| {
+        let residual = words::short_sci(explained.residual);
+        format!(" (what is left is {residual} of rounding, and largest at step {step})")
+    });
+    format!(
+        "step by step it is {}, but {}{left}",
+        words::one_line(scheme),
+        words::one_line(&says.join(", and "))
+    )
 }
 
 /// `implicit_euler at h/4 = 0.000125 s`.
 fn scheme(found: &Identified, timestep: f64) -> String {
     let name = words::one_line(&found.method);
-    if found.substeps == 1 {
-        return name;
+    let (n, known) = (found.substeps, integrators::find(&found.method).is_some());
+    match (n, known) {
+        (1, _) => name,
+        (_, true) => {
+            let step = words::short(timestep / f64::from(n));
+            format!("{name} at h/{n} = {step} s")
+        }
+        _ if name.starts_with("stopped") => format!("{name} after {n} iterations"),
+        _ => format!("{name} in {n} substeps"),
     }
-    let n = found.substeps;
-    let step = words::short(timestep / f64::from(n));
-    format!("{name} at h/{n} = {step} s")
 }
 
 fn equivalent(found: &Identified) -> String {
@@ -100,25 +139,47 @@ pub fn verdict(report: &Report) -> Option<String> {
     };
     let outcome = outcomes.first()?;
     let name = words::one_line(&outcome.engine);
+    let fault_says = fault.as_ref().map(|fault| {
+        let (step, says) = (fault.step, words::one_line(&fault.explanation));
+        format!("{name}, step {step}: {says}")
+    });
     let Some(found) = &outcome.identified else {
-        return Some(format!("{name} holds too few steps to be replayed"));
+        if fault_says.is_some() {
+            return fault_says;
+        }
+        let Some(why) = &outcome.explained else {
+            return Some(format!("{name} holds too few steps to be replayed"));
+        };
+        let says = explained(why);
+        return Some(match says.strip_prefix("step by step it is ") {
+            Some(says) => format!("{name} is {says}"),
+            None => format!("no known scheme explains {name}"),
+        });
     };
     let scheme = scheme(found, outcome.timestep);
-    let known = integrators::find(&found.method).is_some();
+    let mistake = outcome.explained.is_some() && found.undecided != Some(Undecided::Near);
     let Some(fault) = fault else {
+        let says = found
+            .says
+            .as_ref()
+            .map_or(String::new(), |says| format!(": {says}"));
         return Some(match found.undecided {
-            None => format!("{name} follows {scheme} throughout"),
+            None => format!("{name} follows {scheme} throughout{says}"),
             Some(Undecided::SameMap) => {
-                format!("{name} follows {scheme} throughout, here the same as others")
+                let same = equivalent(found);
+                format!("{name} follows {scheme} throughout{says}; here it is the same as {same}")
             }
-            Some(Undecided::DataTooCoarse) => format!("{name} does not tell {scheme} from others"),
-            Some(Undecided::NothingFits) => format!("{name} follows no known scheme"),
+            Some(Undecided::DataTooCoarse) => {
+                let others = equivalent(found);
+                format!("{name} follows {scheme}{says}; the data cannot tell it from {others}")
+            }
+            Some(Undecided::Near) => format!("{name} is nearly {scheme}: off by {}", share(found)),
         });
     };
     let (step, says) = (fault.step, words::one_line(&fault.explanation));
     Some(match found.undecided {
-        Some(Undecided::NothingFits) => format!("{name}, step {step}: {says}"),
-        _ if known => format!("{name} is {scheme} but for step {step}: {says}"),
+        Some(Undecided::Near) => format!("{name}, step {step}: {says}"),
+        _ if !mistake => format!("{name} is {scheme} but for step {step}: {says}"),
         // A scheme that remembers the previous step deviates first in the second.
         _ if step < 2 => format!("{name} is {scheme}: {says}"),
         _ => format!("{name} is {scheme} from step {step} on: {says}"),

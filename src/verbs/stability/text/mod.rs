@@ -9,7 +9,7 @@ use crate::report::terminal::Tone;
 use crate::report::words::{self, NOTHING, escape, listed, one_line};
 use crate::report::{Note, View};
 use crate::verbs::Report;
-use crate::verbs::stability::{Stability, StabilityRow};
+use crate::verbs::stability::{Largest, LargestFound, LargestRow, Stability, StabilityRow};
 
 const LEGEND: &str = "\
 ## How to read this
@@ -39,6 +39,14 @@ pub fn view<'a>(report: &'a Report, stability: &'a Stability) -> View<'a> {
         let remarks = row.remarks.iter().map(|remark| one_line(remark));
         remarks.map(|remark| (one_line(&row.engine), remark))
     });
+    let asked = stability.largest.iter();
+    let said = said.chain(asked.flat_map(|largest| {
+        largest.rows.iter().filter_map(|row| {
+            let why = one_line(row.reason.as_ref()?);
+            let remark = format!("largest {} not known: {why}", one_line(&largest.vary));
+            Some((one_line(&row.engine), remark))
+        })
+    }));
     View {
         header: &report.header,
         timesteps: Vec::new(),
@@ -63,12 +71,51 @@ pub fn page(report: &Report, stability: &Stability, view: &View) -> String {
         opening(view, more),
         section("Limits", table(report, stability).in_markdown()),
         findings(view),
+        section("Largest value", largest(stability)),
         section("Map", map.unwrap_or_default()),
         report.images(),
         admissible(stability).unwrap_or_default(),
         LEGEND.to_owned(),
     ]
     .concat()
+}
+
+/// The largest stable values as a section: what is asked, and the table.
+fn largest(stability: &Stability) -> String {
+    let of = |largest: &Largest| {
+        let table = largest_table(largest).in_markdown();
+        format!("{}\n\n{table}", escape(&largest_heading(largest)))
+    };
+    stability.largest.as_deref().map(of).unwrap_or_default()
+}
+
+/// What the table of largest values answers.
+fn largest_heading(largest: &Largest) -> String {
+    let [low, high] = largest.tried.map(words::short);
+    format!(
+        "The largest {} ({}) at which a step of {} s is within the predicted limit, of values from {low} to {high}:",
+        one_line(&largest.vary),
+        largest.unit,
+        words::short(largest.timestep_s)
+    )
+}
+
+fn largest_table(largest: &Largest) -> Table<'_, LargestRow> {
+    let mut table = Table::new(&largest.rows);
+    table.engines(|row| (row.engine.clone(), ' '));
+    let value = format!("largest ({})", largest.unit);
+    table.right(&value, &value, 0, largest_value);
+    table
+}
+
+/// The number, or in words that there is none.
+fn largest_value(row: &LargestRow) -> Option<String> {
+    match row.found {
+        LargestFound::Value => row.value.map(digits),
+        LargestFound::EveryValue => Some("every value".into()),
+        LargestFound::NoValue => Some("no value".into()),
+        LargestFound::NotKnown => Some("not known".into()),
+    }
 }
 
 /// The legend of the picture of admissible places, and their fraction at each stiffness.

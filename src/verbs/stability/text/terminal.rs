@@ -1,6 +1,6 @@
 //! The terminal's part of `stability`: the table of limits and a map in characters.
 
-use super::{digits, map_heading, table};
+use super::{digits, largest_heading, largest_table, map_heading, table};
 use crate::measure::stability::Cell;
 use crate::report::terminal::{Tone, WIDTH, clip, mark, pad, width, wrap};
 use crate::report::words;
@@ -26,6 +26,11 @@ pub fn lines(report: &Report, stability: &Stability) -> Vec<String> {
              ratio: measured over predicted{smooth}"
         )
     }));
+    if let Some(largest) = &stability.largest {
+        lines.push(String::new());
+        lines.extend(wrap(&largest_heading(largest), WIDTH, "  "));
+        lines.extend(largest_table(largest).in_terminal(", ", |_| String::new()));
+    }
     lines.extend(map(report, stability));
     lines.extend(admissible(stability));
     lines

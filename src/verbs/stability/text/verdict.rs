@@ -1,10 +1,10 @@
 //! The verdict of `stability`: the most important facts about limits.
 
-use super::limit;
+use super::{digits, limit};
 use crate::report::verdict::Clause;
 use crate::report::words::{self, listed};
 use crate::verbs::Report;
-use crate::verbs::stability::{Stability, StabilityRow};
+use crate::verbs::stability::{Largest, LargestFound, Stability, StabilityRow};
 
 /// The scene's own integrator comes first, then the engines that are beyond their limit at the timestep,
 /// never stable, always stable, and without an answer.
@@ -26,6 +26,8 @@ pub fn clauses(report: &Report, stability: &Stability) -> Vec<Clause> {
     ];
     let mut clauses: Vec<Clause> = Vec::new();
     clauses.extend(own.first().and_then(|row| first(row, h)));
+    let asked = stability.largest.as_ref();
+    clauses.extend(asked.and_then(|largest| largest_value(report, largest)));
     for (label, belongs) in groups {
         let names = others.iter().filter(|row| belongs(row));
         clauses.extend(group(
@@ -60,6 +62,28 @@ fn first(row: &StabilityRow, h: f64) -> Option<Clause> {
         }
     };
     Some(vec![text])
+}
+
+/// The answer to the question for the largest value, for the scene's own integrator or else the first.
+fn largest_value(report: &Report, largest: &Largest) -> Option<Clause> {
+    let own = largest
+        .rows
+        .iter()
+        .find(|row| report.header.is_own(&row.engine));
+    let row = own.or(largest.rows.first())?;
+    let (name, key) = (words::one_line(&row.engine), words::one_line(&largest.vary));
+    let step = words::short(largest.timestep_s);
+    let [low, high] = largest.tried.map(words::short);
+    let unit = &largest.unit;
+    let stable = format!("at h = {step} s {name} is stable");
+    Some(vec![match row.found {
+        LargestFound::Value => format!("{stable} up to {key} = {} {unit}", digits(row.value?)),
+        LargestFound::EveryValue => format!("{stable} at every {key} tried, up to {high} {unit}"),
+        LargestFound::NoValue => format!("{stable} at no {key} tried, down to {low} {unit}"),
+        LargestFound::NotKnown => {
+            format!("the largest {key} of {name} at h = {step} s is not known")
+        }
+    }])
 }
 
 /// The engines of one group: by name, by number, or left out.

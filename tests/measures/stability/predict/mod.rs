@@ -11,6 +11,7 @@ use springcheck::physics::{Jacobian, Linearization, Power, State, System};
 use springcheck::scene::{DampingModel, Particle, Scene, Spring};
 
 mod large;
+mod linearised;
 mod networks;
 mod scenes;
 mod table;
