@@ -11,7 +11,9 @@ use crate::integrators::{
     self, Coefficients, DampingTreatment, Integrator, Method, Settings, Splitting, Stage,
     StepError, fixed,
 };
-use crate::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, System};
+use crate::physics::{
+    Dampers, ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, Sweep, System,
+};
 use crate::scene::Scene;
 use crate::trajectory::Rows;
 use std::sync::Arc;
@@ -616,6 +618,14 @@ impl System for Altered<'_> {
         }
     }
 
+    fn dampers(&self) -> Dampers {
+        self.inner.dampers()
+    }
+
+    fn sweep(&self, sweep: &mut Sweep) {
+        self.inner.sweep(sweep);
+    }
+
     fn potential(&self, _t: f64, _x: &[f64]) -> f64 {
         0.0
     }
@@ -669,6 +679,14 @@ impl System for Rounded<'_> {
 
     fn kinds(&self) -> ForceKinds {
         self.inner.kinds()
+    }
+
+    fn dampers(&self) -> Dampers {
+        self.inner.dampers()
+    }
+
+    fn sweep(&self, sweep: &mut Sweep) {
+        self.inner.sweep(sweep);
     }
 
     fn damping(&self, t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
