@@ -54,6 +54,10 @@ fn ends(scene: &Scene) -> Vec<(String, State)> {
 fn all_differ(ends: &[(String, State)], bound: f64) -> Result<(), String> {
     for (k, (a, first)) in ends.iter().enumerate() {
         for (b, second) in &ends[k + 1..] {
+            if [a, b].iter().all(|id| id.starts_with("springs_forgotten(")) {
+                // Without springs the linearised methods are one.
+                continue;
+            }
             let off = distance(&first.x, &second.x).max(distance(&first.v, &second.v));
             if a == b || off < bound {
                 return Err(format!("{a} and {b}: {off:e}"));
