@@ -100,11 +100,12 @@ impl Race<'_> {
                 continue;
             }
             let effort = self.effort(&candidate, self.probes);
-            if effort > self.budget {
+            // The first is what is expected, and tried whatever it costs.
+            if effort > self.budget && !(self.entries.is_empty() && tried.is_empty()) {
                 left_out.push(group.map_or_else(|| candidate.label(), str::to_owned));
                 continue;
             }
-            self.budget -= effort;
+            self.budget = self.budget.saturating_sub(effort);
             tried.push(candidate);
         }
         left_out.dedup();
