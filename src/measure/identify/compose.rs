@@ -238,7 +238,6 @@ pub fn ids() -> Vec<String> {
     let treated = TREATED.iter().map(|(id, ..)| *id);
     let maps = MAPS.iter().map(|(id, ..)| *id).chain(treated);
     let maps = maps.map(str::to_owned);
-    let stopped = STOPPED.map(|n| format!("stopped(implicit_euler)/{n}"));
     let orders = ORDERS
         .iter()
         .flat_map(|(id, ..)| explicit().map(move |method| format!("{id}({})", method.id)));
@@ -246,11 +245,11 @@ pub fn ids() -> Vec<String> {
         .iter()
         .flat_map(|(id, ..)| explicit().map(move |method| format!("{}+{id}", method.id)));
     let single = [
+        "stopped(implicit_euler)",
         "symplectic_euler+implicit_damping",
         "forces_held(symplectic_euler)",
     ];
     let mut ids: Vec<String> = maps
-        .chain(stopped)
         .chain(single.map(str::to_owned))
         .chain(orders)
         .chain(damped)

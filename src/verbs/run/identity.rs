@@ -15,7 +15,7 @@ const TRANSITIONS: usize = 16;
 /// Steps times particles that may be replayed whatever a run took: some hundredths of a second.
 const LEAST: u64 = 1_000_000;
 /// The same for a file, which is judged for its own sake: some seconds.
-const OF_FILE: u64 = 60_000_000;
+const OF_FILE: u64 = 20_000_000;
 
 /// Identifies the scheme of a run by replaying some of its steps, at no more cost than the run's own.
 pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Found {

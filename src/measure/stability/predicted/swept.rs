@@ -12,7 +12,7 @@ use faer::Mat;
 const CELL: f64 = 0.02;
 const FAR: f64 = 4.0;
 /// Eigenvalues so near 1 are those of motion at rest, split by the root of rounding.
-const AT_REST: f64 = 1e-4;
+const AT_REST: f64 = 1e-6;
 /// A modulus beyond 1 by more than this is growth.
 const GROWING: f64 = 1e-9;
 

@@ -41,8 +41,14 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome]) -> View<'a> {
     if let Body::Run { .. } = report.body {
         facts.extend(ledger::lines(&report.header.scene.effects));
     }
+    // The verdict of a comparison is the identity.
+    let said = |outcome: &Outcome, sentence: &String| {
+        matches!(report.body, Body::Compare { .. })
+            && identity::sentence(outcome).as_ref() == Some(sentence)
+    };
     let remarks = outcomes.iter().flat_map(|outcome| {
         let sentences = sentences(outcome).into_iter();
+        let sentences = sentences.filter(move |sentence| !said(outcome, sentence));
         sentences.map(move |sentence| (outcome, sentence))
     });
     let mut remarks: Vec<_> = remarks.collect();
