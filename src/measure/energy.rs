@@ -1,7 +1,6 @@
 //! The energy balance of a run, and the verdict on it.
 
-use super::trend::EnergyClass;
-use super::trend::trend;
+use super::trend::{EnergyClass, FEWEST, trend};
 use crate::physics::effects::Effect;
 use crate::physics::{ParticleSystem, System, Work};
 use crate::trajectory::Trajectory;
@@ -22,6 +21,9 @@ pub struct Energy {
     /// Half the peak-to-peak of the residual about the trend, in units of S.
     pub fluctuation: Option<f64>,
     pub class: Option<EnergyClass>,
+    /// The number of instants the class was taken from.
+    #[serde(default)]
+    pub samples: Option<usize>,
     /// Kinetic energy at the end.
     pub kinetic_final_j: Option<f64>,
     /// Potential energy at the end, by the id of the effect that holds it.
@@ -31,7 +33,55 @@ pub struct Energy {
     pub injected_j: Option<f64>,
 }
 
+/// What a run's energy does, for a reader: its class, unless its error is too small or too large for
+/// the trend to be what counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Behaviour {
+    /// Never off by as much as a [`PRACTICAL`] part of S, whatever its trend.
+    Steady,
+    Bounded,
+    /// Off by more than S, and no trend says which way.
+    Unsteady,
+    /// Too few instants to show a trend.
+    FewSamples,
+    Drifting,
+    Dissipating,
+    Growing,
+}
+
+impl Behaviour {
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Steady => "steady",
+            Self::Bounded => "bounded",
+            Self::Unsteady => "unsteady",
+            Self::FewSamples => "few samples",
+            Self::Drifting => "drifting",
+            Self::Dissipating => "dissipating",
+            Self::Growing => "growing",
+        }
+    }
+}
+
+/// Energy errors below this part of S are of no practical size.
+pub const PRACTICAL: f64 = 1e-6;
+
 impl Energy {
+    /// What the energy does; None where there is no class. Without S nothing is small or large.
+    pub fn behaviour(&self) -> Option<Behaviour> {
+        let error = self.relative_error_max;
+        let few = self.samples.is_some_and(|samples| samples < FEWEST);
+        Some(match self.class? {
+            _ if error.is_some_and(|error| error < PRACTICAL) => Behaviour::Steady,
+            EnergyClass::Growing => Behaviour::Growing,
+            EnergyClass::Dissipating => Behaviour::Dissipating,
+            _ if error.is_some_and(|error| error > 1.0) => Behaviour::Unsteady,
+            EnergyClass::Drifting => Behaviour::Drifting,
+            EnergyClass::Bounded if few => Behaviour::FewSamples,
+            EnergyClass::Bounded => Behaviour::Bounded,
+        })
+    }
+
     /// Whether less energy is left at the end than there was, both known. Not to be confused with the
     /// class, which judges the balance: where dampers are booked more than they took, that grows.
     pub fn lost(&self) -> bool {
@@ -97,6 +147,7 @@ impl EnergySeries {
                 drift_per_s_ci: None,
                 fluctuation: None,
                 class: None,
+                samples: None,
                 kinetic_final_j: Some(system.kinetic(run.v(end))),
                 potential_final_j: effects
                     .map(|(row, effect)| (row.id.to_owned(), potential(effect.as_ref())))
@@ -126,17 +177,92 @@ pub fn judge(series: &EnergySeries, scale: Option<f64>, diverged: bool) -> Energ
         .error(1.0)
         .into_iter()
         .fold(0.0, |m: f64, e| m.max(e.abs()));
+    // Too few instants show no trend, but they show an explosion: a balance that ends at its highest,
+    // more than S above its start.
+    let rise = series.balance[series.balance.len() - 1] - series.balance[0];
+    let few = series.t.len() < FEWEST;
+    let exploded = few && rise == worst && scale.is_some_and(|scale| rise > scale);
     let interval = [in_scale(trend.interval[0]), in_scale(trend.interval[1])];
     Energy {
         relative_error_max: in_scale(worst),
         drift_per_s: in_scale(trend.slope),
         drift_per_s_ci: interval[0].zip(interval[1]).map(|(lo, hi)| [lo, hi]),
         fluctuation: in_scale(trend.fluctuation),
-        class: Some(if diverged {
+        class: Some(if diverged || exploded {
             EnergyClass::Growing
         } else {
             trend.class
         }),
+        samples: Some(series.t.len()),
         ..series.ends.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A balance that is `balance(n)` joules at instant n.
+    fn judged(instants: usize, balance: impl Fn(f64) -> f64) -> Energy {
+        let n = || (0..instants).map(|n| n as f64);
+        let series = EnergySeries {
+            t: n().collect(),
+            instants: (0..instants).collect(),
+            balance: n().map(balance).collect(),
+            ends: Energy {
+                initial_j: None,
+                final_j: None,
+                relative_error_max: None,
+                drift_per_s: None,
+                drift_per_s_ci: None,
+                fluctuation: None,
+                class: None,
+                samples: None,
+                kinetic_final_j: None,
+                potential_final_j: BTreeMap::new(),
+                dissipated_j: None,
+                injected_j: None,
+            },
+            floor: 1e-13,
+        };
+        judge(&series, Some(1.0), false)
+    }
+
+    /// Explicit Euler multiplies an oscillator's energy by 1 + z² in every step.
+    fn explicit_euler(z: f64) -> impl Fn(f64) -> f64 {
+        move |n| (1.0 + z * z).powf(n)
+    }
+
+    #[test]
+    fn few_instants_of_an_explosion_are_enough() {
+        let class = |instants, z| judged(instants, explicit_euler(z)).class;
+        assert_eq!(class(6, 105.0), Some(EnergyClass::Growing));
+        // 1.01^5 is no explosion, and six instants are no trend; two thousand are.
+        assert_eq!(class(6, 0.1), Some(EnergyClass::Bounded));
+        assert_eq!(class(2000, 0.1), Some(EnergyClass::Growing));
+        // A fall, or a rise that comes back, is none either.
+        let fall = judged(6, |n| 1.0 - 2.0 * n);
+        let back = judged(6, |n| 1.0 + 9.0 * (n * (5.0 - n)));
+        for energy in [fall, back] {
+            assert_eq!(energy.class, Some(EnergyClass::Bounded));
+        }
+    }
+
+    #[test]
+    fn words_agree_with_numbers() {
+        let behaviour = |instants, z| judged(instants, explicit_euler(z)).behaviour();
+        assert_eq!(behaviour(6, 105.0), Some(Behaviour::Growing));
+        assert_eq!(behaviour(6, 0.1), Some(Behaviour::FewSamples));
+        assert_eq!(behaviour(2000, 0.1), Some(Behaviour::Growing));
+        // A trend that is real, 2000 z² = 2e-7 in all, and of no size.
+        let small = judged(2000, explicit_euler(1e-5));
+        assert_eq!(small.class, Some(EnergyClass::Growing));
+        assert_eq!(small.behaviour(), Some(Behaviour::Steady));
+        // A swing of three times S.
+        let swing = judged(2000, |n| 1.0 + 3.0 * (0.7 * n).sin());
+        assert_eq!(swing.class, Some(EnergyClass::Bounded));
+        assert_eq!(swing.behaviour(), Some(Behaviour::Unsteady));
+        let swing = judged(2000, |n| 1.0 + 0.3 * (0.7 * n).sin());
+        assert_eq!(swing.behaviour(), Some(Behaviour::Bounded));
     }
 }

@@ -12,7 +12,7 @@ mod trend;
 pub mod twin;
 
 pub use check::{Check, CheckStatus};
-pub use energy::{Energy, EnergySeries, judge};
+pub use energy::{Behaviour, Energy, EnergySeries, judge};
 pub use error::{Deviation, ErrorSummary, Errors, TOLERANCE, TrueStates, deviation, errors, reach};
 pub(crate) use momentum::totals;
 pub use momentum::{Momentum, momentum};

@@ -9,6 +9,9 @@
 //! misses most of it.
 
 mod evidence;
+
+/// The fewest samples that can show a trend.
+pub use evidence::ONE_WAY_SAMPLES as FEWEST;
 #[cfg(test)]
 mod tests;
 

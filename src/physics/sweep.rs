@@ -94,6 +94,24 @@ impl<'a> Sweep<'a> {
         self.dissipated
     }
 
+    /// Sweeps with the particles at other positions.
+    pub fn elsewhere(&mut self, x: &[f64], all: impl FnOnce(&mut Sweep)) {
+        let mut there = Sweep {
+            x,
+            v: self.v,
+            inverse_mass: self.inverse_mass,
+            h: self.h,
+            backward: self.backward,
+            a: self.a,
+            moved: self.moved.as_deref_mut(),
+            scale: self.scale,
+            dissipated: self.dissipated,
+            decay: self.decay,
+        };
+        all(&mut there);
+        self.dissipated = there.dissipated;
+    }
+
     /// Multiplies the coefficients by `factor` during `all`.
     pub fn scaled(&mut self, factor: f64, all: impl FnOnce(&mut Self)) {
         let before = self.scale;

@@ -1,6 +1,6 @@
 //! Words and numbers, as all human-readable reports write them.
 
-use crate::measure::{Check, CheckStatus, Energy, EnergyClass};
+use crate::measure::{Behaviour, Check, CheckStatus, Energy};
 use crate::report::TruthFacts;
 use crate::truth::TruthKind;
 use serde::Serialize;
@@ -8,12 +8,30 @@ use serde::Serialize;
 /// The text of an empty cell.
 pub const NOTHING: &str = "-";
 
-/// Two significant digits: `3.1e-4`; exact zero is `0`.
+/// Two significant digits, in the form people say: `3.1e-4`, `0.012`, `1.2`, `11`, `1,100`; exact zero is
+/// `0`.
 pub fn sci(value: f64) -> String {
-    if value == 0.0 {
-        return "0".into();
+    match value.abs() {
+        0.0 => "0".into(),
+        v if (0.00995..0.0995).contains(&v) => format!("{value:.3}"),
+        v if (0.0995..0.995).contains(&v) => format!("{value:.2}"),
+        v if (0.995..9.95).contains(&v) => format!("{value:.1}"),
+        v if (9.95..9.95e4).contains(&v) => {
+            let unit = 10f64.powf(v.log10().floor() - 1.0).max(1.0);
+            let sign = if value < 0.0 { "-" } else { "" };
+            format!("{sign}{}", count(((v / unit).round() * unit) as u64))
+        }
+        _ => format!("{value:.1e}"),
     }
-    format!("{value:.1e}")
+}
+
+/// A part of the scene's energy S: `11 times its energy`, `0.25 % of its energy`, `2.0e-5 of its energy`.
+pub fn share(error: f64) -> String {
+    match error {
+        e if e >= 0.995 => format!("{} times its energy", sci(e)),
+        e if e >= 1e-4 => format!("{} % of its energy", sci(100.0 * e)),
+        e => format!("{} of its energy", sci(e)),
+    }
 }
 
 /// Two significant digits, plain where possible: `0.31`, `12`, `3.1e4`.
@@ -139,13 +157,13 @@ pub fn grouped<M, T: PartialEq>(pairs: impl Iterator<Item = (M, T)>) -> Vec<(T, 
 pub fn energy_error(energy: &Energy) -> Option<String> {
     let error = energy.relative_error_max?;
     let rises = energy.drift_per_s.is_some_and(|d| d > 0.0);
-    let sign = match energy.class {
+    let sign = match energy.behaviour() {
         _ if error == 0.0 => "",
-        Some(EnergyClass::Growing) => "+",
-        Some(EnergyClass::Dissipating) => "-",
-        Some(EnergyClass::Drifting) if rises => "+",
-        Some(EnergyClass::Drifting) => "-",
-        Some(EnergyClass::Bounded) => "±",
+        Some(Behaviour::Growing) => "+",
+        Some(Behaviour::Dissipating) => "-",
+        Some(Behaviour::Drifting) if rises => "+",
+        Some(Behaviour::Drifting) => "-",
+        Some(_) => "±",
         None => "",
     };
     Some(format!("{sign}{}", sci(error)))
@@ -223,4 +241,32 @@ pub fn escape(text: &str) -> String {
         before = c;
     }
     escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{sci, share};
+
+    #[test]
+    fn numbers_are_written_as_people_say_them() {
+        for (value, text) in [
+            (0.0, "0"),
+            (3.14e-4, "3.1e-4"),
+            (0.0123, "0.012"),
+            (-0.284, "-0.28"),
+            (0.996, "1.0"),
+            (1.24, "1.2"),
+            (9.96, "10"),
+            (11.2, "11"),
+            (1_120.0, "1,100"),
+            (-40_300.0, "-40,000"),
+            (1.2e12, "1.2e12"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(sci(value), text);
+        }
+        assert_eq!(share(11.2), "11 times its energy");
+        assert_eq!(share(0.0025), "0.25 % of its energy");
+        assert_eq!(share(2.1e-12), "2.1e-12 of its energy");
+    }
 }

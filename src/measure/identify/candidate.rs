@@ -55,11 +55,14 @@ pub enum Step {
 /// if that is known.
 pub type Map = fn(&dyn System, f64, Option<&State>, &mut State) -> Result<(), StepError>;
 
+/// A factor on velocities, from a rate in 1/s and the length of a step in s.
+pub type Factor = fn(f64, f64) -> f64;
+
 /// A multiplication of velocities beside the step proper.
 #[derive(Clone)]
 pub struct Scaling {
     /// The factor, from the coordinate's `rate` and the length of the step in s.
-    pub factor: fn(f64, f64) -> f64,
+    pub factor: Factor,
     /// A number of each coordinate: a rate in 1/s, or the factor itself.
     pub rates: Arc<[f64]>,
     pub at: ScaledAt,

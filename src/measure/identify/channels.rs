@@ -2,6 +2,7 @@
 //! velocities. Each is a channel with a factor, 1 where the program is right.
 
 use super::candidate::{Candidate, ScaledAt, Scaling};
+use super::mistakes::Mistake;
 use super::result::Deviation;
 use crate::physics::ParticleSystem;
 use crate::scene::{Axis, Scene};
@@ -19,7 +20,7 @@ pub(super) struct Channel {
 #[derive(Clone, Copy)]
 enum Change {
     /// Multiplies a number of the scene, of one member or of all.
-    Scene(fn(&mut Scene, Option<usize>, f64)),
+    Scene(SetScene),
     /// Gives all members one number, so many times their mean.
     Common(fn(&mut Scene, f64)),
     /// Multiplies the length of the step.
@@ -37,31 +38,88 @@ fn each<T>(list: &mut [T], member: Option<usize>, change: impl Fn(&mut T)) {
     }
 }
 
-const STIFFNESS: (&str, Change) = (
+/// A number of the scene: its name, whether the scene has it, and how it is multiplied.
+type Number = (&'static str, fn(&Scene) -> bool, SetScene);
+type SetScene = fn(&mut Scene, Option<usize>, f64);
+
+const GRAVITY: Number = (
+    "gravity",
+    |s| s.solver.gravity != 0.0,
+    |s, _, f| s.solver.gravity *= f,
+);
+const STIFFNESS: Number = (
     "springs.stiffness",
-    Change::Scene(|s, at, f| each(&mut s.springs, at, |spring| spring.stiffness *= f)),
+    |s| s.springs.iter().any(|spring| spring.stiffness != 0.0),
+    |s, at, f| each(&mut s.springs, at, |spring| spring.stiffness *= f),
 );
-const DAMPING: (&str, Change) = (
+const DAMPING: Number = (
     "springs.damping",
-    Change::Scene(|s, at, f| each(&mut s.springs, at, |spring| spring.damping *= f)),
+    |s| s.springs.iter().any(|spring| spring.damping != 0.0),
+    |s, at, f| each(&mut s.springs, at, |spring| spring.damping *= f),
 );
-const REST_LENGTH: (&str, Change) = (
+const REST_LENGTH: Number = (
     "springs.rest_length",
-    Change::Scene(|s, at, f| each(&mut s.springs, at, |spring| spring.rest_length *= f)),
+    |s| s.springs.iter().any(|spring| spring.rest_length != 0.0),
+    |s, at, f| each(&mut s.springs, at, |spring| spring.rest_length *= f),
 );
-const CUBIC: (&str, Change) = (
+const CUBIC: Number = (
     "springs.cubic",
-    Change::Scene(|s, at, f| each(&mut s.springs, at, |spring| spring.cubic *= f)),
+    |s| s.springs.iter().any(|spring| spring.cubic != 0.0),
+    |s, at, f| each(&mut s.springs, at, |spring| spring.cubic *= f),
 );
-const DRAG: (&str, Change) = (
+const DRAG: Number = (
     "drag",
-    Change::Scene(|s, at, f| each(&mut s.particles, at, |particle| particle.drag *= f)),
+    |s| s.particles.iter().any(|p| !p.fixed && p.drag != 0.0),
+    |s, at, f| each(&mut s.particles, at, |particle| particle.drag *= f),
 );
-const MASS: (&str, Change) = (
+const WIND: Number = (
+    "wind",
+    |s| s.wind.as_ref().is_some_and(|wind| wind.strength != 0.0),
+    |s, _, f| s.wind.iter_mut().for_each(|wind| wind.strength *= f),
+);
+const GRAVITATIONAL: Number = (
+    "gravitational",
+    |s| !s.gravitational.is_empty(),
+    |s, at, f| each(&mut s.gravitational, at, |pair| pair.g *= f),
+);
+/// Accelerations are linear in 1/m, so a fit finds that.
+const MASS: Number = (
     "mass",
-    // Accelerations are linear in 1/m, so a fit finds that.
-    Change::Scene(|s, at, f| each(&mut s.particles, at, |particle| particle.mass /= f)),
+    |_| true,
+    |s, at, f| each(&mut s.particles, at, |particle| particle.mass /= f),
 );
+const NUMBERS: [Number; 9] = [
+    GRAVITY,
+    STIFFNESS,
+    DAMPING,
+    REST_LENGTH,
+    CUBIC,
+    DRAG,
+    WIND,
+    GRAVITATIONAL,
+    MASS,
+];
+
+/// The scene with these numbers multiplied; None if it has none of them.
+pub(super) fn scaled(scene: &Scene, factors: &[(&str, f64)]) -> Option<Scene> {
+    let mut wrong = scene.clone();
+    for (what, factor) in factors {
+        let number = NUMBERS
+            .iter()
+            .find(|(name, has, _)| name == what && has(scene));
+        if let Some((.., set)) = number {
+            set(&mut wrong, None, *factor);
+        }
+    }
+    (wrong != *scene).then_some(wrong)
+}
+
+/// Whether the scene has what a known mistake changes, where that is a number of it.
+pub(super) fn has(scene: &Scene, what: &str) -> bool {
+    let number = NUMBERS.iter().find(|(name, ..)| *name == what);
+    number.is_none_or(|(_, has, _)| has(scene))
+}
+
 const ONE_STIFFNESS: (&str, Change) = (
     "springs.stiffness",
     Change::Common(|s, f| {
@@ -77,20 +135,6 @@ const ONE_MASS: (&str, Change) = (
         each(&mut s.particles, None, |particle| particle.mass = m);
     }),
 );
-const GRAVITY: (&str, Change) = ("gravity", Change::Scene(|s, _, f| s.solver.gravity *= f));
-const WIND: (&str, Change) = (
-    "wind",
-    Change::Scene(|s, _, f| {
-        if let Some(wind) = &mut s.wind {
-            wind.strength *= f;
-        }
-    }),
-);
-const GRAVITATIONAL: (&str, Change) = (
-    "gravitational",
-    Change::Scene(|s, at, f| each(&mut s.gravitational, at, |pair| pair.g *= f)),
-);
-
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     sum / f64::max(count, 1.0)
@@ -102,68 +146,39 @@ fn differ(mut values: impl Iterator<Item = f64>) -> bool {
     values.any(|value| Some(value) != first)
 }
 
-/// Whether the scene has what a channel, or a known mistake, changes.
-pub(super) fn has(scene: &Scene, what: &str) -> bool {
-    match what {
-        "gravity" => scene.solver.gravity != 0.0,
-        "springs.stiffness" => scene.springs.iter().any(|s| s.stiffness != 0.0),
-        "springs.damping" => scene.springs.iter().any(|s| s.damping != 0.0),
-        "springs.rest_length" => scene.springs.iter().any(|s| s.rest_length != 0.0),
-        "springs.cubic" => scene.springs.iter().any(|s| s.cubic != 0.0),
-        "drag" => scene.particles.iter().any(|p| !p.fixed && p.drag != 0.0),
-        "wind" => scene.wind.as_ref().is_some_and(|w| w.strength != 0.0),
-        "gravitational" => !scene.gravitational.is_empty(),
-        _ => true,
-    }
-}
-
 /// The channels of the whole scene: its effects first, then mass, step and velocity.
 pub(super) fn of_scene(scene: &Scene) -> Vec<Channel> {
-    let velocity = |at| ("velocity", Change::Velocity(at));
-    let all = [
-        GRAVITY,
-        STIFFNESS,
-        DAMPING,
-        REST_LENGTH,
-        CUBIC,
-        DRAG,
-        WIND,
-        GRAVITATIONAL,
-        MASS,
+    let whole = |(what, change): (&'static str, Change)| Channel {
+        what,
+        member: None,
+        change,
+    };
+    let numbers = NUMBERS.iter().filter(|(_, has, _)| has(scene));
+    let numbers = numbers.map(|(what, _, set)| (*what, Change::Scene(*set)));
+    let others = [
         ("timestep", Change::Timestep),
-        velocity(ScaledAt::Start),
-        velocity(ScaledAt::Kick),
-        velocity(ScaledAt::End),
+        ("velocity", Change::Velocity(ScaledAt::Start)),
+        ("velocity", Change::Velocity(ScaledAt::Kick)),
+        ("velocity", Change::Velocity(ScaledAt::End)),
     ];
-    let mut there: Vec<(&str, Change)> = all
-        .into_iter()
-        .filter(|(what, _)| has(scene, what))
-        .collect();
+    let mut all: Vec<Channel> = numbers.chain(others).map(whole).collect();
     if differ(scene.springs.iter().map(|s| s.stiffness)) {
-        there.push(ONE_STIFFNESS);
+        all.push(whole(ONE_STIFFNESS));
     }
     if differ(scene.particles.iter().filter(|p| !p.fixed).map(|p| p.mass)) {
-        there.push(ONE_MASS);
+        all.push(whole(ONE_MASS));
     }
-    there
-        .into_iter()
-        .map(|(what, change)| Channel {
-            what,
-            member: None,
-            change,
-        })
-        .collect()
+    all
 }
 
 /// The channels of these particles, and of the springs that pull at them.
 pub(super) fn of_members(scene: &Scene, particles: &[usize]) -> Vec<Channel> {
     let mut channels = Vec::new();
-    let mut add = |(what, change): (&'static str, Change), member: usize, there: bool| {
-        let member = Some(member);
+    let mut add = |(what, _, set): Number, member: usize, there: bool| {
         channels.extend(there.then_some(Channel {
             what,
-            member,
-            change,
+            member: Some(member),
+            change: Change::Scene(set),
         }));
     };
     for (i, spring) in scene.springs.iter().enumerate() {
@@ -180,13 +195,18 @@ pub(super) fn of_members(scene: &Scene, particles: &[usize]) -> Vec<Channel> {
     channels
 }
 
-/// The forces of a scene, as some program computes them; None where the scene has nothing for it to get wrong.
-pub(super) type Build = fn(&Scene) -> Option<ParticleSystem>;
+/// The forces of a scene, as a program computes them that makes this mistake.
+fn forces(scene: &Scene, mistake: Option<&Mistake>) -> Option<ParticleSystem> {
+    match mistake {
+        Some(mistake) => mistake.forces(scene),
+        None => Some(ParticleSystem::new(scene)),
+    }
+}
 
-/// The scheme with these channels' factors, under the forces that `build` makes of the scene.
+/// The scheme with these channels' factors, made by a program that makes this mistake.
 pub(super) fn varied(
     scene: &Scene,
-    build: Build,
+    mistake: Option<&Mistake>,
     base: &Candidate,
     factors: &[(&Channel, f64)],
 ) -> Option<Candidate> {
@@ -207,13 +227,17 @@ pub(super) fn varied(
         altered |= matches!(channel.change, Change::Scene(_) | Change::Common(_));
     }
     if altered {
-        candidate = candidate.under(&build(&wrong)?);
+        candidate = candidate.under(&forces(&wrong, mistake)?);
     }
     Some(candidate)
 }
 
 /// The scheme with gravity, or the wind, along another axis, either way: with what deviates.
-pub(super) fn turned(scene: &Scene, build: Build, base: &Candidate) -> Vec<(Candidate, Deviation)> {
+pub(super) fn turned(
+    scene: &Scene,
+    mistake: Option<&Mistake>,
+    base: &Candidate,
+) -> Vec<(Candidate, Deviation)> {
     let mut all = Vec::new();
     for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
         for factor in [1.0, -1.0] {
@@ -228,7 +252,7 @@ pub(super) fn turned(scene: &Scene, build: Build, base: &Candidate) -> Vec<(Cand
                     sentence: format!("{what} is along {name}{other}"),
                 };
                 if wrong != *scene
-                    && let Some(system) = build(&wrong)
+                    && let Some(system) = forces(&wrong, mistake)
                 {
                     all.push((base.under(&system), deviation));
                 }
@@ -360,7 +384,7 @@ fn times(factor: f64) -> String {
         "half".to_owned()
     } else if factor == 2.0 {
         "twice".to_owned()
-    } else if factor < 0.0 || factor > 2.0 {
+    } else if !(0.0..=2.0).contains(&factor) {
         format!("{} times", digits(factor))
     } else {
         format!("{} of", digits(factor))

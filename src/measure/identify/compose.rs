@@ -5,13 +5,15 @@
 //! forces that are held over a step.
 
 use super::Identity;
-use super::candidate::{Candidate, Forces, Map, ScaledAt, Scaling, Scheme, Step};
+use super::candidate::{Candidate, Factor, Forces, Map, ScaledAt, Scaling, Scheme, Step};
 use super::replay::FIT;
 use crate::integrators::{
     self, Coefficients, DampingTreatment, Integrator, Method, Settings, Splitting, Stage,
     StepError, fixed,
 };
-use crate::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, System};
+use crate::physics::{
+    Dampers, ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, Sweep, System,
+};
 use crate::scene::Scene;
 use crate::trajectory::Rows;
 use std::sync::Arc;
@@ -43,7 +45,7 @@ const ORDERS: [(&str, &str, Around); 2] = [
 ];
 
 /// Treatments of drag beside the kick: the id's ending, what it does, and the factor by b/m and h.
-const TREATMENTS: [(&str, &str, fn(f64, f64) -> f64); 4] = [
+const TREATMENTS: [(&str, &str, Factor); 4] = [
     (
         "exponential_damping",
         "velocities are multiplied by exp(-h b / m) instead of a drag force",
@@ -145,13 +147,13 @@ const TREATED: [(&str, &str, &str, Map); 6] = [
         "velocity_verlet",
         "the second half kick takes the dampers at the predicted velocity v0 + h a0: of order 2, but stable for \
          smaller steps",
-        |f, h, _, s| verlet(&|v, a| plus(v, h, a), f, h, s),
+        |f, h, _, s| verlet(&|v, a, _| plus(v, h, a), f, h, s),
     ),
     (
         "velocity_verlet_old_velocity",
         "velocity_verlet",
         "the second half kick takes the dampers at the velocity from the start of the step, which is of order 1",
-        |f, h, _, s| verlet(&|v, _| v.to_vec(), f, h, s),
+        |f, h, _, s| verlet(&|v, _, _| v.to_vec(), f, h, s),
     ),
     (
         "position_verlet_explicit_damping",
@@ -236,7 +238,6 @@ pub fn ids() -> Vec<String> {
     let treated = TREATED.iter().map(|(id, ..)| *id);
     let maps = MAPS.iter().map(|(id, ..)| *id).chain(treated);
     let maps = maps.map(str::to_owned);
-    let stopped = STOPPED.map(|n| format!("stopped(implicit_euler)/{n}"));
     let orders = ORDERS
         .iter()
         .flat_map(|(id, ..)| explicit().map(move |method| format!("{id}({})", method.id)));
@@ -244,11 +245,11 @@ pub fn ids() -> Vec<String> {
         .iter()
         .flat_map(|(id, ..)| explicit().map(move |method| format!("{}+{id}", method.id)));
     let single = [
+        "stopped(implicit_euler)",
         "symplectic_euler+implicit_damping",
         "forces_held(symplectic_euler)",
     ];
     let mut ids: Vec<String> = maps
-        .chain(stopped)
         .chain(single.map(str::to_owned))
         .chain(orders)
         .chain(damped)
@@ -495,16 +496,11 @@ fn beeman(
 }
 
 /// x0 + h v0 + h²/2 a0, and the mean of a0 and the force there at a velocity from v0 and a0.
-fn verlet(
-    predict: &dyn Fn(&[f64], &[f64]) -> Vec<f64>,
-    f: &dyn System,
-    h: f64,
-    s: &mut State,
-) -> Stepped {
+fn verlet(predict: Predict, f: &dyn System, h: f64, s: &mut State) -> Stepped {
     let a = acceleration(f, s.t, &s.x, &s.v);
     let half = plus(&s.v, 0.5 * h, &a);
     let x = plus(&s.x, h, &half);
-    let next = acceleration(f, s.t + h, &x, &predict(&s.v, &a));
+    let next = acceleration(f, s.t + h, &x, &predict(&s.v, &a, &a));
     finish(s, h, x, plus(&half, 0.5 * h, &next))
 }
 
@@ -616,6 +612,14 @@ impl System for Altered<'_> {
         }
     }
 
+    fn dampers(&self) -> Dampers {
+        self.inner.dampers()
+    }
+
+    fn sweep(&self, sweep: &mut Sweep) {
+        self.inner.sweep(sweep);
+    }
+
     fn potential(&self, _t: f64, _x: &[f64]) -> f64 {
         0.0
     }
@@ -669,6 +673,14 @@ impl System for Rounded<'_> {
 
     fn kinds(&self) -> ForceKinds {
         self.inner.kinds()
+    }
+
+    fn dampers(&self) -> Dampers {
+        self.inner.dampers()
+    }
+
+    fn sweep(&self, sweep: &mut Sweep) {
+        self.inner.sweep(sweep);
     }
 
     fn damping(&self, t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {

@@ -2,7 +2,7 @@
 //! has wrong, fitted through one-step replays.
 
 use super::candidate::Candidate;
-use super::channels::{self, Build, Channel};
+use super::channels::{self, Channel};
 use super::compose::{composed, treated};
 use super::mistakes::{self, MISTAKES, Mistake, Wrong};
 use super::race::{Race, defects_of_all, quantile};
@@ -11,7 +11,6 @@ use super::result::{Deviation, Explained, Undecided};
 use super::transition::{Transition, spread};
 use super::{Found, Identity, Question, median_relative};
 use crate::integrators::fixed;
-use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -57,8 +56,7 @@ const LEFT: f64 = 0.05;
 pub(super) fn of_none(question: &Question, race: &Race, all: &[Transition]) -> Found {
     if question.hint.is_some() {
         // An engine whose scheme is known is held to that alone.
-        let own = race.entries.first().map(|entry| entry.candidate.clone());
-        let own: Vec<Candidate> = own.into_iter().collect();
+        let own: Vec<Candidate> = super::expected(question).into_iter().collect();
         return near(question, race, all, &own).unwrap_or_else(|| unexplained(race, all));
     }
     let fitted = fitted(question, race);
@@ -134,11 +132,11 @@ fn unexplained(race: &Race, all: &[Transition]) -> Found {
     }
 }
 
-/// A scheme that deviations are looked for in, and the forces it is meant to have.
+/// A scheme that deviations are looked for in.
+#[derive(Clone)]
 struct Base {
     scheme: Candidate,
-    build: Build,
-    /// What the forces are that are not the scene's.
+    /// What its forces are, where they are not the scene's own.
     mistake: Option<&'static Mistake>,
 }
 
@@ -150,16 +148,12 @@ struct Group {
     members: bool,
 }
 
-/// The scene's own forces.
-const OWN: Build = |scene| Some(ParticleSystem::new(scene));
-
 /// The simplest schemes first: explicit methods, implicit ones, composed ones and substeps, and methods under
 /// forces that are a known mistake.
 fn groups(question: &Question, race: &Race) -> Vec<Group> {
     let (scene, system) = (question.scene, question.system);
     let own = |scheme| Base {
         scheme,
-        build: OWN,
         mistake: None,
     };
     let plain = |n: u32| fixed().iter().map(move |m| Candidate::method(system, m, n));
@@ -170,13 +164,12 @@ fn groups(question: &Question, race: &Race) -> Vec<Group> {
     let usual = |c: &&Candidate| USUAL.contains(&c.id.as_str());
     let mut wrong = Vec::new();
     for mistake in MISTAKES {
-        let Wrong::Physics(build) = mistake.wrong else {
-            continue;
-        };
-        if let Some(system) = build(scene) {
+        let wrong_scene = |scene: &Scene| mistake.forces(scene);
+        if let (Wrong::Physics(_) | Wrong::Scaled, Some(system)) =
+            (&mistake.wrong, wrong_scene(scene))
+        {
             wrong.extend(explicit.iter().filter(usual).map(|scheme| Base {
                 scheme: scheme.under(&system),
-                build,
                 mistake: Some(mistake),
             }));
         }
@@ -469,11 +462,7 @@ impl<'a> Model<'a> {
         particles.sort_by(|&a, &b| off[b].total_cmp(&off[a]));
         particles.truncate(SUSPECTS);
         let members = channels::of_members(scene, &particles);
-        let base = Base {
-            scheme: self.base.scheme.clone(),
-            ..self.base
-        };
-        let model = Model::new(self.question, race, base, &members)?;
+        let model = Model::new(self.question, race, self.base.clone(), &members)?;
         model.fits(1).into_iter().find(|fit| fit.worst <= FIT)
     }
 
@@ -482,8 +471,8 @@ impl<'a> Model<'a> {
             .iter()
             .map(|&(k, factor)| (self.channels[k], factor));
         let factors: Vec<(&Channel, f64)> = factors.collect();
-        let Base { scheme, build, .. } = &self.base;
-        channels::varied(self.question.scene, *build, scheme, &factors)
+        let Base { scheme, mistake } = &self.base;
+        channels::varied(self.question.scene, *mistake, scheme, &factors)
     }
 
     fn residuals_at(&self, factors: &[(usize, f64)]) -> Option<DVector<f64>> {
@@ -530,7 +519,8 @@ impl<'a> Model<'a> {
         }
         let mut fits: Vec<Fit> = sets.iter().filter_map(|(_, set)| self.fit(set)).collect();
         if size == 1 {
-            let turned = channels::turned(self.question.scene, self.base.build, &self.base.scheme);
+            let turned =
+                channels::turned(self.question.scene, self.base.mistake, &self.base.scheme);
             fits.extend(turned.into_iter().filter_map(|(candidate, deviation)| {
                 let residuals = self.residuals_of(&candidate)?;
                 Some(self.result(candidate, vec![deviation], &residuals))

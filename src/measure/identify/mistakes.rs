@@ -13,6 +13,7 @@ mod springs;
 pub use rows::MISTAKES;
 
 use super::candidate::{Candidate, Forces, Map, Scheme};
+use super::channels;
 use super::compose::treated;
 use crate::integrators;
 use crate::physics::ParticleSystem;
@@ -40,6 +41,8 @@ pub enum Wrong {
         /// Whether it uses the state one step before.
         remembers: bool,
     },
+    /// Numbers of the scene, in any method, as the row's deviations say.
+    Scaled,
     /// The forces or masses, in any method. None where the scene gives it nothing to get wrong.
     Physics(fn(&Scene) -> Option<ParticleSystem>),
     /// The length of the step, in any method: this many h.
@@ -52,13 +55,12 @@ pub fn mistakes(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
     let steps = MISTAKES.iter().filter_map(|m| m.as_step(system));
     let mut candidates: Vec<Candidate> = steps.collect();
     for mistake in MISTAKES {
-        let (wrong, length) = match mistake.wrong {
-            Wrong::Step { .. } => continue,
-            Wrong::Physics(build) => match build(scene) {
-                Some(wrong) => (wrong, 1.0),
-                None => continue,
-            },
-            Wrong::Length(factor) => (system.clone(), factor),
+        let length = match mistake.wrong {
+            Wrong::Length(factor) => factor,
+            _ => 1.0,
+        };
+        let Some(wrong) = mistake.forces(scene) else {
+            continue;
         };
         let methods = integrators::fixed().iter();
         let methods = methods.map(|method| Candidate::method(&wrong, method, 1));
@@ -78,6 +80,19 @@ pub fn mistake(id: &str) -> Option<&'static Mistake> {
 }
 
 impl Mistake {
+    /// The forces that it computes, in any method; None where the scene gives it nothing to get wrong, and for a
+    /// step that is wrong itself.
+    pub(super) fn forces(&self, scene: &Scene) -> Option<ParticleSystem> {
+        match self.wrong {
+            Wrong::Step { .. } => None,
+            Wrong::Scaled => {
+                channels::scaled(scene, self.deviates).map(|s| ParticleSystem::new(&s))
+            }
+            Wrong::Physics(build) => build(scene),
+            Wrong::Length(_) => Some(ParticleSystem::new(scene)),
+        }
+    }
+
     /// The candidate of a wrong step, where it differs from the method it was meant to be.
     pub(super) fn as_step(&self, system: &ParticleSystem) -> Option<Candidate> {
         match self.wrong {

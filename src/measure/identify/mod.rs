@@ -22,7 +22,7 @@ mod same;
 mod transition;
 mod velocity;
 
-pub use candidate::{Candidate, Forces, Map, Replayer, ScaledAt, Scaling, Scheme, Step};
+pub use candidate::{Candidate, Factor, Forces, Map, Replayer, ScaledAt, Scaling, Scheme, Step};
 pub use compose::{Around, OneStep, composed, ids as composed_ids};
 
 pub use explain::TRUTH;

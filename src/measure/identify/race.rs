@@ -9,9 +9,9 @@ use rayon::prelude::*;
 /// Transitions one replayer takes: few enough that threads share the work, many enough that its
 /// scratch memory pays.
 const CHUNK: usize = 64;
-/// Replays of a transition that a defect takes: the step itself, and once more with every number off by its
+/// Replays of a transition that a defect takes, about: the step itself, and a few more with every number off by its
 /// rounding.
-const REPLAYS: u64 = 2;
+const REPLAYS: u64 = 4;
 /// The fraction of transitions whose defects show how large a candidate's are.
 const TYPICAL: f64 = 0.9;
 /// A candidate whose typical defect is beyond this, and so many times that of another, fits by its tolerance alone.
@@ -100,11 +100,18 @@ impl Race<'_> {
                 continue;
             }
             let effort = self.effort(&candidate, self.probes);
-            if effort > self.budget {
+            // The first is what is expected, and tried whatever it costs.
+            // No single one may take what many could.
+            let most = if group.is_some() {
+                self.budget / 20
+            } else {
+                self.budget
+            };
+            if effort > most && !(self.entries.is_empty() && tried.is_empty()) {
                 left_out.push(group.map_or_else(|| candidate.label(), str::to_owned));
                 continue;
             }
-            self.budget -= effort;
+            self.budget = self.budget.saturating_sub(effort);
             tried.push(candidate);
         }
         left_out.dedup();
@@ -214,12 +221,18 @@ impl Race<'_> {
                 .iter()
                 .map(|&i| self.effort(&self.entries[i].candidate, &stretches));
             let effort = effort.fold(0, u64::saturating_add);
-            if class.len() < 2 || stretches.len() < 2 || effort > self.budget {
+            if class.len() < 2 || stretches.len() < 2 || effort > self.budget / 4 {
                 break;
             }
             let run = |&i: &usize| defects(self.replay, &self.entries[i].candidate, &stretches);
             let defects: Vec<Vec<Defect>> = class.par_iter().map(run).collect();
-            let fits = |defects: &Vec<Defect>| defects.iter().filter(|d| d.fits()).count();
+            // The unit follows rounding that goes either way from step to step. Where a motion repeats itself it may
+            // always push the same way, and add up by so much more.
+            let explained = FIT * (apart as f64).sqrt();
+            let fits = |defects: &Vec<Defect>| {
+                let explained = defects.iter().filter(|d| d.units <= explained);
+                explained.count()
+            };
             let most = defects.iter().map(fits).max().unwrap_or(0);
             if most == 0 {
                 break;

@@ -200,7 +200,7 @@ impl<'a> Replay<'a> {
                 let moved: Vec<f64> = self.moved(transition).collect();
                 let motion = largest_ratio(&moved, &units);
                 let digits = self.digits(transition);
-                if defect > motion && largest_ratio(&off, &digits) > FIT {
+                if defect <= FIT && defect > motion && largest_ratio(&off, &digits) > FIT {
                     // Rounding would explain anything here.
                     return Ok(Defect::IMPOSSIBLE);
                 }

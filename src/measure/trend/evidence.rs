@@ -19,7 +19,7 @@ pub struct Evidence {
 }
 
 /// Fewer moves than this can all point the same way by chance: 2 in 2^12.
-const ONE_WAY_SAMPLES: usize = 13;
+pub const ONE_WAY_SAMPLES: usize = 13;
 
 /// The largest rise against the largest fall, where one dwarfs the other. A Brownian path rises by an
 /// exponential multiple of `a` before it falls by `a` (Taylor 1975), and a time change turns every

@@ -1,5 +1,5 @@
-//! The terminal's report: the scene, the facts about it, the verb's own part, the notes on single engines,
-//! and the checks of the harness. No line exceeds [`WIDTH`] columns.
+//! The terminal's report: the scene, the verdict, the verb's own part, the first notes on single engines,
+//! the checks of the harness, and facts about the scene. No line exceeds [`WIDTH`] columns.
 
 mod fit;
 mod paint;
@@ -12,24 +12,27 @@ use super::{Note, View, verdict};
 use crate::measure::{Check, CheckStatus};
 use paint::paint;
 
+/// The most remarks the terminal shows.
+const MAX_NOTES: usize = 5;
+
 /// The most visible columns of a line.
 pub const WIDTH: usize = 100;
 
-/// The report with ANSI colours, which the caller's stream strips where they are not wanted. Ends
-/// with the verdict and a newline.
+/// The report with ANSI colours, which the caller's stream strips where they are not wanted: the
+/// verdict below the scene's name, then the verb's own part. Ends with a newline.
 pub fn render(view: View) -> String {
     let verdict = wrap(&verdict::within(&view, WIDTH), WIDTH, "");
+    let verdict = verdict.iter().map(|line| mark(Tone::Strong, line));
     let mut lines = scene(&view);
-    let facts = view.facts.into_iter();
-    lines.extend(labelled(
-        facts.map(|(label, text)| (label, one_line(&text))),
-    ));
-    lines.extend(view.lines);
+    lines.extend(after_blank_line(verdict.collect()));
+    let table = view.lines.into_iter().skip_while(String::is_empty);
+    lines.extend(after_blank_line(table.collect()));
     lines.extend(after_blank_line(notes(&view.notes)));
     lines.extend(after_blank_line(checks(&view.header.checks)));
     lines.extend(after_blank_line(labelled(view.last.into_iter())));
-    lines.push(String::new());
-    lines.extend(verdict.iter().map(|line| mark(Tone::Strong, line)));
+    let facts = view.facts.into_iter();
+    let facts = facts.map(|(label, text)| (label, one_line(&text)));
+    lines.extend(after_blank_line(labelled(facts)));
     paint(&(lines.join("\n") + "\n"))
 }
 
@@ -76,7 +79,13 @@ fn notes(notes: &[Note]) -> Vec<String> {
         };
         wrap(&format!("- {text}"), WIDTH, "  ")
     };
-    notes.iter().flat_map(note).collect()
+    let shown = notes.iter().take(MAX_NOTES);
+    let more = notes.len().saturating_sub(MAX_NOTES) as u64;
+    let more = (more > 0).then(|| {
+        let more = words::plural(more, "more remark");
+        format!("- {more} in the report, and with --format markdown")
+    });
+    shown.flat_map(note).chain(more).collect()
 }
 
 fn checks(checks: &[Check]) -> Vec<String> {

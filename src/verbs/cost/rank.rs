@@ -217,6 +217,7 @@ fn rank(curve: &CostCurve, error: f64) -> CostRank {
                 error_m: point.error_m.unwrap_or(error),
                 wall_median_s: point.wall_s.as_ref().map(|wall| wall.median),
                 force_evaluations: point.force_evaluations,
+                at_most: at == 0,
             });
         }
         Err(unreached) => {

@@ -51,6 +51,9 @@ pub struct CostReached {
     pub wall_median_s: Option<f64>,
     /// Null where the engine does not count them.
     pub force_evaluations: Option<u64>,
+    /// It is the coarsest setting tried: a coarser one may do, so the price is at most this.
+    #[serde(default)]
+    pub at_most: bool,
 }
 
 /// One engine's place for one target.

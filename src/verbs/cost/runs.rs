@@ -29,6 +29,9 @@ const STALLED: f64 = 0.7;
 /// Errors below this fraction of the largest stop falling because of rounding.
 const SMALL: f64 = 1e-2;
 
+/// The most settings tried that are coarser than the range.
+const MAX_COARSER: usize = 6;
+
 /// The most extra runs for each target.
 const MAX_ATTEMPTS: usize = 2;
 /// Two settings whose steps differ by less than this factor need none between them.
@@ -147,7 +150,13 @@ impl<'a> Setup<'a> {
         let mut curve = Curve::default();
         for setting in &sweep.settings {
             let left_out = !self.named && curve.is_spent();
-            if !left_out {
+            if let Some(reason) = sweep.too_long(setting) {
+                let none = (Samples::default(), Counts::default());
+                curve.insert(
+                    *setting,
+                    (point(setting, Status::Failed, Some(reason)), none.0, none.1),
+                );
+            } else if !left_out {
                 curve.insert(*setting, self.run(&sweep.solver, setting));
             }
             let last = curve.points.last();
@@ -156,6 +165,19 @@ impl<'a> Setup<'a> {
             self.session.progress(sweep.of_error(setting) + untimed);
         }
         let targets = if self.named { &[] } else { targets };
+        // The edge of the range is no answer: as long as the coarsest setting reaches a target, coarser
+        // ones are tried.
+        let loosest = targets.iter().copied().fold(0.0, f64::max);
+        for _ in 0..MAX_COARSER {
+            let edge = curve.settings.first();
+            let Some(setting) = edge.and_then(|edge| sweep.coarser(edge)) else {
+                break;
+            };
+            if reach(&curve.points, loosest) != Ok(0) {
+                break;
+            }
+            curve.insert(setting, self.run(&sweep.solver, &setting));
+        }
         for &target in targets {
             for _ in 0..MAX_ATTEMPTS {
                 let Some(setting) = curve.setting_near(target) else {

@@ -5,6 +5,7 @@ use super::CostChoice;
 use crate::integrators::Stable;
 use crate::measure::stability::{Effort, Limit, Linearised};
 use crate::physics::{ParticleSystem, System};
+use crate::report::words;
 use crate::scene::{Scene, limits};
 use crate::solvers::{Setting, Solver, SolverKind};
 
@@ -17,17 +18,63 @@ pub struct Sweep {
     pub settings: Vec<Setting>,
     /// Nominal nanoseconds a step.
     each: f64,
+    /// The part of the budget that is this solver's, nominal ns; None where the steps were given by name.
+    share: Option<f64>,
 }
 
 impl Sweep {
+    /// Why a setting is not run: it would take more than the solver's share of the budget. None for pairs,
+    /// which stop when theirs is used up.
+    pub fn too_long(&self, setting: &Setting) -> Option<String> {
+        let share = self.share.filter(|_| setting.tolerance().is_none())?;
+        let takes = (1.0 + TIMED_RUNS) * self.run(setting);
+        (takes > share).then(|| {
+            format!(
+                "not run: it would take about {}, and its share of the budget is {}",
+                words::seconds(1e-9 * takes),
+                words::seconds(1e-9 * share)
+            )
+        })
+    }
+
     /// Nominal microseconds of the run that finds the error.
     pub fn of_error(&self, setting: &Setting) -> u64 {
-        (1e-3 * self.run(setting)) as u64
+        match self.too_long(setting) {
+            Some(_) => 0,
+            None => (1e-3 * self.run(setting)) as u64,
+        }
     }
 
     /// Nominal microseconds of the runs that are timed.
     pub fn of_timing(&self, setting: &Setting) -> u64 {
-        (1e-3 * (TIMED_RUNS * self.run(setting)).max(MIN_TIMED_NS)) as u64
+        match self.too_long(setting) {
+            Some(_) => 0,
+            None => (1e-3 * (TIMED_RUNS * self.run(setting)).max(MIN_TIMED_NS)) as u64,
+        }
+    }
+
+    /// The setting one step coarser than this: twice the step, or ten times the tolerance; None beyond what
+    /// says anything about a motion.
+    pub fn coarser(&self, setting: &Setting) -> Option<Setting> {
+        match *setting {
+            Setting::Steps { timestep, steps } => {
+                let fewer = steps.div_ceil(2);
+                let duration = timestep * steps as f64;
+                (fewer < steps && fewer as f64 >= MIN_STEPS)
+                    .then(|| Setting::divided(duration, fewer))
+            }
+            Setting::Tolerance {
+                tolerance,
+                duration,
+                steps,
+                max_steps,
+            } => (tolerance < 1.0).then_some(Setting::Tolerance {
+                tolerance: 10.0 * tolerance,
+                duration,
+                steps,
+                max_steps,
+            }),
+        }
     }
 
     /// Nominal microseconds of all runs.
@@ -38,7 +85,11 @@ impl Sweep {
 
     /// Nominal nanoseconds of one run.
     fn run(&self, setting: &Setting) -> f64 {
-        self.each * setting.steps() as f64
+        let most = match setting {
+            Setting::Steps { .. } => u64::MAX,
+            Setting::Tolerance { max_steps, .. } => *max_steps,
+        };
+        self.each * setting.steps().min(most) as f64
     }
 }
 
@@ -66,6 +117,7 @@ pub fn plan(scene: &Scene, system: &ParticleSystem, choice: &CostChoice) -> Vec<
             solver: solver.clone(),
             settings,
             each,
+            share: timesteps.is_none().then_some(1e9 * budget),
         }
     };
     solvers.into_iter().map(sweep).collect()
@@ -158,6 +210,9 @@ fn spaced(
     let step = 1e-9 * each;
     let at_most = limits::STEPS.max(first);
     let settings = affordable(settings.max(2), first * step, budget_s);
+    if (1.0 + TIMED_RUNS) * first * step * least_runs(MIN_SETTINGS) > budget_s {
+        return few(duration, first, step, budget_s);
+    }
     let budget = budget_s - 1e-9 * MIN_TIMED_NS * settings as f64;
     // Runs grow by a factor r from one to the next: together they are r / (r - 1) times the finest.
     let finest = |ratio: f64| {
@@ -180,6 +235,22 @@ fn spaced(
     steps
         .into_iter()
         .map(|n| Setting::divided(duration, n))
+        .collect()
+}
+
+/// The settings of the least range that fit into the budget one after the other; the coarsest always is one,
+/// also where it alone does not.
+fn few(duration: f64, first: f64, step: f64, budget_s: f64) -> Vec<Setting> {
+    let ratio = MIN_RANGE.powf(1.0 / (MIN_SETTINGS - 1) as f64);
+    let mut left = budget_s;
+    let steps = (0..MIN_SETTINGS as i32).map(|k| (first * ratio.powi(k)).round());
+    let fits = |steps: &f64| {
+        left -= (1.0 + TIMED_RUNS) * steps * step;
+        *steps <= first || left >= 0.0
+    };
+    let steps = steps.take_while(fits);
+    steps
+        .map(|n| Setting::divided(duration, n as u64))
         .collect()
 }
 

@@ -198,10 +198,9 @@ fn next(args: &Args, path: &Path, report: &Report) -> Option<String> {
     }
     let scene = &report.header.scene;
     let h = args.timestep.first().copied().unwrap_or(scene.timestep);
-    // Six digits are enough for a suggestion.
-    let steps: Vec<String> = [2.0 * h, h, 0.5 * h]
-        .iter()
-        .filter_map(|h| format!("{h:.5e}").parse::<f64>().ok())
+    // Expectations are about the own step, which stays exact.
+    let steps: Vec<String> = [output::rounded(2.0 * h), h, output::rounded(0.5 * h)]
+        .into_iter()
         .filter(|h| *h <= scene.duration)
         .map(|h| h.to_string())
         .collect();

@@ -16,7 +16,7 @@ const TRANSITIONS: usize = 16;
 const FEWEST: usize = 3;
 
 /// Steps times particles that may be replayed of a file, which is judged for its own sake: some seconds.
-const OF_FILE: u64 = 60_000_000;
+const OF_FILE: u64 = 20_000_000;
 
 /// Identifies the scheme of a run by replaying some of its steps; None where the scheme that it should follow takes
 /// more than the [budget](budget::of_replays) to replay.

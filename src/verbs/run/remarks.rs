@@ -3,7 +3,7 @@
 use super::plan::{Case, Plan};
 use crate::integrators::{EnergyLaw, Method, PerStep, Settings, Stable};
 use crate::measure::stability::{Effort, Limit, Linearised, Prediction};
-use crate::measure::{Energy, EnergyClass};
+use crate::measure::{Behaviour, Energy, EnergyClass};
 use crate::physics::{ParticleSystem, System};
 use crate::solvers::Status;
 use crate::verbs::run::Outcome;
@@ -15,9 +15,17 @@ pub fn remarks(
     outcome: &Outcome,
     linearised: Option<&Linearised>,
 ) -> Vec<String> {
-    let class = outcome.energy.as_ref().and_then(|energy| energy.class);
-    let calm = outcome.status == Status::Completed && outcome.energy.as_ref().is_some_and(is_calm);
-    let warning = linearised.and_then(|linearised| step_warning(linearised, case, calm));
+    let energy = outcome.energy.as_ref();
+    // What is steady needs no explanation.
+    let steady = energy.and_then(Energy::behaviour) == Some(Behaviour::Steady);
+    let class = energy.and_then(|energy| energy.class).filter(|_| !steady);
+    let calm = outcome.status == Status::Completed && energy.is_some_and(is_calm);
+    let method = case.solver.as_method();
+    let prediction = linearised.zip(method);
+    let prediction = prediction.map(|(scene, method)| scene.predict(method, case.label.timestep));
+    let warning = prediction
+        .as_ref()
+        .and_then(|p| step_warning(p, case, calm));
     let mut remarks = Vec::new();
     match outcome.status {
         Status::Unsupported | Status::Failed => {
@@ -28,11 +36,18 @@ pub fn remarks(
             let time = outcome.stopped_at_s.unwrap_or(0.0);
             let damped = plan.system.kinds().depends_on_velocity();
             // The limit on this scene says more than the method's general facts.
-            let why = match (&warning, case.solver.as_method()) {
-                (None, Some(method)) => why_unstable(method, damped),
+            let limit = prediction.as_ref().map(|p| (&p.limit, p.error));
+            let why = match (&warning, method, limit) {
+                (None, Some(_), Some((Limit::At(limit), error))) => format!(
+                    "; the step is within the stability limit {} s of the scene at its start, \
+                     which the motion leaves",
+                    known(*limit, error)
+                ),
+                (None, Some(method), _) => why_unstable(method, damped),
                 _ => String::new(),
             };
-            remarks.push(format!("diverged at t = {time:.4} s, {cause}{why}"));
+            let time = short(time);
+            remarks.push(format!("diverged at t = {time} s, {cause}{why}"));
         }
         Status::Completed => {
             let lost = outcome.energy.as_ref().is_some_and(Energy::lost);
@@ -215,8 +230,10 @@ const CALM: f64 = 1.0;
 /// Whether a run shows itself stable: its energy neither rises nor is far off.
 fn is_calm(energy: &Energy) -> bool {
     let keeps = matches!(
-        energy.class,
-        Some(EnergyClass::Bounded | EnergyClass::Dissipating)
+        energy.behaviour(),
+        Some(
+            Behaviour::Steady | Behaviour::Bounded | Behaviour::FewSamples | Behaviour::Dissipating
+        )
     );
     keeps && energy.relative_error_max.is_some_and(|error| error <= CALM)
 }
@@ -224,20 +241,19 @@ fn is_calm(energy: &Energy) -> bool {
 /// The warning that a timestep exceeds the stability limit of its method on this scene; None where it is stable
 /// or the limit is unknown. Of a `calm` run, which stays stable, it only says where the linearised scene's limit
 /// is.
-fn step_warning(linearised: &Linearised, case: &Case, calm: bool) -> Option<String> {
+fn step_warning(prediction: &Prediction, case: &Case, calm: bool) -> Option<String> {
     let h = case.label.timestep;
-    let prediction = linearised.predict(case.solver.as_method()?, h);
     match prediction.limit {
         // Exactly at the limit nothing grows, and a timestep rounded to a few digits may be meant to lie there.
         Limit::At(limit) if h > limit * (1.0 + 1e-9) && calm => Some(format!(
             "this run stays stable, though its step is beyond the limit of the scene linearised about its start, \
              {} s{}",
             known(limit, prediction.error),
-            reason_in_brackets(&prediction)
+            reason_in_brackets(prediction)
         )),
-        Limit::At(limit) if h > limit * (1.0 + 1e-9) => Some(beyond_limit(h, limit, &prediction)),
+        Limit::At(limit) if h > limit * (1.0 + 1e-9) => Some(beyond_limit(h, limit, prediction)),
         Limit::Never | Limit::Unknown(_) if calm => None,
-        Limit::Never => never_stable(h, case.label.end(), &prediction),
+        Limit::Never => never_stable(h, case.label.end(), prediction),
         // The scene is too large to know all its modes, but one that grows is enough.
         Limit::Unknown(_) => {
             let growth = prediction.growth_per_s.filter(|rate| *rate > 0.0)?;

@@ -1,6 +1,7 @@
 //! What accuracy costs: laws of the sweep and its answers on counts.
 
 mod adaptive;
+mod edges;
 mod sweep;
 mod theory;
 

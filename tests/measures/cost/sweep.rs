@@ -202,18 +202,23 @@ fn below_the_truths_own_bar_nobody_reaches_anything() {
 }
 
 #[test]
-fn a_budget_too_small_tries_no_more_settings_than_a_slope_needs() {
+fn a_budget_too_small_tries_no_more_settings_than_it_holds() {
     let scene = shipped("hard/chain_20.yml");
     let method = integrators::find("implicit_euler").expect("a method");
-    let steps = |settings: usize, budget_s: f64| {
+    let plan = |settings: usize, budget_s: f64| {
         let mut choice = choice(vec![method]);
         (choice.settings, choice.budget_s) = (settings, budget_s);
-        CostPlan::new(&scene, &choice).estimate()[0].label.steps
+        let plan = CostPlan::new(&scene, &choice);
+        (plan.estimate()[0].label.steps, plan.work())
     };
-    // The least range in three settings: 1, 2 and 4 times the coarsest run.
-    let least = steps(3, 1e-3);
-    assert_eq!(least % 7, 0);
-    assert_eq!(steps(12, 1e-3), least);
-    // Twelve over that range are 26 times the coarsest: what a sweep that looks at no share plans.
-    assert!(steps(12, 1e3) > 26 * least / 7);
+    // The coarsest run has eight steps, the fewest there are; it stands alone, and is not run.
+    assert_eq!(plan(12, 1e-6), (8, 0));
+    assert_eq!(plan(3, 1e-6), (8, 0));
+    // Twelve settings over the least range are 26 times the coarsest.
+    assert!(plan(12, 1e3).0 > 26 * 8);
+    // Whatever the budget, the runs stay within it; a timing takes 12 ms at least.
+    for budget in [1e-3, 1e-2, 0.1, 1.0] {
+        let seconds = 1e-6 * plan(12, budget).1 as f64;
+        assert!(seconds <= budget + 0.012 * 12.0, "{budget}: {seconds} s");
+    }
 }

@@ -8,6 +8,7 @@ mod positions;
 mod rapier;
 mod scenes;
 mod strangers;
+mod textbook;
 
 use springcheck::integrators::{self, Settings};
 use springcheck::measure::identify::{Found, Identity, Question, identify};

@@ -52,6 +52,19 @@ fn its_free_fall_is_symplectic_euler_in_four_substeps() {
     assert!(identity.defect <= 1.0, "{identity:?}");
 }
 
+/// The law holds however many fall.
+#[test]
+fn forty_bodies_fall_as_one() {
+    let text = include_str!("../../program/cases/fall_40.yml");
+    let scene = crate::testkit::scenes::parsed(text);
+    let identity = of(&engine_row("rapier"), &scene);
+    assert_eq!(
+        (identity.method.as_str(), identity.substeps),
+        ("symplectic_euler", 4)
+    );
+    assert_eq!(identity.undecided, None, "{identity:?}");
+}
+
 /// On one spring in line, which is linear and does not turn, that is implicit Euler.
 #[test]
 fn its_joint_in_line_is_implicit_euler_in_four_substeps() {

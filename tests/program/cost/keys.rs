@@ -2,13 +2,14 @@
 
 use super::*;
 
-const REACHED: [&str; 6] = [
+const REACHED: [&str; 7] = [
     "engine",
     "timestep",
     "tolerance",
     "error_m",
     "wall_median_s",
     "force_evaluations",
+    "at_most",
 ];
 
 /// Exactly the contract's keys, and null only where it allows it.

@@ -382,3 +382,41 @@ fn find(folder: &Path, name: &str) -> PathBuf {
     }
     panic!("no {name}");
 }
+
+/// A pendulum in the plane of y and z, as a program in two dimensions writes it, and without its last line
+/// end, cut inside its last number.
+#[test]
+fn data_of_a_plane_needs_the_flag_and_half_a_number_is_left_out() {
+    let scene = "scenes/pa1/scene05.yml";
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = word(folder.path());
+    let run = ["run", scene, "--duration", "0.1", "--integrators", "rk4"];
+    let save = ["--engines", "none", "--save", "csv", "--output", out];
+    assert_eq!(output(&[&run[..], &save].concat()).0, 0);
+    let saved = folder.path().join("pa1/scene05/rk4@0.0005.csv");
+    // t,id,x,y,z,vx,vy,vz
+    let flat = |line: &str| {
+        let fields: Vec<&str> = line.split(',').collect();
+        [0, 1, 3, 4, 6, 7].map(|at| fields[at]).join(",")
+    };
+    let text = std::fs::read_to_string(saved).expect("a trajectory");
+    let text: Vec<String> = text.lines().map(flat).collect();
+    let text = text.join("\n") + "\n";
+    let file = folder.path().join("flat.csv");
+    let compare = |text: &str, more: &[&str]| {
+        std::fs::write(&file, text).expect("written");
+        let args = ["compare", word(&file), "--scene", scene, "--format", "json"];
+        output(&[&args, more].concat())
+    };
+    let (code, report, _) = compare(&text, &["--axes", "yz"]);
+    assert!(code == 0 && report.contains("\"rk4\""), "{report}");
+    let (code, _, error) = compare(&text, &[]);
+    assert!(code == 2 && error.contains("--axes"), "{error}");
+    let (code, _, error) = compare(&text, &["--axes", "xy"]);
+    assert!(code == 2 && error.contains("along z"), "{error}");
+    let (code, report, _) = compare(&text[..text.len() - 9], &["--axes", "yz"]);
+    assert!(
+        code == 0 && report.contains("its last row is left out"),
+        "{report}"
+    );
+}

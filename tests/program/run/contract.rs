@@ -67,6 +67,7 @@ fn the_json_has_exactly_the_contracts_keys() {
                 "drift_per_s",
                 "drift_per_s_ci",
                 "fluctuation",
+                "samples",
                 "class",
                 "kinetic_final_j",
                 "potential_final_j",

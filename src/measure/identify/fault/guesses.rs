@@ -1,7 +1,7 @@
 //! What may have gone wrong in a step: changes without free numbers, each tried as it stands.
 
 use super::super::candidate::Candidate;
-use super::super::mistakes::{MISTAKES, Wrong};
+use super::super::mistakes::{MISTAKES, Mistake, Wrong};
 use super::spot::Spot;
 use super::words::{rows_lost, spring_name};
 use crate::integrators::fixed;
@@ -140,14 +140,13 @@ fn rows(spot: &Spot) -> Vec<Guess> {
 /// The mistakes of the registry, made here.
 fn mistakes(spot: &Spot) -> Vec<Guess> {
     let (scene, followed) = (spot.question.scene, spot.followed);
-    let wrong = |wrong: &Wrong| match wrong {
-        Wrong::Physics(build) => build(scene).map(|system| followed.under(&system)),
-        Wrong::Length(factor) => Some(followed.stretched(*factor)),
-        Wrong::Step { .. } => None,
+    let wrong = |mistake: &Mistake| match mistake.wrong {
+        Wrong::Length(factor) => Some(followed.stretched(factor)),
+        _ => mistake.forces(scene).map(|system| followed.under(&system)),
     };
     MISTAKES
         .iter()
-        .filter_map(|m| Some(scheme(m.says, wrong(&m.wrong)?)))
+        .filter_map(|m| Some(scheme(m.says, wrong(m)?)))
         .collect()
 }
 

@@ -13,23 +13,6 @@ fn changed(scene: &Scene, there: bool, change: impl FnOnce(&mut Scene)) -> Optio
     })
 }
 
-/// Gravity times `factor`.
-fn gravity(scene: &Scene, factor: f64) -> Option<ParticleSystem> {
-    changed(scene, falls(scene), |wrong| wrong.solver.gravity *= factor)
-}
-
-pub(super) fn gravity_forgotten(scene: &Scene) -> Option<ParticleSystem> {
-    gravity(scene, 0.0)
-}
-
-pub(super) fn gravity_twice(scene: &Scene) -> Option<ParticleSystem> {
-    gravity(scene, 2.0)
-}
-
-pub(super) fn gravity_upward(scene: &Scene) -> Option<ParticleSystem> {
-    gravity(scene, -1.0)
-}
-
 /// The same g newtons on every particle: what a wind along `up` would do.
 pub(super) fn gravity_without_mass(scene: &Scene) -> Option<ParticleSystem> {
     changed(scene, falls(scene) && weighs(scene), |wrong| {
@@ -46,27 +29,6 @@ pub(super) fn gravity_without_mass(scene: &Scene) -> Option<ParticleSystem> {
     })
 }
 
-pub(super) fn damping_sign(scene: &Scene) -> Option<ParticleSystem> {
-    damping(scene, -1.0)
-}
-
-pub(super) fn damping_forgotten(scene: &Scene) -> Option<ParticleSystem> {
-    damping(scene, 0.0)
-}
-
-/// Dampers and drag times `factor`.
-fn damping(scene: &Scene, factor: f64) -> Option<ParticleSystem> {
-    let dragged = scene.particles.iter().any(|p| !p.fixed && p.drag != 0.0);
-    changed(scene, dragged || has_dampers(scene), |wrong| {
-        for spring in &mut wrong.springs {
-            spring.damping *= factor;
-        }
-        for particle in &mut wrong.particles {
-            particle.drag *= factor;
-        }
-    })
-}
-
 pub(super) fn damping_isotropic(scene: &Scene) -> Option<ParticleSystem> {
     model(scene, DampingModel::Isotropic)
 }
@@ -78,34 +40,6 @@ pub(super) fn damping_axial(scene: &Scene) -> Option<ParticleSystem> {
 fn model(scene: &Scene, model: DampingModel) -> Option<ParticleSystem> {
     let there = has_dampers(scene) && scene.damping_model != model;
     changed(scene, there, |wrong| wrong.damping_model = model)
-}
-
-pub(super) fn rest_length_ignored(scene: &Scene) -> Option<ParticleSystem> {
-    let long = scene.springs.iter().any(|s| s.rest_length != 0.0);
-    changed(scene, long, |wrong| {
-        for spring in &mut wrong.springs {
-            spring.rest_length = 0.0;
-        }
-    })
-}
-
-pub(super) fn springs_twice(scene: &Scene) -> Option<ParticleSystem> {
-    springs(scene, 2.0)
-}
-
-pub(super) fn springs_forgotten(scene: &Scene) -> Option<ParticleSystem> {
-    springs(scene, 0.0)
-}
-
-/// Springs and their dampers times `factor`.
-fn springs(scene: &Scene, factor: f64) -> Option<ParticleSystem> {
-    changed(scene, !scene.springs.is_empty(), |wrong| {
-        for spring in &mut wrong.springs {
-            spring.stiffness *= factor;
-            spring.cubic *= factor;
-            spring.damping *= factor;
-        }
-    })
 }
 
 /// Forces undivided, but gravity the acceleration it is.

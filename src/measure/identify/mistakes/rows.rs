@@ -34,6 +34,21 @@ const fn late(id: &'static str, meant: &'static str, map: Map, says: &'static st
     }
 }
 
+/// Numbers of the scene that are wrong by a factor, in any method.
+const fn scaled(
+    id: &'static str,
+    deviates: &'static [(&'static str, f64)],
+    says: &'static str,
+) -> Mistake {
+    let wrong = Wrong::Scaled;
+    Mistake {
+        id,
+        says,
+        wrong,
+        deviates,
+    }
+}
+
 /// Wrong forces or masses in any method, and the part of the scene that they change.
 const fn physics(
     id: &'static str,
@@ -172,21 +187,18 @@ pub static MISTAKES: &[Mistake] = &[
         "the implicit equation is not solved: the force is evaluated once, at the state explicit \
          Euler predicts; iterate, or solve with Newton's method",
     ),
-    physics(
+    scaled(
         "gravity_forgotten",
-        physics::gravity_forgotten,
         &[("gravity", 0.0)],
         "gravity is missing: add m g to every free particle",
     ),
-    physics(
+    scaled(
         "gravity_twice",
-        physics::gravity_twice,
         &[("gravity", 2.0)],
         "gravity acts twice: add m g once per force evaluation, and no g to the velocity besides",
     ),
-    physics(
+    scaled(
         "gravity_upward",
-        physics::gravity_upward,
         &[("gravity", -1.0)],
         "gravity has the wrong sign: the scene's value is signed, along the axis `up`",
     ),
@@ -196,15 +208,13 @@ pub static MISTAKES: &[Mistake] = &[
         &[("gravity", 1.0)],
         "gravity is added as a force of g newtons whatever the mass: the force is m g",
     ),
-    physics(
+    scaled(
         "damping_sign",
-        physics::damping_sign,
         &[("springs.damping", -1.0), ("drag", -1.0)],
         "damping has the wrong sign, so it drives: a damper's force opposes the velocity",
     ),
-    physics(
+    scaled(
         "damping_forgotten",
-        physics::damping_forgotten,
         &[("springs.damping", 0.0), ("drag", 0.0)],
         "damping is missing: add the springs' dampers and the drag to the forces",
     ),
@@ -222,15 +232,13 @@ pub static MISTAKES: &[Mistake] = &[
         "the dampers resist only the relative velocity along the spring: the scene asks for all of \
          it (`damping_model: isotropic`)",
     ),
-    physics(
+    scaled(
         "rest_length_ignored",
-        physics::rest_length_ignored,
         &[("springs.rest_length", 0.0)],
         "springs pull as if their rest length were 0: the force is k (length - rest length)",
     ),
-    physics(
+    scaled(
         "springs_twice",
-        physics::springs_twice,
         &[
             ("springs.stiffness", 2.0),
             ("springs.cubic", 2.0),
@@ -239,9 +247,8 @@ pub static MISTAKES: &[Mistake] = &[
         "springs act twice, as when each is visited from both its ends: add the force of a spring \
          once to either end",
     ),
-    physics(
+    scaled(
         "springs_forgotten",
-        physics::springs_forgotten,
         &[
             ("springs.stiffness", 0.0),
             ("springs.cubic", 0.0),
@@ -249,10 +256,9 @@ pub static MISTAKES: &[Mistake] = &[
         ],
         "springs are missing: add the force of each to both its ends",
     ),
-    physics(
+    scaled(
         "spring_reversed",
-        springs::reversed,
-        &[("springs.stiffness", -1.0)],
+        &[("springs.stiffness", -1.0), ("springs.cubic", -1.0)],
         "springs push where they should pull: the force on the first end is k (length - rest length) along the \
          direction to the second",
     ),

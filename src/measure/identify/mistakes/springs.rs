@@ -49,15 +49,6 @@ fn system(scene: &Scene, law: Law) -> Option<ParticleSystem> {
     Some(ParticleSystem::of(inverse_mass.collect(), effects))
 }
 
-pub(super) fn reversed(scene: &Scene) -> Option<ParticleSystem> {
-    system(scene, |spring, model, ends| {
-        pair(add(
-            pull(spring, ends).map(|f| -f),
-            damper(spring, model, ends),
-        ))
-    })
-}
-
 pub(super) fn not_normalised(scene: &Scene) -> Option<ParticleSystem> {
     system(scene, |spring, model, ends| {
         let pull = pull(spring, ends).map(|f| f * ends.length);

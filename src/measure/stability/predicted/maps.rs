@@ -8,7 +8,7 @@ use super::regions::stiffest_binds;
 use super::spectrum::{Coverage, Mode, Spectrum};
 use super::stepmap::StepMap;
 use super::{Effort, Limit};
-use crate::integrators::{Amplification, DampingTreatment, Stage, bisect, map};
+use crate::integrators::{Amplification, DampingTreatment, Method, Stage, bisect, map};
 
 /// The prediction for a part at `h`, s; None where nothing of it could grow.
 pub(super) fn predict(
@@ -176,6 +176,15 @@ fn coupled(
         }
     };
     found.growing(map.and_then(|map| map.growth(amplification, h)), h)
+}
+
+/// Whether a composition sweeps over dampers in more than one kick, so that [`swept`] does not know its limit.
+pub(super) fn is_swept_several_times(method: &Method) -> bool {
+    let sweeps = matches!(
+        method.amplification,
+        Amplification::Composition(_, DampingTreatment::Sweeps)
+    );
+    sweeps && Definite::of(method.amplification).is_none()
 }
 
 /// The prediction where a composition sweeps over dampers that share particles.

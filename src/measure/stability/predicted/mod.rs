@@ -10,9 +10,10 @@ mod prediction;
 mod regions;
 mod spectrum;
 mod stepmap;
+mod swept;
 
 use super::Limit;
-use crate::integrators::{Amplification, DampingTreatment, Method};
+use crate::integrators::{Amplification, DampingTreatment, Method, fixed};
 use crate::physics::{Dampers, State, System};
 use crate::scene::{DampingModel, Scene};
 pub(super) use parts::shortest;
@@ -27,6 +28,9 @@ pub struct TightestLimit {
     pub t_s: f64,
 }
 
+/// Free coordinates up to which steps of a method that sweeps over dampers are taken one by one.
+const SWEPT: usize = 24;
+
 /// x'' = -K x - C v about a state, mass-normalised, as its parts that do not couple.
 #[derive(Debug, Clone)]
 pub struct Linearised {
@@ -37,6 +41,8 @@ pub struct Linearised {
     failed: Option<&'static str>,
     /// Whether some particle has two dampers, so that a sweep over them is not their exact flow.
     shared: bool,
+    /// Limits of methods that sweep over such dampers, by the methods' ids, where they were searched.
+    swept: Vec<(&'static str, Limit)>,
     effort: Effort,
 }
 
@@ -50,6 +56,7 @@ impl Linearised {
             excluded: Vec::new(),
             failed: None,
             shared: system.dampers() == Dampers::Shared,
+            swept: Vec::new(),
             effort,
         };
         let Some(parts) = parts::parts(system, state) else {
@@ -90,6 +97,16 @@ impl Linearised {
             linearised.excluded.push(format!(
                 "modes that rest or grow in truth among {uncounted} coordinates, too many to count"
             ));
+        }
+        let free = system.inverse_mass().iter().filter(|w| **w > 0.0).count();
+        if linearised.shared && unstable == 0 && free <= effort.map.min(SWEPT) {
+            let sweeps = fixed()
+                .iter()
+                .filter(|method| maps::is_swept_several_times(method));
+            let omega = linearised.omega_max();
+            linearised.swept = sweeps
+                .filter_map(|m| Some((m.id, swept::limit(system, state, m, omega?))))
+                .collect();
         }
         linearised
     }
@@ -133,6 +150,9 @@ impl Linearised {
                 }
                 other => maps::predict(other, part, timestep, &self.effort),
             });
+        if let Some((_, limit)) = self.swept.iter().find(|(id, _)| *id == method.id) {
+            return Prediction::only(limit.clone());
+        }
         let all = parts.chain(self.failed.map(Prediction::unknown));
         // All motion is free: nothing grows.
         let whole = all

@@ -86,7 +86,7 @@ impl Tail {
         // One digit before the point: an exponent may be missing.
         let exponent = match (widest.exponent, form.exponent) {
             (0, 0) => true,
-            (_, 0) => form.whole != 1 || number.trim_ascii().starts_with(b"0"),
+            (_, 0) => form.whole != 1 || number.iter().find(|b| b.is_ascii_digit()) == Some(&b'0'),
             (_, own) => own >= widest.exponent.max(2),
         };
         // Few digits that are wider than all above tell nothing.

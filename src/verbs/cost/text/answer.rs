@@ -1,7 +1,7 @@
 //! The answer for one target as a paragraph: which engine reaches it cheapest, how many times the cost of
 //! the others is, and which do not reach it.
 
-use super::{evaluations, metres, price, ratio, setting};
+use super::{at_most, evaluations, metres, price, ratio, setting};
 use crate::report::words::{self, grouped, listed};
 use crate::verbs::cost::{Cost, CostRank, CostReached, CostTarget};
 
@@ -91,9 +91,10 @@ fn fewest(target: &CostTarget, first: &CostReached) -> Option<String> {
     }
     let count = fewest.force_evaluations?;
     Some(format!(
-        "fewest evaluations: {} at {}, {}",
+        "fewest evaluations: {} at {}, {}{}",
         words::one_line(&fewest.engine),
         setting(fewest.timestep, fewest.tolerance),
+        at_most(fewest),
         evaluations(count)
     ))
 }
@@ -124,7 +125,10 @@ fn misses(ranks: &[CostRank], ranked: bool) -> String {
     }));
     let because = |at: usize, reason: &str| {
         let mut before = said.iter().take(at);
-        let number = before.find_map(|(known, _)| other_number(known, reason));
+        // The number of another sentence would not say what it counts.
+        let number = before
+            .find_map(|(known, _)| other_number(known, reason))
+            .filter(|_| reason.starts_with("nearest"));
         match number.map_or(reason.to_owned(), str::to_owned).as_str() {
             "" => String::new(),
             text => format!(" ({text})"),

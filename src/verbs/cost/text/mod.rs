@@ -102,7 +102,10 @@ fn table<'a>(report: &Report, cost: &'a Cost) -> Table<'a, CostCurve> {
 
 /// A target or a floor, at most two digits: `1e-6`, `2.5e-4`.
 pub fn metres(value: f64) -> String {
-    words::sci(value).replacen(".0e", "e", 1)
+    match value {
+        0.0 => "0".to_owned(),
+        _ => format!("{value:.1e}").replacen(".0e", "e", 1),
+    }
 }
 
 /// `h = 0.02 s`, or an adaptive pair's tolerance and mean step.
@@ -129,12 +132,19 @@ fn evaluations(count: u64) -> String {
 /// `0.10 ms (1,000 evaluations)`, or as much of it as is known.
 fn price(reached: &CostReached) -> String {
     let count = reached.force_evaluations.map(evaluations);
-    match (reached.wall_median_s, count) {
+    let paid = match (reached.wall_median_s, count) {
         (Some(wall), Some(count)) => format!("{} ({count})", words::seconds(wall)),
         (Some(wall), None) => words::seconds(wall),
         (None, Some(count)) => count,
-        (None, None) => "not timed".to_owned(),
-    }
+        (None, None) => return "not timed".to_owned(),
+    };
+    at_most(reached) + &paid
+}
+
+/// The words before a price that is the coarsest setting's.
+fn at_most(reached: &CostReached) -> String {
+    let words = if reached.at_most { "at most " } else { "" };
+    words.to_owned()
 }
 
 /// A ratio of costs, two digits: `1.3x`, `18x`, `6,200x`.

@@ -1,6 +1,6 @@
 //! The rankings and every setting, in Markdown.
 
-use super::{answer, metres, ratio, tried};
+use super::{answer, at_most, metres, ratio, tried};
 use crate::report::markdown::section;
 use crate::report::table::Table;
 use crate::report::words::{self, escape};
@@ -32,7 +32,9 @@ pub fn ranking(report: &Report, target: &CostTarget) -> String {
         rank.reached.as_ref().map(|r| words::sci(r.error_m))
     });
     table.markdown("time", |(_, rank)| {
-        rank.reached.as_ref()?.wall_median_s.map(words::seconds)
+        let reached = rank.reached.as_ref()?;
+        let time = words::seconds(reached.wall_median_s?);
+        Some(at_most(reached) + &time)
     });
     table.markdown("ratio", |(_, rank)| cost_ratio(rank));
     table.markdown("force evaluations", |(_, rank)| {

@@ -44,6 +44,15 @@ fn legend(cost: &Cost, left_out: &[String]) -> String {
     if any(&|curve| curve.points.iter().any(|point| point.tolerance.is_some())) {
         legend += " | tol: tolerance of an adaptive pair";
     }
+    let ranks = |target: &CostTarget| {
+        let ranks = target.ranking.iter().chain(&target.reference);
+        ranks
+            .filter_map(|rank| rank.reached.as_ref())
+            .any(|reached| reached.at_most)
+    };
+    if cost.targets.iter().any(ranks) {
+        legend += " | ≤: at the coarsest setting tried";
+    }
     let floored = |curve: &CostCurve| super::nearest(curve).is_some_and(|point| point.at_floor);
     if shown("smallest error (m)") && any(&floored) {
         legend += " | floor: not told from the truth";
@@ -70,6 +79,10 @@ pub fn cell(target: &CostTarget, curve: &CostCurve, timed: bool) -> (String, Opt
         (_, _, Some(count)) if timed => evaluations(count),
         (_, _, Some(count)) => words::count(count),
         _ => NOTHING.into(),
+    };
+    let paid = match reached.at_most {
+        true => format!("≤ {paid}"),
+        false => paid,
     };
     let setting = brief(reached.timestep, reached.tolerance);
     let leads = target.ranking.first().as_ref().is_some_and(of_curve);

@@ -63,7 +63,8 @@ fn cheapest(target: &CostTarget, leads: bool) -> Option<Clause> {
     };
     let timed = found.wall_median_s.map(words::seconds);
     let paid = timed.or(found.force_evaluations.map(super::evaluations));
-    let paid = paid.map_or(String::new(), |paid| format!(", {paid}"));
+    let at_most = super::at_most(found);
+    let paid = paid.map_or(String::new(), |paid| format!(", {at_most}{paid}"));
     let mut forms = vec![format!("{lead}{label}: {name} at {h}{paid}")];
     if !leads {
         forms.extend([format!("{lead}{label}: {name}"), String::new()]);

@@ -45,6 +45,7 @@ fn keys() -> Vec<OutcomeKey> {
         ("energy.relative_error_max", KeyKind::Number),
         ("energy.drift_per_s", KeyKind::Number),
         ("energy.fluctuation", KeyKind::Number),
+        ("energy.samples", KeyKind::Number),
         (
             "energy.class",
             word(&["bounded", "drifting", "dissipating", "growing"]),

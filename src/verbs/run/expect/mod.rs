@@ -61,7 +61,11 @@ pub fn check(scene: &Scene, report: &Report) -> Vec<Check> {
     let mut checks = Vec::new();
     for subject in subjects {
         let Some(outcome) = outcome(&subject.id) else {
-            let why = "did not run at the scene's own timestep";
+            let elsewhere = report.outcomes().iter().any(|o| o.engine == subject.id);
+            let why = match elsewhere {
+                true => "did not run at the scene's own timestep",
+                false => "did not run",
+            };
             checks.push(skipped(&subject.id, why.to_owned()));
             continue;
         };

@@ -22,7 +22,7 @@ pub fn sentence(outcome: &Outcome) -> Option<String> {
     let scheme = scheme(found, outcome.timestep);
     let text = match found.undecided {
         Some(Undecided::Near) if outcome.kind == SolverKind::Rapier => format!(
-            "step by step it is nearly {scheme}: its sweeps have not converged, and it is off by {}",
+            "its law is {scheme}, but its sweeps have not converged: a step is off by {}",
             share(found)
         ),
         Some(Undecided::Near) => format!(
@@ -47,6 +47,9 @@ fn share(found: &Identified) -> String {
     let relative = found.relative.unwrap_or(f64::NAN);
     if relative < 1e-6 {
         return format!("{} of what a step moves", words::short_sci(relative));
+    }
+    if relative > 2.0 {
+        return format!("{} times what a step moves", words::short(relative));
     }
     format!("{} % of what a step moves", words::short(100.0 * relative))
 }

@@ -3,7 +3,7 @@
 use crate::measure::Energy;
 use crate::report::EffectUse;
 use crate::report::table::Table;
-use crate::report::terminal::{clip, pad, width};
+use crate::report::terminal::clip;
 use crate::report::words::{self, escape};
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
@@ -68,22 +68,23 @@ pub fn effects(effects: &[EffectUse]) -> String {
     table.in_markdown()
 }
 
-/// The effects for the terminal, one line each.
-pub fn lines(effects: &[EffectUse]) -> Vec<String> {
+/// The effects for the terminal, one line each: label and text.
+pub fn lines(effects: &[EffectUse]) -> Vec<(&'static str, String)> {
     let ids = effects.iter().map(|effect| words::one_line(&effect.id));
-    let ids: Vec<String> = ids.collect();
-    let longest = ids.iter().map(|id| width(id)).max().unwrap_or(0).min(24);
     let lines = effects
         .iter()
         .zip(ids)
         .enumerate()
         .map(|(i, (effect, id))| {
             let label = if i == 0 { "effects" } else { "" };
-            let id = pad(&clip(&id, longest), longest);
-            let on = format!("on {}", words::count(effect.members as u64));
+            let id = clip(&id, 24);
+            let on = words::count(effect.members as u64);
             let evaluations = words::count(effect.evaluations);
             let cost = time_each(effect).map_or(String::new(), |time| format!(", {time} each"));
-            format!("{label:<7}  {id}  {on:<8}  {evaluations} evaluations{cost}")
+            (
+                label,
+                format!("{id} on {on}: {evaluations} evaluations{cost}"),
+            )
         });
     lines.collect()
 }

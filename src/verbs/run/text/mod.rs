@@ -11,7 +11,7 @@ pub use table::{engine, several_timesteps};
 use crate::report::markdown::{findings, opening, section};
 use crate::report::words::{self, escape, grouped, listed};
 use crate::report::{Note, View};
-use crate::solvers::Status;
+use crate::solvers::{SolverKind, Status};
 use crate::verbs::run::Outcome;
 use crate::verbs::{Body, Report};
 
@@ -19,9 +19,12 @@ const LEGEND: &str = "\
 ## How to read this
 
 - **Energy** is the balance B = E + dissipated - injected, so that damping and wind do not count as errors. The
-  *energy error* is the largest |B - B(0)| over the run, relative to the scene's energy scale S.
-- **Class** is the fitted trend of B set against its fluctuation: *bounded* (no trend to speak of), *drifting*,
-  *dissipating* or *growing* (the trend outweighs the fluctuation).
+  *energy error* is the largest |B - B(0)| over the run, in units of the scene's energy S: what it starts with
+  in motion and springs, or its largest kinetic energy, whichever is larger.
+- The **word** beside it is the fitted trend of B set against its fluctuation: *bounded* (no trend to speak of),
+  *drifting*, *dissipating* or *growing* (the trend outweighs the fluctuation). *Steady* is off by less than a
+  millionth of S, whatever its trend; *unsteady* by more than S without a trend; *few samples* are fewer than 13
+  instants, which show none.
 - **Deviation** is the largest distance of any particle from the same particle in the named rapier engine.
   It is not an error: rapier's spring joint is linearly implicit Euler at h = dt/n, which dissipates by design, so a
   good integrator departs from it. `rapier-forces` applies the scene's own forces to rapier's bodies and must
@@ -33,26 +36,48 @@ const LEGEND: &str = "\
 
 /// The parts that the terminal and the page show.
 pub fn view<'a>(report: &'a Report, outcomes: &[Outcome]) -> View<'a> {
-    let mut lines = Vec::new();
+    let mut facts = vec![("truth", words::truth(&report.header.truth))];
     // A comparison would count only the evaluations made to judge it.
     if let Body::Run { .. } = report.body {
-        lines.extend(ledger::lines(&report.header.scene.effects));
+        facts.extend(ledger::lines(&report.header.scene.effects));
     }
-    lines.push(String::new());
-    lines.extend(table::lines(report));
+    // The verdict of a comparison is the identity.
+    let said = |outcome: &Outcome, sentence: &String| {
+        matches!(report.body, Body::Compare { .. })
+            && identity::sentence(outcome).as_ref() == Some(sentence)
+    };
     let remarks = outcomes.iter().flat_map(|outcome| {
         let sentences = sentences(outcome).into_iter();
+        let sentences = sentences.filter(move |sentence| !said(outcome, sentence));
         sentences.map(move |sentence| (outcome, sentence))
     });
+    let mut remarks: Vec<_> = remarks.collect();
+    remarks.sort_by_key(|(outcome, sentence)| rank(report, outcome, sentence));
     let labels = ["fault"].into_iter().chain(std::iter::repeat(""));
     View {
         header: &report.header,
         timesteps: outcomes.iter().map(|outcome| outcome.timestep).collect(),
         clauses: verdict::clauses(report),
-        facts: vec![("truth", words::truth(&report.header.truth))],
-        lines,
-        notes: Note::of(remarks, |outcomes| subjects(report, outcomes, usize::MAX)),
+        facts,
+        lines: table::lines(report),
+        notes: Note::of(remarks.into_iter(), |outcomes| {
+            subjects(report, outcomes, usize::MAX)
+        }),
         last: labels.zip(identity::fault(report)).collect(),
+    }
+}
+
+/// The place of a remark: the terminal shows the first few.
+fn rank(report: &Report, outcome: &Outcome, sentence: &str) -> u8 {
+    let identity = identity::sentence(outcome).is_some_and(|identity| identity == sentence);
+    match outcome.status {
+        _ if report.header.is_own(&outcome.engine) => 0,
+        // What a row is step by step matters less than what it does.
+        _ if identity => 4,
+        // How rapier's joints differ is what surprises most.
+        Status::Completed if outcome.kind == SolverKind::Rapier => 1,
+        Status::Completed => 3,
+        _ => 2,
     }
 }
 

@@ -1,6 +1,6 @@
 //! The table of outcomes, in the terminal and in Markdown.
 
-use crate::measure::EnergyClass;
+use crate::measure::Behaviour;
 use crate::report::table::Table;
 use crate::report::terminal::{Tone, clip, pad};
 use crate::report::words::{self, NOTHING, escape};
@@ -33,9 +33,9 @@ fn table(report: &Report, fold: char) -> Table<'_, Outcome> {
         table.right("h (s)", "h (s)", 0, |o| words::short(o.timestep));
     }
     table.left("status", "status", status);
-    let classes = class_width(outcomes);
-    table.left("energy", "", |o| energy(o, classes));
-    table.markdown("energy", |o| o.energy.as_ref()?.class.map(words::id));
+    let words = word_width(outcomes);
+    table.left("energy", "", |o| energy(o, words));
+    table.markdown("energy", |o| behaviour(o).map(|b| b.word().to_owned()));
     table.markdown("energy error", |o| words::energy_error(o.energy.as_ref()?));
     for (rank, reference) in references(report).into_iter().enumerate() {
         let name = clip(&words::one_line(reference), 14);
@@ -67,25 +67,30 @@ fn status(outcome: &Outcome) -> (String, Option<Tone>) {
     (words::id(outcome.status), tone)
 }
 
-/// The width of the longest class word, so that the numbers line up.
-fn class_width(outcomes: &[Outcome]) -> usize {
-    let classes = outcomes.iter().filter_map(|o| o.energy.as_ref()?.class);
-    classes.map(|c| words::id(c).len()).max().unwrap_or(0)
+fn behaviour(outcome: &Outcome) -> Option<Behaviour> {
+    outcome.energy.as_ref()?.behaviour()
 }
 
-fn energy(outcome: &Outcome, classes: usize) -> (String, Option<Tone>) {
+/// The width of the longest word, so that the numbers line up.
+fn word_width(outcomes: &[Outcome]) -> usize {
+    let behaviours = outcomes.iter().filter_map(behaviour);
+    behaviours.map(|b| b.word().len()).max().unwrap_or(0)
+}
+
+fn energy(outcome: &Outcome, words: usize) -> (String, Option<Tone>) {
     let number = outcome.energy.as_ref().and_then(words::energy_error);
-    let Some(class) = outcome.energy.as_ref().and_then(|e| e.class) else {
+    let Some(behaviour) = behaviour(outcome) else {
         return (number.unwrap_or(NOTHING.into()), None);
     };
-    let tone = match class {
-        EnergyClass::Bounded => Tone::Good,
-        EnergyClass::Drifting => Tone::Warn,
-        EnergyClass::Growing => Tone::Bad,
-        EnergyClass::Dissipating => Tone::Cool,
+    let tone = match behaviour {
+        Behaviour::Steady | Behaviour::Bounded => Tone::Good,
+        Behaviour::FewSamples => Tone::Dim,
+        Behaviour::Drifting => Tone::Warn,
+        Behaviour::Growing | Behaviour::Unsteady => Tone::Bad,
+        Behaviour::Dissipating => Tone::Cool,
     };
-    let class = pad(&words::id(class), classes);
-    let text = format!("{class} {}", number.unwrap_or_default());
+    let word = pad(behaviour.word(), words);
+    let text = format!("{word} {}", number.unwrap_or_default());
     (text.trim_end().into(), Some(tone))
 }
 
@@ -101,10 +106,22 @@ fn error(report: &Report, outcome: &Outcome) -> Option<String> {
 
 fn legend(report: &Report) -> String {
     let scale = match report.header.scene.energy_scale_j {
-        Some(scale) => format!("over S = {} J", words::short(scale)),
+        Some(scale) => format!(
+            "in units of the scene's energy S = {} J",
+            words::short(scale)
+        ),
         None => "(this scene has no scale)".into(),
     };
     let mut text = format!("▸ own integrator | energy: largest error {scale}");
+    for (one, meaning) in [
+        (Behaviour::Steady, "off by less than a millionth of S"),
+        (Behaviour::Unsteady, "off by more than S, without a trend"),
+        (Behaviour::FewSamples, "too few to show a trend"),
+    ] {
+        if report.outcomes().iter().any(|o| behaviour(o) == Some(one)) {
+            text += &format!(" | {}: {meaning}", one.word());
+        }
+    }
     if report.outcomes().iter().any(|o| !o.deviation_m.is_empty()) {
         text += " | m from: largest distance of a particle";
     }

@@ -1,7 +1,7 @@
 //! The verdict of `run` and `compare`: how each engine behaved.
 
 use super::{identity, subjects};
-use crate::measure::{Check, CheckStatus, EnergyClass};
+use crate::measure::{Behaviour, Check, CheckStatus, Energy};
 use crate::report::verdict::{Clause, is_twin};
 use crate::report::words;
 use crate::solvers::Status;
@@ -35,15 +35,27 @@ fn own(report: &Report) -> Option<String> {
         return None;
     }
     let energy = first.energy.as_ref()?;
-    let does = match energy.class? {
-        EnergyClass::Bounded => "stays bounded",
-        EnergyClass::Drifting => "drifts in energy",
-        EnergyClass::Dissipating => "dissipates energy",
-        EnergyClass::Growing if energy.lost() => "has a growing energy balance",
-        EnergyClass::Growing => "gains energy",
+    let behaviour = energy.behaviour()?;
+    let does = match (behaviour, energy.relative_error_max) {
+        (Behaviour::Steady | Behaviour::Bounded, Some(error)) => {
+            format!("is off by at most {}", words::share(error))
+        }
+        (Behaviour::Unsteady, Some(error)) => {
+            format!("is off by up to {}", words::share(error))
+        }
+        (Behaviour::FewSamples, Some(error)) => format!(
+            "takes too few steps to show a trend, and is off by at most {}",
+            words::share(error)
+        ),
+        (Behaviour::Drifting, Some(error)) => format!("drifts by {}", words::share(error)),
+        (Behaviour::Dissipating, Some(error)) => format!("dissipates {}", words::share(error)),
+        (Behaviour::Growing, Some(error)) if energy.lost() => {
+            format!("has a balance that grows by {}", words::share(error))
+        }
+        (Behaviour::Growing, Some(error)) => format!("gains {}", words::share(error)),
+        // The scene has no S.
+        (_, None) => format!("has a {} energy", behaviour.word()),
     };
-    let error = energy.relative_error_max;
-    let error = error.map_or(String::new(), |e| format!(" ({})", words::sci(e)));
     let distance = first.position_error_m.as_ref();
     let distance = distance.map(|e| words::truth_error(e.max, &header.truth));
     let distance = match distance.as_deref() {
@@ -52,24 +64,26 @@ fn own(report: &Report) -> Option<String> {
         Some(error) => format!(", {error} m from the truth"),
     };
     let name = words::one_line(&first.engine);
-    Some(format!("{name} {does}{error}{distance}"))
+    Some(format!("{name} {does}{distance}"))
 }
 
 fn groups(report: &Report) -> Vec<Clause> {
     let ended = |s: Status| move |o: &Outcome| o.status == s;
-    let classed = |c: EnergyClass| {
+    let does = |these: &'static [Behaviour]| {
         move |o: &Outcome| {
-            o.status == Status::Completed && o.energy.as_ref().and_then(|e| e.class) == Some(c)
+            let behaviour = o.energy.as_ref().and_then(Energy::behaviour);
+            o.status == Status::Completed && behaviour.is_some_and(|b| these.contains(&b))
         }
     };
     [
         group(report, "diverged", ended(Status::Diverged)),
         group(report, "failed", ended(Status::Failed)),
-        group(report, "growing", classed(EnergyClass::Growing)),
-        group(report, "dissipating", classed(EnergyClass::Dissipating)),
-        group(report, "drifting", classed(EnergyClass::Drifting)),
+        group(report, "growing", does(&[Behaviour::Growing])),
+        group(report, "unsteady", does(&[Behaviour::Unsteady])),
+        group(report, "dissipating", does(&[Behaviour::Dissipating])),
+        group(report, "drifting", does(&[Behaviour::Drifting])),
         group(report, "unsupported", ended(Status::Unsupported)),
-        bounded(report, classed(EnergyClass::Bounded)),
+        bounded(report, does(&[Behaviour::Steady, Behaviour::Bounded])),
     ]
     .into_iter()
     .flatten()

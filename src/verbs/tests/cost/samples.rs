@@ -215,6 +215,7 @@ fn rank(curve: &CostCurve, target: f64) -> CostRank {
     CostRank {
         engine: curve.engine.clone(),
         reached: curve.points.get(from).map(|p| CostReached {
+            at_most: from == 0,
             engine: curve.engine.clone(),
             timestep: p.timestep,
             tolerance: p.tolerance,
