@@ -8,6 +8,7 @@ use crate::trajectory::{Recorder, SaveError, Unwatched};
 use crate::verbs::clock::spread;
 use crate::verbs::session::{Label, Session};
 use rayon::prelude::*;
+use std::cell::Cell;
 use std::time::Instant;
 
 /// Runs all engines in parallel and, at the same time, the external programs one after the other: these may
@@ -41,6 +42,13 @@ fn one(
     } = case.label;
     let each = case.step(plan.scene);
     let progress = |taken: u64| session.progress(taken.saturating_mul(each));
+    // A run that ends early has not reported all of its steps.
+    let reported = Cell::new(0);
+    let tick = |taken: u64| {
+        reported.set(reported.get() + taken);
+        progress(taken);
+    };
+    let rest = || progress(steps.saturating_sub(reported.replace(0)));
     let mut run = match case.start(plan) {
         Ok(run) => run,
         Err(unsupported) => {
@@ -52,7 +60,8 @@ fn one(
     let mut recorder = Recorder::new(steps, dim, timestep);
     let start = Instant::now();
     let coarse = limits.coarse();
-    let mut ended = run.finish(&coarse, &mut recorder, &progress);
+    let mut ended = run.finish(&coarse, &mut recorder, &tick);
+    rest();
     let wall = spread(vec![start.elapsed().as_secs_f64()]);
     if ended != Ended::Completed
         && let Ok(again) = case.start(plan)
@@ -65,8 +74,9 @@ fn one(
     if let Some(mut saver) = session.saver(&case.label)? {
         // The same run again writes the file: the bits are the same, and the timed run writes nothing.
         if let Ok(mut again) = case.start(plan) {
-            again.finish(limits, saver.as_mut(), &progress);
+            again.finish(limits, saver.as_mut(), &tick);
         }
+        rest();
         saver.finish()?;
     }
     let (status, reason, taken) = match ended {
@@ -81,7 +91,6 @@ fn one(
             (Status::Failed, Some(reason), step)
         }
     };
-    progress(steps.saturating_sub(taken));
     Ok(Record {
         status,
         reason,
