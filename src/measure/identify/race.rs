@@ -4,6 +4,7 @@ use super::candidate::Candidate;
 use super::replay::{Defect, FIT, Replay};
 use super::same::Comparison;
 use super::transition::{Transition, spread, stretches};
+use crate::trajectory::Precision;
 use rayon::prelude::*;
 
 /// Transitions one replayer takes: few enough that threads share the work, many enough that its
@@ -227,8 +228,9 @@ impl Race<'_> {
             let run = |&i: &usize| defects(self.replay, &self.entries[i].candidate, &stretches);
             let defects: Vec<Vec<Defect>> = class.par_iter().map(run).collect();
             // The unit follows rounding that goes either way from step to step. Where a motion repeats itself it may
-            // always push the same way, and add up by so much more.
-            let explained = FIT * (apart as f64).sqrt();
+            // always push the same way, and add up by so much more. The digits of coarser data enter once.
+            let doubles = self.replay.rows.precision == Precision::Double;
+            let explained = FIT * if doubles { (apart as f64).sqrt() } else { 1.0 };
             let fits = |defects: &Vec<Defect>| {
                 let explained = defects.iter().filter(|d| d.units <= explained);
                 explained.count()

@@ -3,7 +3,7 @@
 use super::*;
 use crate::testkit::{crossed, swinging_triangle};
 use springcheck::integrators::fixed;
-use springcheck::measure::identify::{TRUTH, Undecided};
+use springcheck::measure::identify::{FIT, TRUTH, Undecided};
 use springcheck::scene::DampingModel;
 
 fn rounded(mut rows: Rows, precision: Precision) -> Rows {
@@ -47,8 +47,7 @@ fn honest(identity: &Identity, method: &str, substeps: u32) -> Result<(), String
         Some(Undecided::SameMap | Undecided::DataTooCoarse) => listed && !identity.decisive(),
         Some(Undecided::Near) => false,
     };
-    // Beyond 16 it would not be followed; measured up to 4.3.
-    if held && identity.followed == identity.transitions && identity.defect <= 8.0 {
+    if held && identity.followed == identity.transitions && identity.defect <= FIT {
         Ok(())
     } else {
         Err(format!("{method}/{substeps}: {identity:?}"))
