@@ -1,6 +1,6 @@
 //! The common parts of the verbs' command lines. Only this folder touches files, the terminal and programs.
 
-pub mod cache;
+pub(in crate::verbs) mod cache;
 pub mod external;
 pub mod flags;
 pub mod output;
