@@ -1,7 +1,7 @@
 //! A scheme that a trajectory may follow: a method under certain forces, whole or in substeps, or a map
 //! that no method of the registry is.
 
-use super::compose::{Around, Rounded};
+use super::altered::{Around, Rounded};
 use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError};
 use crate::physics::{ParticleSystem, State, System};
 use std::borrow::Cow;

@@ -2,7 +2,6 @@
 //! velocities. Each is a channel with a factor, 1 where the program is right.
 
 use super::candidate::{Candidate, ScaledAt, Scaling};
-use super::mistakes::Mistake;
 use super::result::Deviation;
 use crate::physics::ParticleSystem;
 use crate::scene::{Axis, Scene};
@@ -195,18 +194,13 @@ pub(super) fn of_members(scene: &Scene, particles: &[usize]) -> Vec<Channel> {
     channels
 }
 
-/// The forces of a scene, as a program computes them that makes this mistake.
-fn forces(scene: &Scene, mistake: Option<&Mistake>) -> Option<ParticleSystem> {
-    match mistake {
-        Some(mistake) => mistake.forces(scene),
-        None => Some(ParticleSystem::new(scene)),
-    }
-}
+/// The forces of a scene, as some program computes them; None where it has nothing for the program to get wrong.
+pub(super) type Build<'a> = &'a dyn Fn(&Scene) -> Option<ParticleSystem>;
 
-/// The scheme with these channels' factors, made by a program that makes this mistake.
+/// The scheme with these channels' factors, by a program that computes its forces so.
 pub(super) fn varied(
     scene: &Scene,
-    mistake: Option<&Mistake>,
+    build: Build,
     base: &Candidate,
     factors: &[(&Channel, f64)],
 ) -> Option<Candidate> {
@@ -227,17 +221,13 @@ pub(super) fn varied(
         altered |= matches!(channel.change, Change::Scene(_) | Change::Common(_));
     }
     if altered {
-        candidate = candidate.under(&forces(&wrong, mistake)?);
+        candidate = candidate.under(&build(&wrong)?);
     }
     Some(candidate)
 }
 
 /// The scheme with gravity, or the wind, along another axis, either way: with what deviates.
-pub(super) fn turned(
-    scene: &Scene,
-    mistake: Option<&Mistake>,
-    base: &Candidate,
-) -> Vec<(Candidate, Deviation)> {
+pub(super) fn turned(scene: &Scene, build: Build, base: &Candidate) -> Vec<(Candidate, Deviation)> {
     let mut all = Vec::new();
     for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
         for factor in [1.0, -1.0] {
@@ -252,7 +242,7 @@ pub(super) fn turned(
                     sentence: format!("{what} is along {name}{other}"),
                 };
                 if wrong != *scene
-                    && let Some(system) = forces(&wrong, mistake)
+                    && let Some(system) = build(&wrong)
                 {
                     all.push((base.under(&system), deviation));
                 }

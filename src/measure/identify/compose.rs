@@ -5,23 +5,17 @@
 //! forces that are held over a step.
 
 use super::Identity;
+use super::altered::{Alone, Altered, Altering, Around, OneStep, acceleration, finish, plus};
 use super::candidate::{Candidate, Factor, Forces, Map, ScaledAt, Scaling, Scheme, Step};
 use super::replay::FIT;
 use crate::integrators::{
     self, Coefficients, DampingTreatment, Integrator, Method, Settings, Splitting, Stage,
     StepError, fixed,
 };
-use crate::physics::{
-    Dampers, ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, Sweep, System,
-};
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
 use crate::trajectory::Rows;
 use std::sync::Arc;
-
-/// Applies a step to a state over h, in this many substeps where it has some.
-pub type Around = fn(&OneStep, &dyn System, f64, u32, &mut State) -> Result<(), StepError>;
-/// A step of h from a state in place.
-pub type OneStep<'a> = dyn Fn(&dyn System, f64, &mut State) -> Result<(), StepError> + 'a;
 
 type Stepped = Result<(), StepError>;
 
@@ -507,203 +501,4 @@ fn verlet(predict: Predict, f: &dyn System, h: f64, s: &mut State) -> Stepped {
 /// Kicks that take dampers at the velocity before them.
 fn splitting(stages: &'static [Stage], f: &dyn System, h: f64, s: &mut State) -> Stepped {
     Splitting::new(stages, DampingTreatment::Explicit).step(f, h, s)
-}
-
-pub(super) fn acceleration(system: &dyn System, t: f64, x: &[f64], v: &[f64]) -> Vec<f64> {
-    let mut a = vec![0.0; x.len()];
-    system.acceleration(t, x, v, &mut a);
-    a
-}
-
-/// y + h x.
-pub(super) fn plus(y: &[f64], h: f64, x: &[f64]) -> Vec<f64> {
-    y.iter().zip(x).map(|(y, x)| y + h * x).collect()
-}
-
-pub(super) fn finish(state: &mut State, h: f64, x: Vec<f64>, v: Vec<f64>) -> Stepped {
-    state.x = x;
-    state.v = v;
-    state.t += h;
-    Ok(())
-}
-
-/// One particle of a system, the others where they are.
-struct Alone<'a> {
-    inner: &'a dyn System,
-    others: &'a State,
-    /// Its first coordinate.
-    at: usize,
-}
-
-impl System for Alone<'_> {
-    fn inverse_mass(&self) -> &[f64] {
-        &self.inner.inverse_mass()[self.at..self.at + 3]
-    }
-
-    fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
-        let own = self.at..self.at + 3;
-        let (mut all_x, mut all_v) = (self.others.x.clone(), self.others.v.clone());
-        all_x[own.clone()].copy_from_slice(x);
-        all_v[own.clone()].copy_from_slice(v);
-        a.copy_from_slice(&acceleration(self.inner, t, &all_x, &all_v)[own]);
-        Power::default()
-    }
-
-    fn kinds(&self) -> ForceKinds {
-        self.inner.kinds()
-    }
-
-    fn damping(&self, t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
-        let own = self.at..self.at + 3;
-        let mut all_x = self.others.x.clone();
-        let mut all_w = vec![0.0; all_x.len()];
-        let mut all_a = all_w.clone();
-        all_x[own.clone()].copy_from_slice(x);
-        all_w[own.clone()].copy_from_slice(w);
-        self.inner.damping(t, &all_x, &all_w, &mut all_a);
-        a.copy_from_slice(&all_a[own]);
-    }
-
-    fn potential(&self, _t: f64, _x: &[f64]) -> f64 {
-        0.0
-    }
-}
-
-/// A system whose forces are partly held, or shifted.
-struct Altered<'a> {
-    inner: &'a dyn System,
-    force: Altering,
-}
-
-enum Altering {
-    /// This acceleration, wherever the particles are.
-    Held(Vec<f64>),
-    /// The forces at these positions, wherever the particles are.
-    PositionsHeld(Vec<f64>),
-    /// So much more acceleration.
-    Shifted(Vec<f64>),
-}
-
-impl System for Altered<'_> {
-    fn inverse_mass(&self) -> &[f64] {
-        self.inner.inverse_mass()
-    }
-
-    fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
-        match &self.force {
-            Altering::Held(held) => a.copy_from_slice(held),
-            Altering::PositionsHeld(at) => {
-                self.inner.acceleration(t, at, v, a);
-            }
-            Altering::Shifted(shift) => {
-                self.inner.acceleration(t, x, v, a);
-                for (a, shift) in a.iter_mut().zip(shift) {
-                    *a += shift;
-                }
-            }
-        }
-        Power::default()
-    }
-
-    fn kinds(&self) -> ForceKinds {
-        match self.force {
-            Altering::Held(_) => ForceKinds::NONE,
-            _ => self.inner.kinds(),
-        }
-    }
-
-    fn dampers(&self) -> Dampers {
-        self.inner.dampers()
-    }
-
-    fn sweep(&self, sweep: &mut Sweep) {
-        self.inner.sweep(sweep);
-    }
-
-    fn potential(&self, _t: f64, _x: &[f64]) -> f64 {
-        0.0
-    }
-
-    fn jacobian(&self, t: f64, x: &[f64], v: &[f64], by: Linearization, out: &mut Jacobian) {
-        match &self.force {
-            Altering::Held(_) => {}
-            Altering::PositionsHeld(at) => {
-                let mut own = Jacobian::default();
-                self.inner.jacobian(t, at, v, by, &mut own);
-                out.velocity.extend(own.velocity);
-            }
-            Altering::Shifted(_) => self.inner.jacobian(t, x, v, by, out),
-        }
-    }
-}
-
-/// A system whose every acceleration is off by its rounding, in a direction of its own for each coordinate.
-pub(super) struct Rounded<'a> {
-    inner: &'a dyn System,
-    pattern: u64,
-    /// The same in all evaluations of a step, so that an iteration converges; another in the next, since rounding
-    /// that always pushed the same way would leave out what grows by alternating.
-    step: u64,
-}
-
-impl<'a> Rounded<'a> {
-    pub(super) fn new(inner: &'a dyn System, pattern: u64, step: u64) -> Self {
-        Self {
-            inner,
-            pattern,
-            step,
-        }
-    }
-}
-
-impl System for Rounded<'_> {
-    fn inverse_mass(&self) -> &[f64] {
-        self.inner.inverse_mass()
-    }
-
-    fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
-        let mut off = vec![0.0; a.len()];
-        self.inner.rounding(t, x, v, &mut off);
-        let power = self.inner.acceleration(t, x, v, a);
-        for (i, (a, off)) in a.iter_mut().zip(off).enumerate() {
-            *a += sign((!self.step, self.pattern), i) * off;
-        }
-        power
-    }
-
-    fn kinds(&self) -> ForceKinds {
-        self.inner.kinds()
-    }
-
-    fn dampers(&self) -> Dampers {
-        self.inner.dampers()
-    }
-
-    fn sweep(&self, sweep: &mut Sweep) {
-        self.inner.sweep(sweep);
-    }
-
-    fn damping(&self, t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
-        self.inner.damping(t, x, w, a);
-    }
-
-    fn potential(&self, t: f64, x: &[f64]) -> f64 {
-        self.inner.potential(t, x)
-    }
-
-    fn jacobian(&self, t: f64, x: &[f64], v: &[f64], by: Linearization, out: &mut Jacobian) {
-        self.inner.jacobian(t, x, v, by, out);
-    }
-}
-
-/// 1 or -1, the same in every run (SplitMix64's mixing, Steele et al. 2014).
-pub(super) fn sign((row, pattern): (u64, u64), at: usize) -> f64 {
-    let mut z = row
-        .wrapping_mul(0x9E37_79B9_7F4A_7C15)
-        .wrapping_add(pattern << 40)
-        .wrapping_add(at as u64)
-        .wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    if (z ^ (z >> 31)) & 1 == 0 { 1.0 } else { -1.0 }
 }

@@ -11,6 +11,7 @@ use super::result::{Deviation, Explained, Undecided};
 use super::transition::{Transition, spread};
 use super::{Found, Identity, Question, median_relative};
 use crate::integrators::fixed;
+use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -138,6 +139,14 @@ struct Base {
     scheme: Candidate,
     /// What its forces are, where they are not the scene's own.
     mistake: Option<&'static Mistake>,
+}
+
+/// The forces of a scene, as a program computes them that makes this mistake.
+fn forces(scene: &Scene, mistake: Option<&Mistake>) -> Option<ParticleSystem> {
+    match mistake {
+        Some(mistake) => mistake.forces(scene),
+        None => Some(ParticleSystem::new(scene)),
+    }
 }
 
 /// Schemes to look in, in turn: of each group all sets of up to so many channels.
@@ -472,7 +481,8 @@ impl<'a> Model<'a> {
             .map(|&(k, factor)| (self.channels[k], factor));
         let factors: Vec<(&Channel, f64)> = factors.collect();
         let Base { scheme, mistake } = &self.base;
-        channels::varied(self.question.scene, *mistake, scheme, &factors)
+        let build = |scene: &Scene| forces(scene, *mistake);
+        channels::varied(self.question.scene, &build, scheme, &factors)
     }
 
     fn residuals_at(&self, factors: &[(usize, f64)]) -> Option<DVector<f64>> {
@@ -519,8 +529,11 @@ impl<'a> Model<'a> {
         }
         let mut fits: Vec<Fit> = sets.iter().filter_map(|(_, set)| self.fit(set)).collect();
         if size == 1 {
-            let turned =
-                channels::turned(self.question.scene, self.base.mistake, &self.base.scheme);
+            let turned = channels::turned(
+                self.question.scene,
+                &|scene| forces(scene, self.base.mistake),
+                &self.base.scheme,
+            );
             fits.extend(turned.into_iter().filter_map(|(candidate, deviation)| {
                 let residuals = self.residuals_of(&candidate)?;
                 Some(self.result(candidate, vec![deviation], &residuals))

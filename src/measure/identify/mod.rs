@@ -9,6 +9,7 @@
 //!
 //! Not to be confused with comparing trajectories: a replay never sees an accumulated error.
 
+mod altered;
 mod candidate;
 mod channels;
 mod compose;
@@ -22,8 +23,9 @@ mod same;
 mod transition;
 mod velocity;
 
+pub use altered::{Around, OneStep};
 pub use candidate::{Candidate, Factor, Forces, Map, Replayer, ScaledAt, Scaling, Scheme, Step};
-pub use compose::{Around, OneStep, composed, ids as composed_ids};
+pub use compose::{composed, ids as composed_ids};
 
 pub use explain::TRUTH;
 pub use fault::{first_departure, first_fault, moved_anchor};

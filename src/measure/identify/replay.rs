@@ -1,8 +1,8 @@
 //! One replay: the row a candidate makes from a row, and how far that is from the next row in units
 //! of rounding.
 
+use super::altered::sign;
 use super::candidate::{Candidate, Replayer};
-use super::compose::sign;
 use super::transition::Transition;
 use super::velocity;
 use crate::integrators::{Settings, StepError};

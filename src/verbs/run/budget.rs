@@ -2,13 +2,11 @@
 //! in steps of one particle under explicit forces, so that every machine judges alike.
 
 use super::plan::{Case, Plan};
-use super::{checks, remarks};
 use crate::integrators::{self, Coefficients, Method, PerStep};
 use crate::measure::identify::solve_effort;
 use crate::measure::{Check, CheckStatus};
 use crate::scene::Scene;
 use crate::solvers::SolverKind;
-use crate::truth::{self, Store};
 
 /// Judging may take this much however short the runs: some 0.3 s, at 30 ns.
 const LEAST: u64 = 10_000_000;
@@ -84,73 +82,6 @@ pub fn of_limits(plan: &Plan) -> u64 {
 /// What replays of one run may take: a quarter of it.
 pub fn of_replays(plan: &Plan, case: &Case) -> u64 {
     (case.effort(plan.scene) / 4).max(LEAST)
-}
-
-/// What is done beside the runs, each in their units.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Beside {
-    pub truth: u64,
-    pub proofs: u64,
-    pub orders: u64,
-    /// Replays and predicted limits.
-    pub judging: u64,
-    pub saving: u64,
-}
-
-/// Replays of a step in all: of up to 16 steps, each twice, and of a few probes.
-const REPLAYS: u64 = 40;
-/// Sweeps of a twin proof together, where a few doublings are enough.
-const SWEEPS: u64 = 192;
-
-impl Beside {
-    /// About what a plan takes beside its runs; `saving` if these are saved.
-    pub fn of(plan: &Plan, saving: bool, store: &dyn Store) -> Self {
-        let scene = plan.scene;
-        let (particles, springs) = (scene.particles.len() as u64, scene.springs.len() as u64);
-        let ends = plan.cases.iter().map(|case| case.label.end());
-        let until = ends.fold(0.0, f64::max);
-        let truth = truth::expected(scene, &plan.system, plan.choice.truth, until, store);
-        let proof =
-            32 * particles + 48 * particles * solve_effort(particles) + 48 * springs * SWEEPS;
-        let replays = plan.cases.iter().map(|case| {
-            let replays = REPLAYS.saturating_mul(case.replay(scene));
-            replays.min(of_replays(plan, case))
-        });
-        let replays = replays.fold(0, u64::saturating_add);
-        let limits = remarks::effort(plan).filter(|effort| *effort <= of_limits(plan));
-        let runs = plan.effort();
-        Self {
-            // An evaluation of three coordinates is about a step of a particle.
-            truth: truth / 3,
-            proofs: if checks::proves(plan) {
-                proof.min(of_proofs(plan))
-            } else {
-                0
-            },
-            orders: if checks::measures_orders(plan) {
-                2 * runs
-            } else {
-                0
-            },
-            judging: limits.unwrap_or(0).saturating_add(if plan.choice.identify {
-                replays
-            } else {
-                0
-            }),
-            saving: if saving { runs } else { 0 },
-        }
-    }
-
-    /// Each with the name that an announcement gives it.
-    pub fn named(self) -> [(&'static str, u64); 5] {
-        [
-            ("the truth", self.truth),
-            ("the twin proof", self.proofs),
-            ("orders", self.orders),
-            ("replays and limits", self.judging),
-            ("saving", self.saving),
-        ]
-    }
 }
 
 /// The check that says what was not judged; None where everything was.

@@ -5,6 +5,7 @@
 //! only wall times do.
 
 mod args;
+mod beside;
 mod budget;
 mod checks;
 mod curves;

@@ -1,11 +1,10 @@
 //! The plan of a run: each chosen solver at each timestep.
 
-use super::budget::Beside;
 use crate::integrators;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::solvers::{self, Run, Setting, Solver, SolverKind, Unsupported};
-use crate::truth::{Demand, Store};
+use crate::truth::Demand;
 use crate::verbs::session::{Label, TimeEstimate};
 use std::time::{Duration, Instant};
 
@@ -118,6 +117,30 @@ impl Case {
     }
 }
 
+/// What is done beside the runs, each in their units.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Beside {
+    pub truth: u64,
+    pub proofs: u64,
+    pub orders: u64,
+    /// Replays and predicted limits.
+    pub judging: u64,
+    pub saving: u64,
+}
+
+impl Beside {
+    /// Each with the name that an announcement gives it.
+    pub fn named(self) -> [(&'static str, u64); 5] {
+        [
+            ("the truth", self.truth),
+            ("the twin proof", self.proofs),
+            ("orders", self.orders),
+            ("replays and limits", self.judging),
+            ("saving", self.saving),
+        ]
+    }
+}
+
 /// The cases of one scene, in the order of the report.
 pub struct Plan<'a> {
     pub scene: &'a Scene,
@@ -153,13 +176,6 @@ impl<'a> Plan<'a> {
             choice: choice.clone(),
             beside: Beside::default(),
         }
-    }
-
-    /// The same plan with what is done beside the runs, which are saved if `saving`.
-    #[must_use]
-    pub fn expecting(mut self, saving: bool, store: &dyn Store) -> Self {
-        self.beside = Beside::of(&self, saving, store);
-        self
     }
 
     /// All that is counted by [`Session::progress`](crate::verbs::session::Session::progress), in steps of one

@@ -4,7 +4,8 @@ use crate::integrators::{
     DampingTreatment, Implicit, ImplicitScheme, Integrator, RungeKutta, Settings, Splitting, Stage,
     StepError, Tableau,
 };
-use crate::measure::identify::compose::{DRIFT_FIRST, acceleration, finish, plus};
+use crate::measure::identify::altered::{acceleration, finish, plus};
+use crate::measure::identify::compose::DRIFT_FIRST;
 use crate::physics::{State, System};
 
 /// The result of a step.
