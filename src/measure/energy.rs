@@ -37,7 +37,7 @@ pub struct Energy {
 /// the trend to be what counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Behaviour {
-    /// Never off by as much as a [`PRACTICAL`] part of S, whatever its trend.
+    /// Never off by as much as a practical part of S, whatever its trend.
     Steady,
     Bounded,
     /// Off by more than S, and no trend says which way.

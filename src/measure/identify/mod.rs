@@ -5,7 +5,7 @@
 //! depends on the scene, and it works in chaos, where trajectories part but steps do not.
 //!
 //! A scheme is named where rounding explains every row. A trajectory that follows none is *near* one, or is
-//! [explained] by what its forces deviate in, or is unexplained.
+//! *explained* by what its forces deviate in, or is unexplained.
 //!
 //! Not to be confused with comparing trajectories: a replay never sees an accumulated error.
 

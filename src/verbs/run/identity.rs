@@ -19,7 +19,7 @@ const FEWEST: usize = 3;
 const OF_FILE: u64 = 20_000_000;
 
 /// Identifies the scheme of a run by replaying some of its steps; None where the scheme that it should follow takes
-/// more than the [budget](budget::of_replays) to replay.
+/// more than the budget to replay.
 pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Option<Found> {
     let budget = budget::of_replays(plan, case);
     // A step is replayed twice, once with every number off by its rounding, and half of the budget is for others.
