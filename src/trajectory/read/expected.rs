@@ -120,10 +120,8 @@ impl Expected {
     }
 }
 
-/// The one coordinate that can move: exactly one particle is free, and it [moves] on one axis. None
+/// The one coordinate that can move: exactly one particle is free, and it moves on one axis. None
 /// where nothing moves it at all, since no axis is then better than another.
-///
-/// [moves]: moves
 pub fn free_axis(scene: &Scene) -> Option<FreeAxis> {
     let mut free = (0..).zip(&scene.particles).filter(|(_, p)| !p.fixed);
     let ((particle, _), None) = (free.next()?, free.next()) else {
