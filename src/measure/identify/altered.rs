@@ -3,6 +3,7 @@
 
 use crate::integrators::StepError;
 use crate::physics::{Dampers, ForceKinds, Jacobian, Linearization, Power, State, Sweep, System};
+use std::cell::Cell;
 
 /// Applies a step to a state over h, in this many substeps where it has some.
 pub type Around = fn(&OneStep, &dyn System, f64, u32, &mut State) -> Result<(), StepError>;
@@ -141,17 +142,20 @@ impl System for Altered<'_> {
 pub(super) struct Rounded<'a> {
     inner: &'a dyn System,
     pattern: u64,
-    /// The same in all evaluations of a step, so that an iteration converges; another in the next, since rounding
-    /// that always pushed the same way would leave out what grows by alternating.
+    /// The step: rounding that always pushed the same way would leave out what grows by alternating.
     step: u64,
+    /// The evaluations of the step so far, of a scheme that does not iterate: rounding that pushed the same way in all
+    /// of them might cancel. An iteration converges only if it is the same in all.
+    evaluations: Option<Cell<u64>>,
 }
 
 impl<'a> Rounded<'a> {
-    pub(super) fn new(inner: &'a dyn System, pattern: u64, step: u64) -> Self {
+    pub(super) fn new(inner: &'a dyn System, pattern: u64, step: u64, iterates: bool) -> Self {
         Self {
             inner,
             pattern,
             step,
+            evaluations: (!iterates).then(Cell::default),
         }
     }
 }
@@ -165,8 +169,13 @@ impl System for Rounded<'_> {
         let mut off = vec![0.0; a.len()];
         self.inner.rounding(t, x, v, &mut off);
         let power = self.inner.acceleration(t, x, v, a);
+        let evaluation = self
+            .evaluations
+            .as_ref()
+            .map_or(0, |all| all.replace(all.get() + 1));
+        let first = evaluation as usize * a.len();
         for (i, (a, off)) in a.iter_mut().zip(off).enumerate() {
-            *a += sign((!self.step, self.pattern), i) * off;
+            *a += sign((!self.step, self.pattern), first + i) * off;
         }
         power
     }

@@ -299,7 +299,12 @@ impl<'a> Replayer<'a> {
                 state.t = (at * u64::from(n) + u64::from(part)) as f64 * part_of_h;
                 let start = state.clone();
                 let rounded = self.pattern.map(|pattern| {
-                    Rounded::new(forces, pattern, at * u64::from(n) + u64::from(part))
+                    Rounded::new(
+                        forces,
+                        pattern,
+                        at * u64::from(n) + u64::from(part),
+                        self.candidate.solves(),
+                    )
                 });
                 let system: &dyn System = match &rounded {
                     Some(rounded) => rounded,
