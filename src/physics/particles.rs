@@ -27,23 +27,26 @@ impl ParticleSystem {
     /// The same with the forces of each effect multiplied by a factor; 0 leaves the effect out. A program
     /// that forgets an effect, flips its sign or applies it twice computes this.
     pub fn scaled(scene: &Scene, factor: &dyn Fn(&EffectRow) -> f64) -> Self {
+        Self::with(scene, &|row| {
+            let effect = (row.build)(scene)?;
+            match factor(row) {
+                0.0 => None,
+                1.0 => Some(effect),
+                factor => Some(Box::new(Scaled::new(effect, factor)) as _),
+            }
+        })
+    }
+
+    /// The same with each effect as `build` makes it; None leaves it out.
+    pub fn with(scene: &Scene, build: &dyn Fn(&EffectRow) -> Option<Box<dyn Effect>>) -> Self {
         let inverse_mass = scene
             .particles
             .iter()
             .flat_map(|p| [if p.fixed { 0.0 } else { 1.0 / p.mass }; 3])
             .collect();
-        let effects = effects::REGISTRY
-            .iter()
-            .filter_map(|row| {
-                let effect = (row.build)(scene)?;
-                match factor(row) {
-                    0.0 => None,
-                    1.0 => Some((row, effect)),
-                    factor => Some((row, Box::new(Scaled::new(effect, factor)) as _)),
-                }
-            })
-            .collect();
-        Self::of(inverse_mass, effects)
+        let effects = effects::REGISTRY.iter();
+        let effects = effects.filter_map(|row| Some((row, build(row)?)));
+        Self::of(inverse_mass, effects.collect())
     }
 
     /// A system of any effects, with 1/m of each coordinate, 1/kg; 0 for a fixed one.

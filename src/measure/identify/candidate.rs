@@ -2,7 +2,7 @@
 //! that no method of the registry is.
 
 use super::altered::{Around, Rounded};
-use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError};
+use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError, fixed};
 use crate::physics::{ParticleSystem, State, System};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -110,6 +110,12 @@ impl Candidate {
         Self::new(&forces, Scheme::Method(method), method.id).in_substeps(substeps)
     }
 
+    /// Every registry method in this many substeps, in the registry's order.
+    pub(super) fn plain(system: &ParticleSystem, substeps: u32) -> impl Iterator<Item = Self> {
+        let methods = fixed().iter();
+        methods.map(move |method| Self::method(system, method, substeps))
+    }
+
     /// The same in this many substeps.
     pub fn in_substeps(self, substeps: u32) -> Self {
         Self { substeps, ..self }
@@ -212,12 +218,6 @@ impl Candidate {
             _ => return false,
         };
         matches!(method.evaluations, PerStep::PerIteration { .. })
-    }
-
-    /// Whether it moves particles one by one, with all forces for each.
-    pub fn one_by_one(&self) -> bool {
-        matches!(self.scheme, Scheme::Around(..)) && self.id.contains("in_place")
-            || self.id.contains("one_by_one")
     }
 
     /// Its name in the reports' `equivalent`: the id, and after a slash the substeps if there are several.

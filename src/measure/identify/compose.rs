@@ -7,6 +7,7 @@
 use super::Identity;
 use super::altered::{Alone, Altered, Altering, Around, OneStep, acceleration, finish, plus};
 use super::candidate::{Candidate, Factor, Forces, Map, ScaledAt, Scaling, Scheme, Step};
+use super::channels;
 use super::replay::FIT;
 use crate::integrators::{
     self, Coefficients, DampingTreatment, Integrator, Method, Settings, Splitting, Stage,
@@ -62,6 +63,10 @@ const TREATMENTS: [(&str, &str, Factor); 4] = [
     ),
 ];
 
+/// What staggered velocities are.
+const EARLY: &str = "the velocity of each row is half a step earlier than its position";
+const LATE: &str = "the velocity of each row is half a step later than its position";
+
 /// Maps of two steps, or with a first step of their own.
 const MAPS: [(&str, &str, Map); 11] = [
     (
@@ -69,16 +74,12 @@ const MAPS: [(&str, &str, Map); 11] = [
         "midpoint with its half step taken at the new velocity, x0 + h/2 (v0 + h/2 a0): of order 2 as well",
         midpoint_kicked,
     ),
-    (
-        "leapfrog_staggered",
-        "the velocity of each row is half a step earlier than its position",
-        |f, h, before, s| staggered_early(f, h, before, s),
-    ),
-    (
-        "leapfrog_staggered",
-        "the velocity of each row is half a step later than its position",
-        |f, h, before, s| staggered_late(f, h, before, s),
-    ),
+    ("leapfrog_staggered", EARLY, |f, h, before, s| {
+        staggered_early(f, h, before, s)
+    }),
+    ("leapfrog_staggered", LATE, |f, h, before, s| {
+        staggered_late(f, h, before, s)
+    }),
     (
         "ab2",
         "Adams and Bashforth's second-order method, begun with explicit Euler",
@@ -265,13 +266,9 @@ fn explicit() -> impl Iterator<Item = &'static Method> {
 
 /// Methods under all forces but drag, which multiplies velocities before the kick, after it or at the end.
 fn damped(scene: &Scene) -> Vec<Candidate> {
-    if scene.particles.iter().all(|p| p.fixed || p.drag == 0.0) {
+    let Some(without) = channels::scaled(scene, &[("drag", 0.0)]) else {
         return Vec::new();
-    }
-    let mut without = scene.clone();
-    for particle in &mut without.particles {
-        particle.drag = 0.0;
-    }
+    };
     let forces: Forces = Arc::new(ParticleSystem::new(&without));
     let rate = |p: &crate::scene::Particle| if p.fixed { 0.0 } else { p.drag / p.mass };
     let rates: Arc<[f64]> = scene.particles.iter().flat_map(|p| [rate(p); 3]).collect();
@@ -293,8 +290,8 @@ fn damped(scene: &Scene) -> Vec<Candidate> {
     all
 }
 
-/// Steps each free particle alone, from `state`; each sees the others where `seen` has them after the
-/// particles before it have moved.
+/// Steps each free particle alone: in place it sees the particles before it where they have moved to, else all
+/// others where they were.
 fn each_alone(
     step: &OneStep,
     system: &dyn System,
@@ -400,8 +397,8 @@ pub(super) fn staggered(
     identity: Identity,
 ) -> Identity {
     let (says, share) = match identity.method.as_str() {
-        "symplectic_euler" => (MAPS[1].1, -0.5),
-        "symplectic_euler_drift_first" => (MAPS[2].1, 0.5),
+        "symplectic_euler" => (EARLY, -0.5),
+        "symplectic_euler_drift_first" => (LATE, 0.5),
         _ => return identity,
     };
     let start = ParticleSystem::initial_state(scene);

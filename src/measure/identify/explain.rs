@@ -9,8 +9,8 @@ use super::race::{Race, defects_of_all, quantile};
 use super::replay::{FIT, Replay};
 use super::result::{Deviation, Explained, Undecided};
 use super::transition::{Transition, spread};
-use super::{Found, Identity, Question, median_relative};
-use crate::integrators::fixed;
+use super::{Found, Identity, Question, median, median_relative};
+use crate::integrators;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use nalgebra::{DMatrix, DVector};
@@ -64,10 +64,8 @@ pub(super) fn of_none(question: &Question, race: &Race, all: &[Transition]) -> F
     if let Some(exact) = fitted.as_ref().filter(|fit| fit.worst <= FIT) {
         return exact.found(race, all);
     }
-    let plain = fixed()
-        .iter()
-        .map(|m| Candidate::method(question.system, m, 1));
-    let plain: Vec<Candidate> = plain.filter(|c| race.tried(&c.id)).collect();
+    let plain = Candidate::plain(question.system, 1).filter(|c| race.tried(&c.id));
+    let plain: Vec<Candidate> = plain.collect();
     near(question, race, all, &plain)
         .or_else(|| fitted.map(|fit| fit.found(race, all)))
         .unwrap_or_else(|| unexplained(race, all))
@@ -165,7 +163,7 @@ fn groups(question: &Question, race: &Race) -> Vec<Group> {
         scheme,
         mistake: None,
     };
-    let plain = |n: u32| fixed().iter().map(move |m| Candidate::method(system, m, n));
+    let plain = |n: u32| Candidate::plain(system, n);
     let (implicit, explicit): (Vec<_>, Vec<_>) =
         plain(1).chain(treated(system)).partition(Candidate::solves);
     let finer = (2..=FINER).flat_map(plain).filter(|c| !c.solves());
@@ -173,9 +171,8 @@ fn groups(question: &Question, race: &Race) -> Vec<Group> {
     let usual = |c: &&Candidate| USUAL.contains(&c.id.as_str());
     let mut wrong = Vec::new();
     for mistake in MISTAKES {
-        let wrong_scene = |scene: &Scene| mistake.forces(scene);
         if let (Wrong::Physics(_) | Wrong::Scaled, Some(system)) =
-            (&mistake.wrong, wrong_scene(scene))
+            (&mistake.wrong, mistake.forces(scene))
         {
             wrong.extend(explicit.iter().filter(usual).map(|scheme| Base {
                 scheme: scheme.under(&system),
@@ -217,14 +214,11 @@ fn near(
     all: &[Transition],
     schemes: &[Candidate],
 ) -> Option<Found> {
-    let truth = fixed().iter().find(|method| method.id == "rk4")?;
-    let truth = Candidate::method(question.system, truth, 16);
-    let few = spread(race.sample, FITTED);
+    let truth = truth(question)?;
     let (candidate, _) = schemes
         .par_iter()
         .filter_map(|scheme| {
-            let of_truth = |t: &Transition| part_of_error(race.replay, scheme, &truth, t);
-            let part = median(few.iter().filter_map(of_truth).collect())?;
+            let part = typical_part_of_error(race, scheme, &truth)?;
             let hinted = question.hint.is_some();
             (part <= NEAR || (hinted && part.is_finite())).then_some((scheme, part))
         })
@@ -255,9 +249,19 @@ fn near(
     })
 }
 
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+/// Steps so much finer that their error is none beside a scheme's.
+fn truth(question: &Question) -> Option<Candidate> {
+    let rk4 = integrators::find("rk4")?;
+    Some(Candidate::method(question.system, rk4, 16))
+}
+
+/// The median over a few steps of [`part_of_error`].
+fn typical_part_of_error(race: &Race, scheme: &Candidate, truth: &Candidate) -> Option<f64> {
+    let few = spread(race.sample, FITTED);
+    median(
+        few.iter()
+            .filter_map(|t| part_of_error(race.replay, scheme, truth, t)),
+    )
 }
 
 /// The step with the largest defect; None where all fit.
@@ -294,12 +298,16 @@ fn part_of_error(
         }
         Err(_) => f64::NAN,
     };
+    let part = off / error;
+    if part.is_finite() {
+        return Some(part);
+    }
+    // The truth is beyond the numbers, or the scheme exact.
     let relative = replay.defect(&mut replayer, at).relative;
-    Some(match off / error {
-        part if part.is_finite() => part,
-        // The truth is beyond the numbers, or the scheme exact.
-        _ if relative <= SMALL => NEAR * relative / SMALL,
-        _ => f64::INFINITY,
+    Some(if relative <= SMALL {
+        NEAR * relative / SMALL
+    } else {
+        f64::INFINITY
     })
 }
 
@@ -317,15 +325,11 @@ struct Fit {
 impl Fit {
     /// Whether what it leaves is small against its scheme's own error.
     fn is_of_its_scheme(&self, question: &Question, race: &Race) -> bool {
-        let Some(truth) = fixed().iter().find(|method| method.id == "rk4") else {
-            return false;
-        };
-        let truth = Candidate::method(question.system, truth, 16).forced_as(&self.candidate);
-        let few = spread(race.sample, FITTED);
-        let parts = few
-            .iter()
-            .filter_map(|t| part_of_error(race.replay, &self.candidate, &truth, t));
-        median(parts.collect()).is_some_and(|part| part <= NEAR)
+        truth(question).is_some_and(|truth| {
+            let truth = truth.forced_as(&self.candidate);
+            let part = typical_part_of_error(race, &self.candidate, &truth);
+            part.is_some_and(|part| part <= NEAR)
+        })
     }
 
     fn found(&self, race: &Race, all: &[Transition]) -> Found {
@@ -364,7 +368,7 @@ fn fitted(question: &Question, race: &Race) -> Option<Fit> {
                 best = rough.min_by(|a, b| a.left.total_cmp(&b.left)).or(best);
             }
             if size == 1 && members {
-                let single = models.par_iter().map(|model| model.of_one_member(race));
+                let single = models.par_iter().map(Model::of_one_member);
                 let single: Vec<Option<Fit>> = single.collect();
                 if let Some(fit) = single.into_iter().flatten().next() {
                     return Some(fit);
@@ -434,32 +438,43 @@ impl<'a> Model<'a> {
             replay.units(&mut replayer, t, &predicted, NUDGES).ok()
         };
         let units: Vec<Vec<f64>> = at.iter().map(units).collect::<Option<_>>()?;
-        let channels: Vec<&Channel> = channels.iter().filter(|c| c.suits(&base.scheme)).collect();
-        let mut model = Self {
+        let model = Self {
             question,
             replay,
             base,
-            channels,
+            channels: Vec::new(),
             at,
             units,
             residuals: DVector::zeros(0),
             slopes: Vec::new(),
         };
-        model.residuals = model.residuals_of(&model.base.scheme)?;
-        for k in 0..model.channels.len() {
-            let moved = model.residuals_at(&[(k, 1.0 + STEP)])?;
-            let here = if model.channels[k].switches() {
-                model.residuals_at(&[(k, 1.0)])?
-            } else {
-                model.residuals.clone()
-            };
-            model.slopes.push((moved - here) / STEP);
+        let residuals = model.residuals_of(&model.base.scheme)?;
+        Self { residuals, ..model }.with(channels)
+    }
+
+    /// The same scheme with these channels.
+    fn with(mut self, channels: &'a [Channel]) -> Option<Self> {
+        let suits = |channel: &&Channel| channel.suits(&self.base.scheme);
+        self.channels = channels.iter().filter(suits).collect();
+        let slope = |k| {
+            let moved = self.residuals_at(&[(k, 1.0 + STEP)])?;
+            Some((moved - self.unvaried(&[k])?) / STEP)
+        };
+        self.slopes = (0..self.channels.len()).map(slope).collect::<Option<_>>()?;
+        Some(self)
+    }
+
+    /// The residuals where the factors of these channels are 1.
+    fn unvaried(&self, set: &[usize]) -> Option<DVector<f64>> {
+        if !set.iter().any(|&k| self.channels[k].switches()) {
+            return Some(self.residuals.clone());
         }
-        Some(model)
+        let factors: Vec<(usize, f64)> = set.iter().map(|&k| (k, 1.0)).collect();
+        self.residuals_at(&factors)
     }
 
     /// The fit of one spring or particle, of those where the scheme is off most.
-    fn of_one_member(&self, race: &Race) -> Option<Fit> {
+    fn of_one_member(&self) -> Option<Fit> {
         let scene = self.question.scene;
         let numbers = self.residuals.len() / self.at.len().max(1);
         let mut off = vec![0.0_f64; scene.particles.len()];
@@ -471,8 +486,20 @@ impl<'a> Model<'a> {
         particles.sort_by(|&a, &b| off[b].total_cmp(&off[a]));
         particles.truncate(SUSPECTS);
         let members = channels::of_members(scene, &particles);
-        let model = Model::new(self.question, race, self.base.clone(), &members)?;
-        model.fits(1).into_iter().find(|fit| fit.worst <= FIT)
+        // Only the channels are others.
+        let own = Model {
+            base: self.base.clone(),
+            at: self.at.clone(),
+            units: self.units.clone(),
+            residuals: self.residuals.clone(),
+            channels: Vec::new(),
+            slopes: Vec::new(),
+            ..*self
+        };
+        own.with(&members)?
+            .fits(1)
+            .into_iter()
+            .find(|fit| fit.worst <= FIT)
     }
 
     fn varied(&self, factors: &[(usize, f64)]) -> Option<Candidate> {
@@ -556,7 +583,7 @@ impl<'a> Model<'a> {
     /// Gauss-Newton from the scene's own numbers.
     fn fit(&self, set: &[usize]) -> Option<Fit> {
         let mut factors: Vec<(usize, f64)> = set.iter().map(|&k| (k, 1.0)).collect();
-        let mut residuals = self.residuals_at(&factors)?;
+        let mut residuals = self.unvaried(set)?;
         let mut slopes: Vec<DVector<f64>> = set.iter().map(|&k| self.slopes[k].clone()).collect();
         for taken in 0..STEPS {
             let mut step = least_squares(&slopes, &residuals)?;

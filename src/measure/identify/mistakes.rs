@@ -15,7 +15,6 @@ pub use rows::MISTAKES;
 use super::candidate::{Candidate, Forces, Map, Scheme};
 use super::channels;
 use super::compose::treated;
-use crate::integrators;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -62,8 +61,7 @@ pub fn mistakes(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
         let Some(wrong) = mistake.forces(scene) else {
             continue;
         };
-        let methods = integrators::fixed().iter();
-        let methods = methods.map(|method| Candidate::method(&wrong, method, 1));
+        let methods = Candidate::plain(&wrong, 1);
         candidates.extend(methods.chain(treated(&wrong)).map(|candidate| {
             let id = format!("{}({})", mistake.id, candidate.id);
             let candidate = candidate.stretched(length);

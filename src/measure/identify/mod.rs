@@ -34,7 +34,7 @@ pub use replay::{Defect, FIT, Replay, solve_effort};
 pub use result::{Deviation, Explained, Fault, Identified, Quantity, Undecided};
 pub use transition::Transition;
 
-use crate::integrators::{Settings, fixed};
+use crate::integrators::Settings;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::trajectory::{Precision, Rows};
@@ -144,11 +144,7 @@ fn found(question: &Question) -> Option<Found> {
         entries: Vec::new(),
         left_out: Vec::new(),
     };
-    let plain = |n: u32| {
-        fixed()
-            .iter()
-            .map(move |method| Candidate::method(system, method, n))
-    };
+    let plain = |n: u32| Candidate::plain(system, n);
     race.enter(expected(question).into_iter().collect(), None);
     race.enter(plain(1).collect(), None);
     // Digits that are few tell fewer schemes apart, and that is to be said.
@@ -219,12 +215,10 @@ fn decide(
     if let Some(meant) = meant().filter(|_| candidate.mistake) {
         // Where the mistake makes no difference, it is none.
         let right = Candidate::method(question.system, meant, candidate.substeps);
-        if defects_of_all(race.replay, &right, all)
-            .iter()
-            .all(Defect::fits)
-        {
+        let defects = defects_of_all(race.replay, &right, all);
+        if defects.iter().all(Defect::fits) {
             return Some(Identity {
-                defect: quantile(&defects_of_all(race.replay, &right, all), 1.0),
+                defect: quantile(&defects, 1.0),
                 undecided: Some(Undecided::DataTooCoarse),
                 equivalent: vec![candidate.label()],
                 transitions: all.len(),
@@ -263,10 +257,14 @@ fn decide(
 }
 
 fn median_relative(defects: &[Defect]) -> f64 {
-    let mut relative: Vec<f64> = defects.iter().map(|d| d.relative).collect();
-    relative.sort_by(f64::total_cmp);
-    let middle = relative.get(relative.len() / 2).copied();
-    middle.unwrap_or(f64::INFINITY)
+    median(defects.iter().map(|d| d.relative)).unwrap_or(f64::INFINITY)
+}
+
+/// The upper median; None of nothing.
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 fn bare(weighed: &[Weighed]) -> Vec<Transition> {
@@ -276,8 +274,7 @@ fn bare(weighed: &[Weighed]) -> Vec<Transition> {
 /// Every scheme that has a name here, the simplest first: methods whole and in substeps, composed schemes,
 /// mistakes.
 fn candidates(scene: &Scene, system: &ParticleSystem) -> impl Iterator<Item = Candidate> {
-    let methods = (1..=MOST_SUBSTEPS).flat_map(|n| fixed().iter().map(move |m| (m, n)));
-    let methods = methods.map(|(method, n)| Candidate::method(system, method, n));
+    let methods = (1..=MOST_SUBSTEPS).flat_map(|n| Candidate::plain(system, n));
     let methods: Vec<Candidate> = methods.collect();
     methods
         .into_iter()

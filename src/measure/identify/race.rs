@@ -180,7 +180,7 @@ impl Race<'_> {
             .iter()
             .map(|&i| typical(i))
             .fold(f64::INFINITY, f64::min);
-        // Of those that rounding allows, the likely ones come first.
+        // Rounding allows all of them; those with small defects come first.
         let unlikely = |i: usize| typical(i) > f64::max(LIKELY, LIKELY * least);
         class.sort_by_key(|&i| (Some(i) != first, unlikely(i), i));
         let mut told = Vec::new();

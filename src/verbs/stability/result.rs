@@ -124,7 +124,7 @@ pub enum LargestFound {
     EveryValue,
     /// It is stable at none.
     NoValue,
-    /// Nobody knows.
+    /// The limit that it follows from is not known.
     NotKnown,
 }
 

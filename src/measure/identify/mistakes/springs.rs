@@ -1,6 +1,6 @@
 //! Springs computed wrongly: laws of force that are not the scene's.
 
-use crate::physics::effects::{Effect, REGISTRY, Springs};
+use crate::physics::effects::{Effect, Springs};
 use crate::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power};
 use crate::scene::{DampingModel, Scene, Spring};
 
@@ -28,25 +28,18 @@ struct Wrong {
 
 /// The scene with this law for its springs.
 fn system(scene: &Scene, law: Law) -> Option<ParticleSystem> {
-    let wrong = || {
-        Some(Wrong {
+    Springs::new(scene)?;
+    Some(ParticleSystem::with(scene, &|row| {
+        if row.id != "springs" {
+            return (row.build)(scene);
+        }
+        Some(Box::new(Wrong {
             springs: scene.springs.clone(),
             damping: scene.damping_model,
             law,
             right: Springs::new(scene)?,
-        })
-    };
-    let mut effects = Vec::new();
-    for row in REGISTRY {
-        if row.id == "springs" {
-            effects.push((row, Box::new(wrong()?) as Box<dyn Effect>));
-        } else if let Some(effect) = (row.build)(scene) {
-            effects.push((row, effect));
-        }
-    }
-    let inverse_mass = |p: &crate::scene::Particle| if p.fixed { 0.0 } else { 1.0 / p.mass };
-    let inverse_mass = scene.particles.iter().flat_map(|p| [inverse_mass(p); 3]);
-    Some(ParticleSystem::of(inverse_mass.collect(), effects))
+        }))
+    }))
 }
 
 pub(super) fn not_normalised(scene: &Scene) -> Option<ParticleSystem> {
