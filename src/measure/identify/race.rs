@@ -85,61 +85,76 @@ pub(super) struct Ranking {
 }
 
 impl Race<'_> {
-    /// Tries these, as many as the budget holds. What it does not hold is left out under the group's name, or
-    /// each under its own.
+    /// Tries these, a group as many as half of what is left holds: the rest is for telling apart those that fit.
+    /// What it does not hold is left out under the group's name, or each under its own.
     pub(super) fn enter(&mut self, candidates: Vec<Candidate>, group: Option<&str>) {
-        let mut tried = Vec::new();
-        let mut left_out: Vec<String> = Vec::new();
-        for candidate in candidates {
-            let known = |entry: &Entry| {
+        let known = |candidate: &Candidate| {
+            self.entries.iter().any(|entry| {
                 entry.candidate.id == candidate.id
                     && entry.candidate.substeps == candidate.substeps
                     && entry.candidate.says == candidate.says
                     && candidate.says.is_none()
-            };
-            if self.entries.iter().any(known) {
-                continue;
-            }
-            let effort = self.effort(&candidate, self.probes);
-            // The first is what is expected, and tried whatever it costs.
-            // No single one may take what many could.
-            let most = if group.is_some() {
-                self.budget / 20
+            })
+        };
+        let new: Vec<Candidate> = candidates.into_iter().filter(|c| !known(c)).collect();
+        let (replay, probes, sample) = (self.replay, self.probes, self.sample);
+        let kept = group.map_or(0, |_| self.budget / 2);
+        // No single one may take what many could.
+        let most = group.map_or(self.budget, |_| self.budget / 20);
+        let tried = self.afforded(new, group, probes, most, kept);
+        let near: Vec<Vec<Defect>> = tried
+            .par_iter()
+            .map(|candidate| defects(replay, candidate, probes))
+            .collect();
+        let mut fitting = Vec::new();
+        let mut others = Vec::new();
+        for (candidate, defects) in tried.into_iter().zip(near) {
+            if defects.iter().any(Defect::fits) {
+                fitting.push(candidate);
             } else {
-                self.budget
-            };
-            if effort > most && !(self.entries.is_empty() && tried.is_empty()) {
+                others.push(Entry {
+                    candidate,
+                    defects,
+                    sampled: false,
+                });
+            }
+        }
+        let fitting = self.afforded(fitting, group, sample, self.budget, kept);
+        let sampled = fitting.into_par_iter().map(|candidate| Entry {
+            defects: defects_of_all(replay, &candidate, sample),
+            candidate,
+            sampled: true,
+        });
+        let sampled: Vec<Entry> = sampled.collect();
+        self.entries.extend(sampled);
+        self.entries.extend(others);
+    }
+
+    /// Those that can be replayed `at` these places with `kept` left of the budget, each for at most `most`; the
+    /// others are left out. What is expected comes first, and is tried whatever it costs.
+    fn afforded(
+        &mut self,
+        candidates: Vec<Candidate>,
+        group: Option<&str>,
+        at: &[Transition],
+        most: u64,
+        kept: u64,
+    ) -> Vec<Candidate> {
+        let mut tried = Vec::new();
+        let mut left_out: Vec<String> = Vec::new();
+        for candidate in candidates {
+            let effort = self.effort(&candidate, at);
+            let expected = self.entries.is_empty() && tried.is_empty();
+            if !expected && (effort > most || effort.saturating_add(kept) > self.budget) {
                 left_out.push(group.map_or_else(|| candidate.label(), str::to_owned));
                 continue;
             }
             self.budget = self.budget.saturating_sub(effort);
             tried.push(candidate);
         }
-        left_out.dedup();
         self.left_out.extend(left_out);
-        let (replay, probes, sample) = (self.replay, self.probes, self.sample);
-        let run = |candidate: Candidate| {
-            let near = defects(replay, &candidate, probes);
-            let sampled = near.iter().any(Defect::fits);
-            let defects = if sampled {
-                defects_of_all(replay, &candidate, sample)
-            } else {
-                near
-            };
-            Entry {
-                candidate,
-                defects,
-                sampled,
-            }
-        };
-        let entries: Vec<Entry> = tried.into_par_iter().map(run).collect();
-        for entry in &entries {
-            if entry.sampled {
-                let effort = self.effort(&entry.candidate, self.sample);
-                self.budget = self.budget.saturating_sub(effort);
-            }
-        }
-        self.entries.extend(entries);
+        self.left_out.dedup();
+        tried
     }
 
     fn effort(&self, candidate: &Candidate, at: &[Transition]) -> u64 {
@@ -274,14 +289,15 @@ impl Race<'_> {
                 continue;
             }
             let once = self.effort(candidate, &at[..1.min(at.len())]);
-            let same =
-                once.saturating_mul(MOTIONS) <= self.budget && comparison.same(own, candidate);
-            let alike = || {
+            let affordable = |times: u64| once.saturating_mul(times) <= self.budget;
+            let same = affordable(MOTIONS) && comparison.same(own, candidate);
+            let told = || {
                 let others = defects_of_all(self.replay, candidate, &at);
                 let mut pairs = own_defects.iter().zip(others);
-                pairs.all(|(own, other)| !own.fits() || other.fits())
+                pairs.any(|(own, other)| own.fits() && !other.fits())
             };
-            if same || (once.saturating_mul(at.len() as u64) <= self.budget && alike()) {
+            // What is not compared is not told apart.
+            if same || !affordable(at.len() as u64) || !told() {
                 equals.push((i, same));
             }
         }

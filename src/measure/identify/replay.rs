@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// becomes of them in a step is measured in random directions, of which the unit takes the largest
 /// result: one standard deviation or more, where the sum of many uniform roundings stays below 3 and
 /// that of a few in the worst case below 4. The rest is for programs that take more operations.
-pub const FIT: f64 = 16.0;
+pub const FIT: f64 = 10.0;
 
 /// A defect so small needs no finer unit.
 const CLEAR: f64 = 0.25 * FIT;

@@ -119,6 +119,19 @@ fn three_decimals_do_not_decide() {
     }
 }
 
+/// What there is no time to compare is not told apart: rows that several methods explain never have one name alone.
+#[test]
+fn few_replays_decide_nothing() {
+    let scene = swinging_triangle(0.0, DampingModel::Axial);
+    let rows = rounded(run(&scene, "rk4", 1, 200), Precision::Decimals(4));
+    for budget in [500_000, 2_000_000, 20_000_000] {
+        let identity = found_within(budget, &scene, &rows, None).identity;
+        let identity = identity.expect("something to replay");
+        honest(&identity, "rk4", 1).unwrap();
+        assert!(!identity.decisive(), "{budget}: {identity:?}");
+    }
+}
+
 /// The law is not empty: rounded data of another method, or of another scene, breaks it.
 #[test]
 fn the_law_of_rounded_data_kills_mutants() {

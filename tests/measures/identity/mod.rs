@@ -80,13 +80,17 @@ fn name_of(scene: &Scene, rows: &Rows, transitions: Option<usize>) -> Option<Ide
 }
 
 fn found(scene: &Scene, rows: &Rows, transitions: Option<usize>) -> Found {
+    found_within(u64::MAX, scene, rows, transitions)
+}
+
+fn found_within(budget: u64, scene: &Scene, rows: &Rows, transitions: Option<usize>) -> Found {
     identify(&Question {
         scene,
         system: &ParticleSystem::new(scene),
         rows,
         settings: Settings::default(),
         transitions,
-        budget: u64::MAX,
+        budget,
         hint: None,
     })
 }

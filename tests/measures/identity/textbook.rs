@@ -215,7 +215,7 @@ fn textbook_methods_are_named_on_every_small_scene() {
             }
         }
     }
-    // What fits to 16 must not owe it to a wide bound: measured 3.3.
+    // What fits to 10 must not owe it to a wide bound: measured 3.3.
     assert!((0.5..=8.0).contains(&worst), "{worst}");
     // A thousandth of gravity, and it is no longer that method.
     let mut heavier = scenes[2].clone();
