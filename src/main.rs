@@ -1,7 +1,7 @@
 //! The command line: verbs in, exit codes out.
 
 use clap::{ColorChoice, Parser, Subcommand};
-use springcheck::verbs::{compare, cost, list, run, show, stability};
+use springcheck::verbs::{check, compare, cost, explain, list, merge, run, show, stability};
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -30,12 +30,18 @@ enum Verb {
     Run(run::Args),
     /// A trajectory some other program computed: is it right, and which scheme is it really?
     Compare(compare::Args),
+    /// The gate: what scenes expect, the laws they imply, and an accepted run; for CI.
+    Check(check::Args),
     /// How large a step each integrator may take: predicted, measured, and as a map.
     Stability(stability::Args),
     /// What accuracy costs: errors over time and evaluations, and the cheapest way to a target.
     Cost(cost::Args),
     /// A stored report once more: printed and drawn as by the verb that made it.
     Show(show::Args),
+    /// The JSON of parts of a run, joined into that of the whole.
+    Merge(merge::Args),
+    /// What an id means: a check, an integrator, an engine, an effect, a mistake.
+    Explain(explain::Args),
     /// What there is: integrators, effects, engines, mistakes, with their facts.
     List(list::Args),
 }
@@ -62,9 +68,12 @@ fn main() -> ExitCode {
     let done = match cli.verb {
         Verb::Run(args) => run::run(&args, cli.quiet),
         Verb::Compare(args) => compare::compare(&args, cli.quiet),
+        Verb::Check(args) => check::check(&args, cli.quiet),
         Verb::Stability(args) => stability::stability(&args, cli.quiet),
         Verb::Cost(args) => cost::cost(&args, cli.quiet),
         Verb::Show(args) => show::show(&args, cli.quiet),
+        Verb::Merge(args) => merge::merge(&args),
+        Verb::Explain(args) => explain::explain(&args),
         Verb::List(args) => list::list(&args),
     };
     match done {

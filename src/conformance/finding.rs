@@ -32,6 +32,7 @@ impl Finding {
             bound: self.bound,
             derivation: self.derivation.to_owned(),
             message: self.message.clone(),
+            ..Check::default()
         }
     }
 

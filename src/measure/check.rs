@@ -2,22 +2,36 @@
 
 use serde::{Deserialize, Serialize};
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+/// A finding held against its bound. The default is a check that was not made.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     pub id: String,
+    /// Whom it is about.
     pub subject: String,
     pub status: CheckStatus,
     pub measured: Option<f64>,
     pub bound: Option<f64>,
+    /// Where the bound comes from.
     pub derivation: String,
+    /// The result in one sentence.
     pub message: String,
+    /// The first moment that breaks the bound, s; absent where it is not known or nothing does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_s: Option<f64>,
+    /// What likely makes it fail; absent where nobody knows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cause: Option<String>,
+    /// The key of the scene's file that it is about, as `expect.rk4.status`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub key: Option<String>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CheckStatus {
     Pass,
     Fail,
+    #[default]
     Skip,
     Inconclusive,
 }

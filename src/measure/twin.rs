@@ -170,6 +170,7 @@ impl Claim {
             bound: Some(bound).filter(|bound| bound.is_finite()),
             derivation,
             message,
+            ..Check::default()
         }
     }
 }

@@ -1,8 +1,10 @@
 //! The parts of a report that all verbs use: they turn findings into bytes. Nothing here touches files or
 //! the terminal, and the report alone decides what is shown.
 
+pub mod github;
 mod header;
 pub mod json;
+pub mod junit;
 pub mod markdown;
 pub mod svg;
 pub mod table;

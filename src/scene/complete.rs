@@ -2,6 +2,8 @@
 //! a timestep against a duration.
 
 use super::error::Refusal;
+use super::expect::engine;
+use super::expectation::{Names, Scope};
 use super::limits;
 use super::model::{NO_PARTICLES, Particle, Scene, Wind};
 use super::place::Problem;
@@ -44,6 +46,7 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
     if let Some(problem) = reading.problem {
         return Err(problem);
     }
+    externals(&scene, reading.names)?;
     check_times(scene.solver.timestep, scene.duration)
         .map_err(|refusal| Problem::new("solver.timestep", refusal))?;
     particles(&scene.particles)?;
@@ -83,6 +86,29 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
         normalise(wind)?;
     }
     Ok(scene)
+}
+
+/// Checks that programs have names of their own, and that every engine something is expected of exists.
+fn externals(scene: &Scene, names: &Names) -> Result<(), Problem> {
+    for (at, name) in scene.externals.iter().enumerate() {
+        let taken = names.methods.iter().chain(&names.engines);
+        let help = "choose another name";
+        if taken.into_iter().any(|id| id.eq_ignore_ascii_case(name)) {
+            let message = format!("an integrator or engine has the name `{name}`");
+            return Problem::because(format!("externals[{at}]"), message, help);
+        }
+        if scene.externals[..at].contains(name) {
+            let message = format!("`{name}` is listed twice");
+            return Problem::because(format!("externals[{at}]"), message, "keep one of them");
+        }
+    }
+    for expectation in &scene.expect {
+        if let Scope::Engine(id) = &expectation.scope {
+            engine(id, names, &scene.externals)
+                .map_err(|refusal| Problem::of_key("expect", id, refusal))?;
+        }
+    }
+    Ok(())
 }
 
 /// Checks that there is a particle, and one that can move.

@@ -2,8 +2,8 @@
 //! sizes are limited, since YAML aliases could multiply them.
 
 use super::error::{Refusal, refuse};
-use super::expectation::{ALL, Expectation, KeyKind, Names, REST, Scope, Wanted};
-use super::limits::{BOUND, EXPECTED, WORD_BYTES, known};
+use super::expectation::{ALL, Expectation, KeyKind, Names, REST, SKIP, Scope, Skipped, Wanted};
+use super::limits::{self, BOUND, EXPECTED, WORD_BYTES, known};
 use super::place::Problem;
 use super::values::{Any, Key, Maybe, index_of, no_merge, number, repeated, text, unknown};
 use super::words::{did_you_mean, shorten};
@@ -16,6 +16,7 @@ const MAPPING: &str = "a mapping such as {status: completed}";
 pub(super) struct Engines<'r> {
     pub(super) names: &'r Names,
     pub(super) expect: &'r mut Vec<Expectation>,
+    pub(super) skip: &'r mut Vec<Skipped>,
     /// The first unknown key. It is reported last: an error in its value may say better what is wrong.
     pub(super) problem: &'r mut Option<Problem>,
 }
@@ -32,9 +33,15 @@ impl<'de> Visitor<'de> for Engines<'_> {
         while let Some(scope) = map.next_key_seed(Key(|engine: &str| {
             let engine = self.names.meant(engine);
             fresh(engine, &mut before)?;
-            scope(engine, self.names)
+            if engine == SKIP {
+                return Ok(None);
+            }
+            scope(engine, self.names).map(Some)
         }))? {
-            map.next_value_seed(Any(Line(scope, &mut self)))?;
+            match scope {
+                Some(scope) => map.next_value_seed(Any(Line(scope, &mut self)))?,
+                None => map.next_value_seed(Any(Skips(self.names, self.skip)))?,
+            }
         }
         Ok(())
     }
@@ -63,17 +70,62 @@ fn short(text: &str) -> Result<(), Refusal> {
 }
 
 fn scope(engine: &str, names: &Names) -> Result<Scope, Refusal> {
-    let mut known = [ALL, REST].to_vec();
-    known.extend(names.methods.iter().chain(&names.engines));
     match engine {
         ALL => Ok(Scope::All),
         REST => Ok(Scope::Rest),
-        id if known.contains(&id) => Ok(Scope::Engine(id.to_owned())),
-        other => Refusal::because(
-            format!("unknown engine `{}`", shorten(other)),
-            did_you_mean(other, &known)
-                .unwrap_or_else(|| format!("the engines here are {}", known.join(", "))),
-        ),
+        // Whether there is such an engine is known once the file is read: it may list it among its `externals`.
+        name if limits::external(name).is_ok() || names.engines.contains(&name) => {
+            Ok(Scope::Engine(name.to_owned()))
+        }
+        other => Err(no_engine(other, names, &[])),
+    }
+}
+
+/// Checks that an engine is an integrator, a reference engine, or a program that the file or the command line names.
+pub(super) fn engine(id: &str, names: &Names, listed: &[String]) -> Result<(), Refusal> {
+    let own = names.methods.contains(&id) || names.engines.contains(&id);
+    if own || listed.iter().chain(&names.externals).any(|name| name == id) {
+        return Ok(());
+    }
+    Err(no_engine(id, names, listed))
+}
+
+fn no_engine(id: &str, names: &Names, listed: &[String]) -> Refusal {
+    let mut known = [ALL, REST, SKIP].to_vec();
+    known.extend(names.methods.iter().chain(&names.engines));
+    known.extend(listed.iter().chain(&names.externals).map(String::as_str));
+    let help = did_you_mean(id, &known).unwrap_or_else(|| {
+        format!(
+            "the engines here are {}; list another program as `externals: [{}]`",
+            known.join(", "),
+            shorten(id)
+        )
+    });
+    Refusal::new(format!("unknown engine `{}`", shorten(id)), help)
+}
+
+/// Reads `skip`: a reason for each check that is not made.
+struct Skips<'n, 'r>(&'n Names, &'r mut Vec<Skipped>);
+
+impl<'de> Visitor<'de> for Skips<'_, '_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a mapping such as {order: \"forces jump here\"}")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        let Skips(names, skip) = self;
+        let mut before = Vec::new();
+        while let Some(check) = map.next_key_seed(Key(|check: &str| {
+            fresh(check, &mut before)?;
+            known(check, &names.checks, "check")?;
+            Ok(check.to_owned())
+        }))? {
+            let reason = map.next_value_seed(Any(text(some_text)))?;
+            skip.push(Skipped { check, reason });
+        }
+        Ok(())
     }
 }
 

@@ -7,6 +7,8 @@ use std::fmt;
 pub(super) const ALL: &str = "all";
 /// The line about every integrator without a line of its own.
 pub(super) const REST: &str = "rest";
+/// The line that names checks which are not made.
+pub(super) const SKIP: &str = "skip";
 
 /// The ids, keys and words of other modules that a scene may name.
 #[derive(Debug, Clone, Default)]
@@ -17,6 +19,10 @@ pub struct Names {
     pub aliases: &'static [(&'static str, &'static str)],
     /// Ids of reference engines, for `expect`.
     pub engines: Vec<&'static str>,
+    /// Names of other programs that run beside them, for `expect`.
+    pub externals: Vec<String>,
+    /// Ids of checks, for `expect.skip`.
+    pub checks: Vec<&'static str>,
     /// The keys an expectation may be about.
     pub keys: Vec<OutcomeKey>,
 }
@@ -57,6 +63,15 @@ pub struct Expectation {
     pub wanted: Wanted,
 }
 
+/// A check that a scene does not want, as its `expect.skip` says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Skipped {
+    /// The id of the check.
+    pub check: String,
+    /// Why it says nothing about this scene; not empty.
+    pub reason: String,
+}
+
 /// The engines an expectation is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Scope {
@@ -64,7 +79,7 @@ pub enum Scope {
     All,
     /// Every integrator that has no line of its own.
     Rest,
-    /// The integrator or reference engine of this id.
+    /// The integrator, reference engine or other program of this id.
     Engine(String),
 }
 

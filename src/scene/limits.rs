@@ -112,6 +112,30 @@ pub(super) fn description<'a>(text: &'a str, _: &Names) -> Result<&'a str, Refus
     Ok(text)
 }
 
+/// The longest name of another program, in characters; longer ones would push numbers out of tables.
+pub const EXTERNAL_CHARS: usize = 32;
+
+/// Checks the name of another program, which stands in tables, figures and names of files.
+///
+/// # Errors
+/// A [`Refusal`] that says what a name is made of.
+pub fn external(name: &str) -> Result<(), Refusal> {
+    let plain = |c: char| c.is_alphanumeric() || "_.+-".contains(c);
+    let starts = name.starts_with(char::is_alphanumeric);
+    let short = name.chars().count() <= EXTERNAL_CHARS;
+    if starts && short && name.chars().all(plain) {
+        return Ok(());
+    }
+    Refusal::because(
+        format!(
+            "expected a name of 1 to {EXTERNAL_CHARS} letters, digits, `_`, `.`, `+` and `-`, beginning with a \
+             letter or digit, found `{}`",
+            shorten(name)
+        ),
+        "",
+    )
+}
+
 /// The id of the integrator, which must exist.
 pub(super) fn method<'a>(word: &'a str, names: &Names) -> Result<&'a str, Refusal> {
     let id = names.meant(word);

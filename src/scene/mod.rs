@@ -22,12 +22,13 @@ pub(crate) mod words;
 
 pub use complete::check_times;
 pub use error::{Refusal, SceneError};
-pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Wanted};
+pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
     Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, SolverSpec, Spring, Wind, steps,
 };
 pub use table::Value;
 
+use place::Problem;
 use read::Reading;
 use std::fs::File;
 use std::io::Read;
@@ -68,6 +69,36 @@ pub fn parse(bytes: &[u8], file: &str, names: &Names) -> Result<Scene, SceneErro
     };
     read::document(text, &mut reading).map_err(located)?;
     complete::scene(reading).map_err(|problem| located(problem.locate(text)))
+}
+
+/// The line and column, from 1, of a key in the text of a scene file, such as `expect.rk4.status`; None where it
+/// does not stand there.
+pub fn place(text: &str, key: &str) -> Option<(u32, u32)> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let (mapping, last) = key.rsplit_once('.').unwrap_or(("", key));
+    // The keys of outcomes have dots of their own: `expect.rk4.energy.class`.
+    let scope = key
+        .strip_prefix("expect.")
+        .and_then(|rest| rest.split_once('.'));
+    let (mapping, last) = match scope {
+        Some((scope, last)) => (format!("expect.{scope}"), last),
+        None => (mapping.to_owned(), last),
+    };
+    let fault = Problem::of_key(&mapping, last, Refusal::new("", "")).locate(text);
+    let found = text.get(fault.offset..)?.starts_with(last);
+    let error = SceneError::at("", text, fault);
+    found.then_some((error.line?, error.column?))
+}
+
+/// The same in a file on disk; None also where it cannot be read.
+pub fn place_in(file: &str, key: &str) -> Option<(u32, u32)> {
+    let mut text = String::new();
+    let opened = File::open(file).ok()?;
+    opened
+        .take(limits::FILE_BYTES as u64)
+        .read_to_string(&mut text)
+        .ok()?;
+    place(&text, key)
 }
 
 /// Reads a scene file from disk.

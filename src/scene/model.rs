@@ -11,7 +11,7 @@
 //! a force of 0.
 
 use super::error::Refusal;
-use super::expectation::{Expectation, Names, Scope};
+use super::expectation::{Expectation, Names, Scope, Skipped};
 use super::limits::{self, Bounds};
 use super::table::{Field, Value, declare, members, words};
 use parry3d::bounding_volume::Aabb;
@@ -100,6 +100,8 @@ pub enum ValueKind {
     Word(&'static [&'static str]),
     /// Text that this function accepts, and replaces by what it means.
     Text(for<'a> fn(&'a str, &Names) -> Result<&'a str, Refusal>),
+    /// A list of names that this function accepts.
+    Names(fn(&str) -> Result<(), Refusal>),
     /// A mapping or a list of them, with rows of its own.
     Part(&'static Part),
     /// Expectations, by engine and key.
@@ -125,6 +127,10 @@ declare! {
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
+    ]
+    [
+        /// The checks that are not made, in the order of the file's `expect.skip`.
+        skip: Vec<Skipped> = Vec::new()
     ]
 
     /// One line; the file's stem if absent, `scene` if that has none.
@@ -154,6 +160,9 @@ declare! {
         "gravitational" => ValueKind::Part(&GRAVITATIONAL), Usual, None;
     /// A constant force.
     wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
+    /// Names of other programs that the file expects something of; the command line says what they are.
+    externals: Vec<String> = Vec::new(),
+        "externals" => ValueKind::Names(limits::external), Usual, None;
     /// Expectations of engines, in the order of the file. They change no run.
     expect: Vec<Expectation> = Vec::new(), "expect" => ValueKind::Expect, Usual, None;
 }

@@ -12,7 +12,7 @@ use super::limits::known;
 use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
-use super::values::{Any, Key, Maybe, Number, Numbers, flag, index_of, number, text};
+use super::values::{Any, Key, Maybe, Number, Numbers, Texts, flag, index_of, number, text};
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
@@ -186,11 +186,17 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
                 self.set(0, Value::Text(text));
                 Ok(())
             })),
+            ValueKind::Names(judge) => from.deserialize_any(Texts(|name: &str| {
+                judge(name)?;
+                self.set(0, Value::Text(name));
+                Ok(())
+            })),
             ValueKind::Part(part) if part.list => from.deserialize_any(List(part, self)),
             ValueKind::Part(part) => from.deserialize_any(self.member(part)),
             ValueKind::Expect => from.deserialize_any(Engines {
                 names: self.reading.names,
                 expect: &mut self.reading.scene.expect,
+                skip: &mut self.reading.scene.skip,
                 problem: &mut self.reading.problem,
             }),
         }

@@ -71,8 +71,14 @@ impl<T: Field + Default> Field for Option<T> {
 }
 
 impl<T: Field + Default> Field for Vec<T> {
-    fn put(&mut self, _: usize, _: Value<'_>) {
-        self.push(T::default());
+    fn value(&self, component: usize) -> Option<Value<'_>> {
+        self.get(component)?.value(0)
+    }
+
+    fn put(&mut self, _: usize, value: Value<'_>) {
+        let mut member = T::default();
+        member.put(0, value);
+        self.push(member);
     }
 }
 
@@ -126,7 +132,7 @@ macro_rules! declare {
     (
         $(#[$about:meta])*
         $name:ident: $type:ident, $how:ident $place:ident, $expected:literal, reserved $reserved:expr;
-        $([$(#[$note:meta])* $unlisted:ident: $kept:ty = $empty:expr])?
+        $([$(#[$note:meta])* $unlisted:ident: $kept:ty = $empty:expr])*
         $(
             $(#[doc = $summary:literal])*
             $field:ident: $of:ty = $default:expr, $key:literal => $kind:expr, $absent:expr, $flat:expr;
@@ -136,12 +142,12 @@ macro_rules! declare {
         #[derive(Debug, Clone, PartialEq)]
         pub struct $type {
             $($(#[doc = $summary])* pub $field: $of,)*
-            $($(#[$note])* pub $unlisted: $kept,)?
+            $($(#[$note])* pub $unlisted: $kept,)*
         }
 
         impl Default for $type {
             fn default() -> Self {
-                Self { $($field: $default,)* $($unlisted: $empty,)? }
+                Self { $($field: $default,)* $($unlisted: $empty,)* }
             }
         }
 

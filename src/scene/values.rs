@@ -252,6 +252,31 @@ impl<'de, F: FnMut(usize, Number) -> Result<(), Refusal>> Visitor<'de> for Numbe
     }
 }
 
+/// Reads a list of texts, at most [`EXPECTED`](super::limits::EXPECTED).
+pub(super) struct Texts<F>(pub(super) F);
+
+impl<'de, F: FnMut(&str) -> Result<(), Refusal>> Visitor<'de> for Texts<F> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a list of names")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(mut self, mut list: A) -> Result<(), A::Error> {
+        let mut count = 0;
+        let mut one = |name: &str| {
+            count += 1;
+            if count > super::limits::EXPECTED {
+                let message = format!("expected at most {} names", super::limits::EXPECTED);
+                return Refusal::because(message, "");
+            }
+            (self.0)(name)
+        };
+        while list.next_element_seed(Any(text(&mut one)))?.is_some() {}
+        Ok(())
+    }
+}
+
 /// A value that may be left empty: a key without a value counts as absent.
 pub(super) struct Maybe<S>(pub(super) S);
 

@@ -103,5 +103,6 @@ pub fn no_scale(scale: Option<f64>) -> Option<Check> {
             "everything starts at rest with its springs unstretched, and weight or size is 0: \
                   energy errors have no relative size here"
                 .to_owned(),
+        ..Check::default()
     })
 }

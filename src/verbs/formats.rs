@@ -1,9 +1,10 @@
 //! The formats a report is written in, one row each, and its figures.
 
-use super::{Body, Report, cost, run, stability};
+use super::{Body, Report, check, cost, run, stability};
 use crate::report::json::{self, Tool};
 use crate::report::svg::{Chart, Figure};
-use crate::report::{View, terminal};
+use crate::report::{View, github, junit, terminal};
+use crate::scene;
 
 /// One format of reports.
 pub struct Format {
@@ -23,7 +24,7 @@ pub const FORMATS: &[Format] = &[
         id: "human",
         extension: "txt",
         file: false,
-        render: |_, reports| joined(reports, |report| terminal::render(report.view())),
+        render: |_, reports| joined(reports, Report::human),
     },
     Format {
         id: "json",
@@ -36,6 +37,23 @@ pub const FORMATS: &[Format] = &[
         extension: "md",
         file: true,
         render: |_, reports| joined(reports, Report::markdown),
+    },
+    Format {
+        id: "junit",
+        extension: "xml",
+        file: false,
+        render: |_, reports| junit::render(reports.iter().map(|report| &report.header)),
+    },
+    Format {
+        id: "github",
+        extension: "txt",
+        file: false,
+        render: |_, reports| {
+            github::render(
+                reports.iter().map(|report| &report.header),
+                &scene::place_in,
+            )
+        },
     },
 ];
 
@@ -55,6 +73,7 @@ impl Report {
     pub fn stem(&self) -> &'static str {
         match &self.body {
             Body::Run { .. } | Body::Compare { .. } => "report",
+            Body::Check { .. } => "check",
             Body::Stability { .. } => "stability",
             Body::Cost { .. } => "cost",
         }
@@ -63,9 +82,19 @@ impl Report {
     /// The parts that the terminal and the page show, as the verb words them.
     pub fn view(&self) -> View<'_> {
         match &self.body {
-            Body::Run { outcomes } | Body::Compare { outcomes, .. } => run::view(self, outcomes),
+            Body::Run { outcomes } | Body::Check { outcomes } | Body::Compare { outcomes, .. } => {
+                run::view(self, outcomes)
+            }
             Body::Stability { stability, .. } => stability::view(self, stability),
             Body::Cost { cost, .. } => cost::view(self, cost),
+        }
+    }
+
+    /// The text for people, as the terminal shows it.
+    pub fn human(&self) -> String {
+        match &self.body {
+            Body::Check { .. } => check::human(self),
+            _ => terminal::render(self.view()),
         }
     }
 
@@ -73,7 +102,7 @@ impl Report {
     pub fn markdown(&self) -> String {
         let view = self.view();
         match &self.body {
-            Body::Run { .. } | Body::Compare { .. } => run::page(self, &view),
+            Body::Run { .. } | Body::Check { .. } | Body::Compare { .. } => run::page(self, &view),
             Body::Stability { stability, .. } => stability::page(self, stability, &view),
             Body::Cost { cost, .. } => cost::page(self, cost, &view),
         }
@@ -82,7 +111,7 @@ impl Report {
     /// The figures it has data for, in the order they are shown: file name, title, chart.
     fn charts(&self) -> impl Iterator<Item = (&'static str, &'static str, Chart)> {
         let figures: &[Figure<Report>] = match &self.body {
-            Body::Run { .. } | Body::Compare { .. } => run::FIGURES,
+            Body::Run { .. } | Body::Check { .. } | Body::Compare { .. } => run::FIGURES,
             Body::Stability { .. } => stability::FIGURES,
             Body::Cost { .. } => cost::FIGURES,
         };

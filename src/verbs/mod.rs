@@ -3,13 +3,16 @@
 //!
 //! Every number that could be missing is an `Option`; no field ever holds NaN or infinity.
 
+pub mod check;
 pub mod cli;
 pub mod clock;
 pub mod compare;
 pub mod cost;
+pub mod explain;
 mod facts;
 pub mod formats;
 pub mod list;
+pub mod merge;
 pub mod run;
 pub mod series;
 pub mod session;
@@ -48,6 +51,10 @@ pub enum Body {
     Run {
         outcomes: Vec<Outcome>,
     },
+    /// As `run`, without times.
+    Check {
+        outcomes: Vec<Outcome>,
+    },
     Compare {
         outcomes: Vec<Outcome>,
         /// The first step that deviates from the scheme; null where none does.
@@ -69,7 +76,9 @@ impl Report {
     /// One outcome for each engine and timestep; none where the verb has a result of another kind.
     pub fn outcomes(&self) -> &[Outcome] {
         match &self.body {
-            Body::Run { outcomes } | Body::Compare { outcomes, .. } => outcomes,
+            Body::Run { outcomes } | Body::Check { outcomes } | Body::Compare { outcomes, .. } => {
+                outcomes
+            }
             Body::Stability { .. } | Body::Cost { .. } => &[],
         }
     }

@@ -8,6 +8,7 @@ mod definitions;
 mod distances;
 mod expect;
 mod fault;
+mod gate;
 mod identity;
 mod plan;
 mod stability;

@@ -434,5 +434,6 @@ pub fn check(subject: &str, measured: &MeasuredOrder) -> Check {
             measured.until
         ),
         message,
+        ..Check::default()
     }
 }

@@ -5,12 +5,11 @@ mod fit;
 mod paint;
 
 pub use fit::{clip, pad, width, wrap};
-pub use paint::{Tone, mark};
+pub use paint::{Tone, mark, paint};
 
 use super::words::{self, grouped, one_line};
 use super::{Note, View, verdict};
 use crate::measure::{Check, CheckStatus};
-use paint::paint;
 
 /// The most remarks the terminal shows.
 const MAX_NOTES: usize = 5;

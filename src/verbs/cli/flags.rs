@@ -1,6 +1,6 @@
 //! Flags that several verbs have: the scene with its duration, `--truth`, lengths of time.
 
-use crate::scene::{self, Scene};
+use crate::scene::{self, Names, Scene};
 use crate::trajectory::Plane;
 use crate::truth::Demand;
 use crate::verbs;
@@ -15,9 +15,17 @@ use std::time::Duration;
 /// Fails where the file is no scene. Whether the duration fits a timestep,
 /// [`check_times`](scene::check_times) checks.
 pub fn scene(path: &Path, duration: Option<f64>) -> anyhow::Result<Scene> {
-    let mut scene = scene::read(path, verbs::names())?;
+    let mut scene = scene_of(path, verbs::names())?;
     scene.duration = duration.unwrap_or(scene.duration);
     Ok(scene)
+}
+
+/// The scene of a file that may speak of these names.
+///
+/// # Errors
+/// Fails where the file is no scene.
+pub fn scene_of(path: &Path, names: &Names) -> anyhow::Result<Scene> {
+    Ok(scene::read(path, names)?)
 }
 
 /// The parser of the values of `--truth`.

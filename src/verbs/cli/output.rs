@@ -22,7 +22,7 @@ pub struct Output {
     output: Option<PathBuf>,
 }
 
-fn format_ids() -> PossibleValuesParser {
+pub fn format_ids() -> PossibleValuesParser {
     PossibleValuesParser::new(formats::FORMATS.iter().map(|format| format.id))
 }
 
@@ -52,8 +52,7 @@ impl Output {
 
     /// Prints the reports to stdout.
     pub fn print(&self, tool: &Tool, reports: &[Report]) -> anyhow::Result<()> {
-        let format = formats::format(&self.format).context("a format without a row")?;
-        print(&(format.render)(tool, reports))
+        print(&rendered(&self.format, tool, reports)?)
     }
 
     /// Prints one report to stdout; for people, the text of [`human`].
@@ -70,6 +69,12 @@ impl Output {
             self.print(&Tool::this(), std::slice::from_ref(report))
         }
     }
+}
+
+/// Reports made by `tool`, in the format of this id.
+pub fn rendered(format: &str, tool: &Tool, reports: &[Report]) -> anyhow::Result<String> {
+    let format = formats::format(format).context("a format without a row")?;
+    Ok((format.render)(tool, reports))
 }
 
 /// Writes to stdout. A reader that has closed the pipe (`| head`) is not an error.
@@ -148,15 +153,22 @@ impl Place {
 
     /// Writes a file whole or not at all: it is written under a temporary name, then renamed.
     fn put(&self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
-        let path = self.folder.join(name);
-        let write = || -> std::io::Result<()> {
-            let mut file = temporary(&self.folder)?;
-            file.write_all(bytes)?;
-            file.persist(&path)?;
-            Ok(())
-        };
-        write().with_context(|| format!("cannot write {}", path.display()))
+        put(&self.folder.join(name), bytes)
     }
+}
+
+/// Writes a file whole or not at all.
+pub fn put(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let write = || -> std::io::Result<()> {
+        let mut file = temporary(folder.unwrap_or_else(|| Path::new(".")))?;
+        file.write_all(bytes)?;
+        file.persist(path)?;
+        Ok(())
+    };
+    write().with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// A temporary file in the folder of the final one, with the permissions of any other file.
@@ -184,7 +196,7 @@ pub fn written(report: Report, place: Option<&Place>) -> anyhow::Result<Report> 
 
 /// The table and its verdict, then the report's path if it has a folder.
 pub fn table(report: &Report, place: Option<&Place>) -> String {
-    let table = crate::report::terminal::render(report.view());
+    let table = report.human();
     let written = place.map_or_else(String::new, |place| {
         let file = place.report(report).display().to_string();
         format!("report: {}\n", file.replace(char::is_control, "?"))

@@ -1,9 +1,12 @@
 //! `springcheck compare FILE --scene SCENE` checks one trajectory that another program computed: its errors, and the
 //! scheme that it follows.
 
-use crate::measure::identify::Undecided;
+use crate::integrators::{self, Method};
+use crate::measure::identify::{Identified, Undecided};
+use crate::measure::{Check, CheckStatus};
 use crate::report::json::Tool;
 use crate::scene::Scene;
+use crate::scene::words::nearest;
 use crate::solvers::Solver;
 use crate::solvers::external::{Failure, Program, Recording, Task};
 use crate::trajectory::{self, Expected, Plane, Rows, SaveError, limits};
@@ -44,8 +47,40 @@ pub struct Args {
     #[arg(long, default_value = "auto", value_parser = demand(), value_name = "KIND")]
     truth: Demand,
 
+    /// The integrator it has to be: anything else is a failed check.
+    #[arg(long, value_name = "INTEGRATOR", value_parser = method)]
+    expect: Option<&'static Method>,
+
+    /// The largest energy error it may have, in units of the scene's energy.
+    #[arg(long, value_name = "PART", value_parser = positive)]
+    max_energy: Option<f64>,
+
+    /// The largest distance from the truth that a particle may have, m.
+    #[arg(long, value_name = "METRES", value_parser = positive)]
+    max_error: Option<f64>,
+
     #[command(flatten)]
     output: Output,
+}
+
+/// The integrator of this id.
+pub(in crate::verbs) fn method(id: &str) -> Result<&'static Method, String> {
+    let found = integrators::find(id).filter(|method| method.pair().is_none());
+    found.ok_or_else(|| {
+        let known = integrators::ids(integrators::fixed());
+        nearest(id, &known).map_or_else(
+            || format!("expected one of {}", known.join(", ")),
+            |near| format!("did you mean `{near}`?"),
+        )
+    })
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text
+        .parse::<f64>()
+        .ok()
+        .filter(|x| x.is_finite() && *x > 0.0);
+    number.ok_or_else(|| format!("expected a positive number, found `{text}`"))
 }
 
 /// The exit code where no scheme explains the file to rounding.
@@ -72,7 +107,8 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let name = file_name.map_or(name, |n| n.to_string_lossy().into_owned());
     let steps = rows.steps.last().copied().unwrap_or(0);
     let terminal = Terminal::new(steps, 0.0, quiet);
-    let report = report(&scene, &Arc::new(rows), &name, args.truth, &terminal)?;
+    let mut report = report(&scene, &Arc::new(rows), &name, args.truth, &terminal)?;
+    report.header.checks.extend(wanted(args, &report));
     let place = args.output.stated_place(&args.file);
     let report = output::written(report, place.as_ref())?;
     if args.output.is_human() {
@@ -82,6 +118,75 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         args.output.print(&Tool::this(), reports)?;
     }
     Ok(ExitCode::from(code(&report)))
+}
+
+/// A check for each flag that says what the file has to be.
+fn wanted(args: &Args, report: &Report) -> Vec<Check> {
+    let Some(outcome) = report.outcomes().first() else {
+        return Vec::new();
+    };
+    let at_most = |flag: &str, what: &str, most: Option<f64>, found: Option<f64>| {
+        let most = most?;
+        let holds = found.is_some_and(|found| found <= most);
+        let message = match found {
+            Some(found) => format!("{what}: {found:.3e}, at most {most:.3e}"),
+            None => format!("{what}: not known, at most {most:.3e} is wanted"),
+        };
+        Some(asked(flag, holds, found, Some(most), message))
+    };
+    let energy = outcome
+        .energy
+        .as_ref()
+        .and_then(|energy| energy.relative_error_max);
+    let error = outcome.position_error_m.as_ref().map(|error| error.max);
+    let scheme = args.expect.map(|method| {
+        let found = outcome.identified.as_ref();
+        let is = |found: &Identified| {
+            let named = found.method == method.id && found.substeps == 1;
+            let listed = found.equivalent.iter().any(|id| id == method.id);
+            (named || listed) && found.undecided != Some(Undecided::Near)
+        };
+        let holds = found.is_some_and(is);
+        let name = found.map_or("no known scheme", |found| found.method.as_str());
+        let message = format!("it is to follow {}, and follows {name}", method.id);
+        asked("--expect", holds, None, None, message)
+    });
+    let energy = at_most(
+        "--max-energy",
+        "largest energy error, in units of S",
+        args.max_energy,
+        energy,
+    );
+    let error = at_most(
+        "--max-error",
+        "largest distance from the truth, m",
+        args.max_error,
+        error,
+    );
+    scheme.into_iter().chain(energy).chain(error).collect()
+}
+
+fn asked(
+    flag: &str,
+    holds: bool,
+    measured: Option<f64>,
+    bound: Option<f64>,
+    message: String,
+) -> Check {
+    Check {
+        id: "expect".to_owned(),
+        subject: flag.to_owned(),
+        status: if holds {
+            CheckStatus::Pass
+        } else {
+            CheckStatus::Fail
+        },
+        measured: measured.filter(|x| x.is_finite()),
+        bound,
+        derivation: "the command line".to_owned(),
+        message,
+        ..Check::default()
+    }
 }
 
 /// What the file has to fit.
@@ -110,7 +215,19 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
 /// The exit code. 0: it follows a scheme throughout; 1: it follows a known mistake, or leaves its scheme; 3: no scheme
 /// explains it to rounding.
 fn code(report: &Report) -> u8 {
-    if let Body::Compare { fault: Some(_), .. } = report.body {
+    let left = matches!(report.body, Body::Compare { fault: Some(_), .. });
+    let checks = &report.header.checks;
+    let asked: Vec<&Check> = checks
+        .iter()
+        .filter(|check| check.subject.starts_with("--"))
+        .collect();
+    if !asked.is_empty() {
+        // What the command asks for decides, and nothing else.
+        let failed = asked.iter().any(|check| check.status == CheckStatus::Fail);
+        let left = left && asked.iter().any(|check| check.subject == "--expect");
+        return u8::from(failed || left);
+    }
+    if left {
         return 1;
     }
     let found = report
@@ -125,7 +242,7 @@ fn code(report: &Report) -> u8 {
 }
 
 /// A program whose rows are known already.
-struct Recorded(Arc<Rows>);
+pub struct Recorded(pub Arc<Rows>);
 
 impl Program for Recorded {
     fn record(&self, _task: &Task) -> Result<Recording, Failure> {

@@ -1,4 +1,4 @@
-//! `springcheck list integrators|effects|engines|mistakes`
+//! `springcheck list integrators|effects|engines|mistakes|checks`
 
 use crate::integrators::adaptive::ErrorEstimate;
 use crate::integrators::{self, EnergyLaw, Method, PerStep, Stable};
@@ -6,6 +6,7 @@ use crate::measure::identify::{MISTAKES, Mistake, Wrong};
 use crate::physics::effects;
 use crate::solvers::SolverKind;
 use crate::solvers::catalogue;
+use crate::verbs::check;
 use clap::ValueEnum;
 use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
 use std::process::ExitCode;
@@ -23,6 +24,8 @@ enum What {
     Engines,
     /// Wrong integrators that `compare` knows by name.
     Mistakes,
+    /// What `check` requires.
+    Checks,
 }
 
 /// Prints a registry.
@@ -45,6 +48,14 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
             table(
                 &["engine", "what"],
                 rows.map(|row| vec![row.id.to_string(), row.summary.into()]),
+            )
+            .to_string()
+        }
+        What::Checks => {
+            let rows = check::CHECKS.iter();
+            table(
+                &["check", "requires"],
+                rows.map(|row| vec![row.id.into(), row.requires.into()]),
             )
             .to_string()
         }

@@ -97,5 +97,6 @@ pub fn left_out(what: Vec<String>) -> Option<Check> {
             "left out, since it would take longer than the runs themselves: {}",
             what.join(", ")
         ),
+        ..Check::default()
     })
 }

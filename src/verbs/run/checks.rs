@@ -91,5 +91,6 @@ fn skipped() -> Check {
             "not measured on a run this long, which it would make three times as long: --order \
                   asks for it"
                 .to_owned(),
+        ..Check::default()
     }
 }

@@ -25,10 +25,12 @@ mod truths;
 pub use args::{Args, run};
 pub use expect::names;
 pub(super) use figures::FIGURES;
-pub use plan::{Choice, Expectations, Orders, Plan};
+pub use plan::{Case, Choice, Expectations, Orders, Plan};
 pub use result::{Curves, Outcome, PlotAxis, RunSeries, TruthCurves, WorkSummary};
 pub(super) use text::{page, view};
 
+use crate::measure::stability::Linearised;
+use crate::physics::System;
 use crate::report::Header;
 use crate::solvers::SolverKind;
 use crate::trajectory::SaveError;
@@ -37,12 +39,37 @@ use crate::verbs::session::Session;
 use crate::verbs::{Body, Report, Series, SeriesState, facts};
 use truths::Truths;
 
+pub(in crate::verbs) use record::Record;
+
+/// What the twin proof of a plan may take, in steps of one particle.
+pub(in crate::verbs) fn effort_of_proofs(plan: &Plan) -> u64 {
+    budget::of_proofs(plan)
+}
+
+/// The scene of a plan linearised about its start, as far as judging may take; None beyond.
+pub(in crate::verbs) fn linearised(plan: &Plan) -> Option<Linearised> {
+    remarks::linearised(plan, budget::of_limits(plan)).0
+}
+
 impl Plan<'_> {
+    /// Whether forces depend on velocities.
+    pub(in crate::verbs) fn is_damped(&self) -> bool {
+        self.system.kinds().depends_on_velocity()
+    }
+
     /// Runs every case, the truth and the twin proof, and measures the records.
     ///
     /// # Errors
     /// Fails only when a trajectory file could not be written; whatever an engine does is an outcome.
     pub fn execute(&self, session: &dyn Session) -> Result<Report, SaveError> {
+        self.recorded(session).map(|(report, _)| report)
+    }
+
+    /// The same, with the record of each case.
+    pub(in crate::verbs) fn recorded(
+        &self,
+        session: &dyn Session,
+    ) -> Result<(Report, Vec<Record>), SaveError> {
         let (scene, system) = (self.scene, &self.system);
         let limits = facts::limits(scene, system);
         let ends = self.cases.iter().map(|case| case.label.end());
@@ -95,6 +122,6 @@ impl Plan<'_> {
         };
         let expected = self.choice.expectations.checks(scene, &report);
         report.header.checks.extend(expected);
-        Ok(report)
+        Ok((report, records))
     }
 }

@@ -54,11 +54,11 @@ pub fn show(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
 /// The reports of a file, with their series where the file of these lies beside it.
 fn stored(file: &Path) -> anyhow::Result<(Tool, Vec<Report>)> {
     let name = || file.display().to_string();
-    let text = read(file, MAX_BYTES).with_context(|| format!("cannot read {}", name()))?;
+    let text = read(file).with_context(|| format!("cannot read {}", name()))?;
     let (tool, reports) = json::read(&text).with_context(name)?;
     drop(text);
     let beside = file.with_extension(series::EXTENSION);
-    let reports = match read(&beside, MAX_BYTES) {
+    let reports = match read(&beside) {
         Ok(bytes) => series::unpack(reports, &bytes),
         Err(error) if error.kind() == ErrorKind::NotFound => reports,
         Err(error) => {
@@ -68,11 +68,14 @@ fn stored(file: &Path) -> anyhow::Result<(Tool, Vec<Report>)> {
     Ok((tool, reports))
 }
 
-fn read(file: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+/// The bytes of a report's file, or of its series.
+pub(in crate::verbs) fn read(file: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(file)?.take(most + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most {
-        let why = format!("it has more than {most} bytes");
+    File::open(file)?
+        .take(MAX_BYTES + 1)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        let why = format!("it has more than {MAX_BYTES} bytes");
         return Err(std::io::Error::new(ErrorKind::FileTooLarge, why));
     }
     Ok(bytes)

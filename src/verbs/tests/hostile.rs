@@ -76,6 +76,7 @@ pub fn hostile() -> Report {
         bound: Some(1.0),
         derivation: long.clone(),
         message: long,
+        ..Check::default()
     });
     report
 }

@@ -263,5 +263,6 @@ pub fn twin(id: &str, status: CheckStatus) -> Check {
         bound: Some(3.0e-13),
         derivation: "16 eps per step and particle".into(),
         message: String::new(),
+        ..Check::default()
     }
 }

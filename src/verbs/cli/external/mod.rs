@@ -4,6 +4,7 @@ mod process;
 
 use super::flags::Time;
 use crate::integrators;
+use crate::scene::limits::external;
 use crate::solvers::external::{
     Command, CommandError, Failure, Flat, Placeholder, Program, Recording, Task,
 };
@@ -25,9 +26,6 @@ pub struct External {
     command: Command,
 }
 
-/// The longest name, in characters; longer ones would push numbers out of the table.
-const MAX_NAME: usize = 32;
-
 impl FromStr for External {
     type Err = String;
 
@@ -35,19 +33,17 @@ impl FromStr for External {
         let (name, command) = text
             .split_once('=')
             .ok_or_else(|| format!("expected NAME=COMMAND, found `{text}`"))?;
-        // The name appears in tables, figures and the report's keys.
-        let plain = |c: char| c.is_alphanumeric() || "_.+-".contains(c);
-        let starts = name.starts_with(char::is_alphanumeric);
-        if !starts || !name.chars().all(plain) || name.chars().count() > MAX_NAME {
-            return Err(format!(
-                "expected a name of 1 to {MAX_NAME} letters, digits, `_`, `.`, `+` and `-`, beginning \
-                 with a letter or digit, found `{name}`"
-            ));
-        }
+        external(name).map_err(|refusal| refusal.to_string())?;
         Ok(Self {
             name: name.to_owned(),
             command: command.parse().map_err(|e: CommandError| e.to_string())?,
         })
+    }
+}
+
+impl External {
+    pub fn name(&self) -> &str {
+        &self.name
     }
 }
 

@@ -13,6 +13,8 @@ pub fn names() -> &'static Names {
         methods: integrators::ids(integrators::fixed()),
         aliases: integrators::ALIASES,
         engines: rapier::IDS.to_vec(),
+        externals: Vec::new(),
+        checks: crate::verbs::check::ids(),
         keys: keys(),
     });
     &NAMES

@@ -102,6 +102,7 @@ fn skipped(subject: &str, message: String) -> Check {
         bound: None,
         derivation: "the scene's `expect`".to_owned(),
         message,
+        ..Check::default()
     }
 }
 
@@ -157,7 +158,9 @@ fn judge(expectation: &Expectation, outcome: &Outcome, value: &Value, report: &R
         measured,
         bound,
         derivation: format!("the scene's `expect`, under `{scope}`"),
+        key: Some(format!("expect.{scope}.{key}")),
         message,
+        ..Check::default()
     };
     if let Some(reference) = absent_reference(key, outcome, report.outcomes()) {
         let message = format!("{engine}: {key} has no value, since {reference} did not run");

@@ -1,0 +1,287 @@
+//! `springcheck check PATH...`
+
+use super::select::{self, Partition};
+use super::{Baseline, Claim, Gate, Verdict, text, verdict};
+use crate::report::github;
+use crate::report::json::Tool;
+use crate::scene::{Names, Scene};
+use crate::solvers::Solver;
+use crate::trajectory::{self, Expected, limits};
+use crate::verbs::cli::external::{self, External};
+use crate::verbs::cli::flags::{self, Time};
+use crate::verbs::cli::output;
+use crate::verbs::cli::terminal::{self, Terminal};
+use crate::verbs::compare::{Recorded, method};
+use crate::verbs::{Report, formats};
+use anyhow::{Context, bail};
+use std::fs::File;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::str::FromStr;
+use std::sync::Arc;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Scene files, and folders of them (*.yml, *.yaml).
+    #[arg(required = true, value_name = "PATH")]
+    paths: Vec<PathBuf>,
+
+    /// A program that the scene may expect something of, as in `run`; repeatable.
+    #[arg(long, value_name = "NAME=COMMAND")]
+    external: Vec<External>,
+
+    /// A program that takes longer is stopped: 60s, 2m, 500ms.
+    #[arg(long, value_name = "TIME", default_value = "60s")]
+    external_timeout: Time,
+
+    /// A trajectory that some program computed of the one scene that is checked; repeatable.
+    #[arg(long, value_name = "NAME=FILE")]
+    trajectory: Vec<Named<PathBuf>>,
+
+    /// The integrator that a program claims to be, such as mine=symplectic_euler; repeatable.
+    #[arg(long, value_name = "NAME=INTEGRATOR")]
+    claims: Vec<Named<String>>,
+
+    /// A program of the scenes' `externals` that is not given is a failure, not a skip.
+    #[arg(long)]
+    require_all: bool,
+
+    /// Compare counts, errors, energies and schemes with those of an accepted run.
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+
+    /// Write those of this run; numbers that have not moved stay as they are.
+    #[arg(long, value_name = "FILE")]
+    accept: Option<PathBuf>,
+
+    /// Accept also where the environment variable CI is `true`.
+    #[arg(long, requires = "accept")]
+    force: bool,
+
+    /// Check only a part of the scenes: slice:1/4 (every fourth), hash:1/4 (by the path alone).
+    #[arg(long, value_name = "PART")]
+    partition: Option<Partition>,
+
+    /// What could not be decided fails.
+    #[arg(long)]
+    strict: bool,
+
+    /// What goes to stdout.
+    #[arg(long, default_value = "human", value_parser = output::format_ids())]
+    format: String,
+
+    /// Write the results in another format to a file as well, such as junit=check.xml; repeatable.
+    #[arg(long, value_name = "FORMAT=FILE")]
+    write: Vec<Named<PathBuf>>,
+}
+
+/// NAME=VALUE.
+#[derive(Debug, Clone)]
+struct Named<T> {
+    name: String,
+    value: T,
+}
+
+impl<T: FromStr> FromStr for Named<T> {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("expected NAME=VALUE, found `{text}`");
+        let (name, value) = text.split_once('=').ok_or_else(wrong)?;
+        let value = value.parse().map_err(|_| wrong())?;
+        let name = name.to_owned();
+        Ok(Self { name, value })
+    }
+}
+
+/// The exit codes beside those of every verb: something is inconclusive; nothing was selected.
+const OPEN: u8 = 3;
+const NOTHING: u8 = 4;
+
+/// The flags that shorten this verb, for the announcement.
+const SHORTER: &str = "--partition slice:1/4, fewer scenes";
+
+/// Runs the verb.
+pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
+    let ci = std::env::var_os("CI").is_some_and(|ci| ci == "true");
+    if args.accept.is_some() && ci && !args.force {
+        bail!(
+            "--accept does not run in CI, where nobody looks at what it accepts: --force does it all the same"
+        );
+    }
+    for named in &args.write {
+        formats::format(&named.name)
+            .with_context(|| format!("--write {}: no such format", named.name))?;
+    }
+    let files = select::scenes(&args.paths, args.partition)?;
+    if files.is_empty() {
+        let _ = writeln!(anstream::stderr(), "no scene was selected");
+        return Ok(ExitCode::from(NOTHING));
+    }
+    let names = names(args)?;
+    let scenes = files
+        .iter()
+        .map(|path| Ok((path, flags::scene_of(path, &names)?)));
+    let scenes: Vec<(&PathBuf, Scene)> = scenes.collect::<anyhow::Result<_>>()?;
+    claimed(args)?;
+    let trajectories = trajectories(args, &scenes)?;
+    let baseline = args.baseline.as_deref().map(baseline).transpose()?;
+    let accepted = match args.accept.as_deref() {
+        Some(path) if path.exists() => Some(self::baseline(path)?),
+        Some(_) => Some(Baseline::default()),
+        None => None,
+    };
+    let human = args.format == "human";
+    let mut reports = Vec::new();
+    for (path, scene) in &scenes {
+        let mut report = one(args, quiet, scene, path, &trajectories)?;
+        if let Some(baseline) = &baseline {
+            report.header.checks.extend(baseline.check(&report));
+        }
+        if human {
+            output::print(&text::human(&report))?;
+        }
+        reports.push(report);
+    }
+    if human {
+        output::print(&format!("{}\n", text::closing(&reports)))?;
+    } else {
+        output::print(&output::rendered(&args.format, &Tool::this(), &reports)?)?;
+    }
+    for Named { name, value } in &args.write {
+        let text = output::rendered(name, &Tool::this(), &reports)?;
+        output::put(value, text.as_bytes())?;
+    }
+    if args.format == "github" {
+        summarise(&reports)?;
+    }
+    if let (Some(path), Some(mut accepted)) = (&args.accept, accepted) {
+        accepted.accept(&reports);
+        output::put(path, accepted.text().as_bytes())?;
+    }
+    Ok(ExitCode::from(code(&reports, args.strict)))
+}
+
+/// 1: something failed; 3: nothing failed, but something is open; 4: nothing was judged.
+pub fn code(reports: &[Report], strict: bool) -> u8 {
+    let has = |wanted| reports.iter().any(|report| verdict(report) == wanted);
+    if has(Verdict::Failed) || strict && has(Verdict::Inconclusive) {
+        1
+    } else if has(Verdict::Inconclusive) {
+        OPEN
+    } else if has(Verdict::Passed) {
+        0
+    } else {
+        NOTHING
+    }
+}
+
+/// What scenes may speak of: what there is, and the programs of this command.
+fn names(args: &Args) -> anyhow::Result<Names> {
+    external::distinct(&args.external)?;
+    let mut names = crate::verbs::names().clone();
+    names.externals = args.external.iter().map(|e| e.name().to_owned()).collect();
+    for Named { name, .. } in &args.trajectory {
+        if let Err(refusal) = crate::scene::limits::external(name) {
+            bail!("--trajectory {name}: {refusal}");
+        }
+        if crate::solvers::find(name).is_some() || names.externals.contains(name) {
+            bail!(
+                "--trajectory {name}: an integrator, engine or program has this name, choose another"
+            );
+        }
+        names.externals.push(name.clone());
+    }
+    Ok(names)
+}
+
+/// The methods that programs claim to be.
+fn claimed(args: &Args) -> anyhow::Result<Vec<Claim>> {
+    let claim = |Named { name, value }: &Named<String>| -> anyhow::Result<Claim> {
+        let command = args.external.iter().any(|e| e.name() == name);
+        if !command && !args.trajectory.iter().any(|t| t.name == *name) {
+            bail!("--claims {name}: no --external and no --trajectory has this name");
+        }
+        Ok(Claim {
+            name: name.clone(),
+            method: method(value)
+                .map_err(|why| anyhow::anyhow!("--claims {name}={value}: {why}"))?,
+            repeats: command,
+        })
+    };
+    args.claims.iter().map(claim).collect()
+}
+
+/// The recorded trajectories, ready to be judged. They are of one scene.
+fn trajectories(args: &Args, scenes: &[(&PathBuf, Scene)]) -> anyhow::Result<Vec<Solver>> {
+    if args.trajectory.is_empty() {
+        return Ok(Vec::new());
+    }
+    let [(_, scene)] = scenes else {
+        bail!(
+            "--trajectory: a trajectory is of one scene, and {} are checked",
+            scenes.len()
+        );
+    };
+    let expected = Expected::new(scene, scene.solver.timestep);
+    let solver = |Named { name, value }: &Named<PathBuf>| -> anyhow::Result<Solver> {
+        let file = value.display().to_string();
+        let bytes = read(value).with_context(|| format!("cannot read {file}"))?;
+        let rows = trajectory::read(&bytes, &file, None, &expected)?;
+        Ok(Solver::program(name, Arc::new(Recorded(Arc::new(rows)))))
+    };
+    args.trajectory.iter().map(solver).collect()
+}
+
+fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?
+        .take(limits::FILE_BYTES as u64 + 1)
+        .read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn baseline(path: &Path) -> anyhow::Result<Baseline> {
+    let name = || path.display().to_string();
+    let text = std::fs::read(path).with_context(|| format!("cannot read {}", name()))?;
+    Baseline::read(&text).with_context(name)
+}
+
+fn one(
+    args: &Args,
+    quiet: bool,
+    scene: &Scene,
+    path: &Path,
+    trajectories: &[Solver],
+) -> anyhow::Result<Report> {
+    let mut choice = Gate::choice(scene);
+    choice.solvers.extend(external::chosen(
+        &args.external,
+        path,
+        args.external_timeout,
+    ));
+    choice.solvers.extend(trajectories.iter().cloned());
+    let mut gate = Gate::of(scene, &choice);
+    gate.claims = claimed(args)?;
+    gate.require_all = args.require_all;
+    let estimates = gate.plan.estimate();
+    // Every integrator runs twice.
+    let expected = 2.0 * terminal::expected(&estimates);
+    terminal::announce(&estimates, expected, SHORTER, quiet);
+    let terminal = Terminal::new(gate.plan.units(), expected, quiet);
+    Ok(gate.run(&terminal)?)
+}
+
+/// Appends what did not fit into annotations to the summary of a step on GitHub.
+fn summarise(reports: &[Report]) -> anyhow::Result<()> {
+    let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()) else {
+        return Ok(());
+    };
+    let mut summary = github::summary(reports.iter().map(|report| &report.header));
+    summary += &format!("\n{}\n", text::closing(reports));
+    let mut options = std::fs::OpenOptions::new();
+    let file = options.create(true).append(true).open(&path);
+    let written = file.and_then(|mut file| file.write_all(summary.as_bytes()));
+    written.with_context(|| format!("cannot write {}", Path::new(&path).display()))
+}

@@ -1,0 +1,142 @@
+//! Which scene files are checked: files and folders, and a part of them for one machine among several.
+
+use anyhow::{Context, bail};
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// A part of all scenes: the `part`th of `parts`, from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Partition {
+    by: By,
+    part: u64,
+    parts: u64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum By {
+    /// Every nth, in order: parts of equal size.
+    Slice,
+    /// By the path alone: a scene stays in its part when others come and go.
+    Hash,
+}
+
+impl FromStr for Partition {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("expected slice:1/4 or hash:1/4, found `{text}`");
+        let (by, share) = text.split_once(':').ok_or_else(wrong)?;
+        let by = match by {
+            "slice" => By::Slice,
+            "hash" => By::Hash,
+            _ => return Err(wrong()),
+        };
+        let (part, parts) = share.split_once('/').ok_or_else(wrong)?;
+        let (part, parts) = part
+            .parse()
+            .ok()
+            .zip(parts.parse().ok())
+            .ok_or_else(wrong)?;
+        if part < 1 || part > parts {
+            return Err(format!("expected a part from 1 to {parts}, found {part}"));
+        }
+        Ok(Self { by, part, parts })
+    }
+}
+
+impl Partition {
+    fn holds(self, at: usize, path: &Path) -> bool {
+        let number = match self.by {
+            By::Slice => at as u64,
+            By::Hash => {
+                let hash = Sha256::digest(path.to_string_lossy().replace('\\', "/").as_bytes());
+                hash.iter()
+                    .take(8)
+                    .fold(0, |sum, byte| sum << 8 | u64::from(*byte))
+            }
+        };
+        number % self.parts == self.part - 1
+    }
+}
+
+/// The scene files of these paths, each once, in the order of their names below each path.
+///
+/// # Errors
+/// Fails where a path does not exist or a folder cannot be read.
+pub fn scenes(paths: &[PathBuf], partition: Option<Partition>) -> anyhow::Result<Vec<PathBuf>> {
+    let mut found: Vec<PathBuf> = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            below(path, &mut found)?;
+        } else if path.exists() {
+            found.push(path.clone());
+        } else {
+            bail!("{}: there is no such file or folder", path.display());
+        }
+    }
+    let mut seen = std::collections::BTreeSet::new();
+    found.retain(|path| seen.insert(path.clone()));
+    let part = |(at, path): &(usize, PathBuf)| partition.is_none_or(|p| p.holds(*at, path));
+    Ok(found
+        .into_iter()
+        .enumerate()
+        .filter(part)
+        .map(|(_, path)| path)
+        .collect())
+}
+
+fn below(folder: &Path, found: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+    let cannot = || format!("cannot read {}", folder.display());
+    let entries = std::fs::read_dir(folder).with_context(cannot)?;
+    let entries = entries.map(|entry| entry.map(|entry| entry.path()));
+    let mut paths: Vec<PathBuf> = entries.collect::<Result<_, _>>().with_context(cannot)?;
+    paths.sort();
+    for path in paths {
+        let hidden = path
+            .file_name()
+            .is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        let scene = path.extension().is_some_and(|e| e == "yml" || e == "yaml");
+        // A link to a folder could lead back here.
+        if path.is_dir() && !hidden && !path.is_symlink() {
+            below(&path, found)?;
+        } else if scene && path.is_file() {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_hold_everything_once() {
+        let paths: Vec<PathBuf> = (0..57)
+            .map(|n| PathBuf::from(format!("scenes/{n}.yml")))
+            .collect();
+        for by in ["slice", "hash"] {
+            let mut sizes = [0; 4];
+            for (at, path) in paths.iter().enumerate() {
+                let of = |part: usize| format!("{by}:{}/4", part + 1).parse::<Partition>();
+                let held: Vec<usize> = (0..4)
+                    .filter(|&p| of(p).is_ok_and(|p| p.holds(at, path)))
+                    .collect();
+                assert_eq!(held.len(), 1, "{path:?}");
+                sizes[held[0]] += 1;
+            }
+            assert!(sizes.iter().all(|&size| size > 4), "{by} {sizes:?}");
+        }
+        for wrong in [
+            "slice",
+            "slice:0/4",
+            "slice:5/4",
+            "hash:1",
+            "part:1/2",
+            "slice:1/0",
+        ] {
+            assert!(wrong.parse::<Partition>().is_err(), "{wrong}");
+        }
+    }
+}

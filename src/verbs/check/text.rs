@@ -1,0 +1,99 @@
+//! The gate for people: a line a scene, and details only of what needs them.
+
+use super::{Verdict, laws, verdict};
+use crate::measure::{Check, CheckStatus};
+use crate::report::terminal::{Tone, WIDTH, mark, paint, wrap};
+use crate::report::words::{one_line, plural, short};
+use crate::verbs::Report;
+
+/// A line for the scene, and below it what failed, what is open, and what its file skips.
+pub fn human(report: &Report) -> String {
+    let checks = &report.header.checks;
+    let count = |status| checks.iter().filter(|c| c.status == status).count() as u64;
+    let (tone, word) = match verdict(report) {
+        Verdict::Passed => (Tone::Good, "pass"),
+        Verdict::Failed => (Tone::Bad, "FAIL"),
+        Verdict::Inconclusive => (Tone::Warn, "open"),
+        Verdict::Skipped => (Tone::Dim, "skip"),
+    };
+    let made =
+        count(CheckStatus::Pass) + count(CheckStatus::Fail) + count(CheckStatus::Inconclusive);
+    let wrong = count(CheckStatus::Fail);
+    let facts = if wrong > 0 {
+        format!("{wrong} of {} failed", plural(made, "check"))
+    } else {
+        plural(made, "check")
+    };
+    let mut lines = vec![format!(
+        "{}  {}  {facts}",
+        mark(tone, word),
+        one_line(&report.header.scene.file)
+    )];
+    let told = |check: &&Check| match check.status {
+        CheckStatus::Fail | CheckStatus::Inconclusive => true,
+        CheckStatus::Skip => skipped_by_file(check),
+        CheckStatus::Pass => false,
+    };
+    let told: Vec<&Check> = checks.iter().filter(told).collect();
+    for group in told.chunk_by(|a, b| a.id == b.id && a.derivation == b.derivation) {
+        lines.extend(details(group));
+    }
+    paint(&(lines.join("\n") + "\n"))
+}
+
+fn skipped_by_file(check: &Check) -> bool {
+    let key = check.key.as_deref();
+    check.status == CheckStatus::Skip && key.is_some_and(|key| key.starts_with("expect.skip."))
+}
+
+/// What was measured of each subject, when it broke, and why; then the bound that they share, where it comes from,
+/// and what to do.
+fn details(group: &[&Check]) -> Vec<String> {
+    let mut lines = Vec::new();
+    for check in group {
+        let head = format!(
+            "      {} {}: ",
+            one_line(&check.id),
+            one_line(&check.subject)
+        );
+        let said = one_line(&check.message);
+        let own = format!("{}: ", check.subject);
+        let said = said.strip_prefix(&own).unwrap_or(&said).to_owned();
+        let first = check
+            .first_s
+            .map(|t| format!(", first at t = {} s", short(t)));
+        let text = head + &said + &first.unwrap_or_default();
+        lines.extend(wrap(&text, WIDTH, "        "));
+        if let Some(cause) = check.cause.as_ref().filter(|_| !skipped_by_file(check)) {
+            let text = format!("        likely: {}", one_line(cause));
+            lines.extend(wrap(&text, WIDTH, "          "));
+        }
+    }
+    let Some(check) = group.iter().find(|check| !skipped_by_file(check)) else {
+        return lines;
+    };
+    let bound = format!("the bound: {}", one_line(&check.derivation));
+    let todo = laws::find(&check.id).map(|row| format!("what to do: {}", one_line(row.remedy)));
+    for text in [Some(bound), todo].into_iter().flatten() {
+        lines.extend(wrap(&format!("        {text}"), WIDTH, "          "));
+    }
+    lines
+}
+
+/// The closing line: `57 scenes: 56 passed, 1 failed, 0 skipped`.
+pub fn closing(reports: &[Report]) -> String {
+    let count = |wanted| reports.iter().filter(|r| verdict(r) == wanted).count();
+    let open = count(Verdict::Inconclusive);
+    let open = if open > 0 {
+        format!(", {open} inconclusive")
+    } else {
+        String::new()
+    };
+    format!(
+        "{}: {} passed, {} failed, {} skipped{open}",
+        plural(reports.len() as u64, "scene"),
+        count(Verdict::Passed),
+        count(Verdict::Failed),
+        count(Verdict::Skipped),
+    )
+}

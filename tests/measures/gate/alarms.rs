@@ -1,0 +1,102 @@
+//! No false alarms: random scenes inside their limits.
+
+use super::*;
+use crate::testkit::Random;
+use crate::testkit::scenes::{empty, fixed, free, spring};
+use springcheck::measure::stability::{Effort, Limit, Linearised};
+use springcheck::physics::ParticleSystem;
+use springcheck::scene::{DampingModel, GravitationalPair, Wind};
+
+/// A scene of 2 to 6 particles, some fixed in half of them, springs of stiffness over two decades with or without
+/// dampers, gravity, drag, wind and attraction in some, and a step inside the limit of its own integrator.
+fn random(seed: u64) -> Scene {
+    let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+    for _ in 0..8 {
+        random.next();
+    }
+    let mut chance = |part: f64| 0.5 * (random.next() + 1.0) < part;
+    let (anchored, damped, falls, dragged, windy, attracted, cubic) = (
+        chance(0.5),
+        chance(0.4),
+        chance(0.6),
+        chance(0.2),
+        chance(0.2),
+        chance(0.15),
+        chance(0.2),
+    );
+    let mut random = Random(seed.wrapping_mul(0xD134_2543_DE82_EF95) | 1);
+    for _ in 0..8 {
+        random.next();
+    }
+    let mut scene = empty();
+    let count = 2 + (2.5 * (random.next() + 1.0)) as usize;
+    for i in 0..count {
+        let mut place = || [0, 1, 2].map(|_| random.next());
+        let (at, velocity) = (place(), place());
+        if anchored && i == 0 {
+            scene.particles.push(fixed(at));
+        } else {
+            let mut particle = free(at, 0.2 + 0.9 * (random.next() + 1.0));
+            particle.velocity = velocity;
+            if dragged {
+                particle.drag = 0.2 * (random.next() + 1.0);
+            }
+            scene.particles.push(particle);
+        }
+    }
+    for b in 1..count {
+        for a in 0..b {
+            if a + 1 == b || random.next() > 0.3 {
+                let stiffness = 10.0_f64.powf(1.5 + random.next());
+                let (p, q) = (scene.particles[a].position, scene.particles[b].position);
+                let length = p.iter().zip(&q).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt();
+                let mut spring = spring([a, b], stiffness, length * (1.0 + 0.2 * random.next()));
+                if damped {
+                    spring.damping = 0.3 * (random.next() + 1.0);
+                }
+                if cubic {
+                    spring.cubic = 20.0 * (random.next() + 1.0);
+                }
+                scene.springs.push(spring);
+            }
+        }
+    }
+    if random.next() > 0.5 {
+        scene.damping_model = DampingModel::Isotropic;
+    }
+    if windy {
+        scene.wind = Some(Wind { direction: [0.6, 0.8, 0.0], strength: random.next() });
+    }
+    if attracted {
+        scene.gravitational.push(GravitationalPair { ends: [0, 1], g: 0.3 });
+    }
+    scene.solver.gravity = if falls { -9.81 } else { 0.0 };
+    let methods = integrators::fixed();
+    let method = &methods[seed as usize % methods.len()];
+    scene.solver.method = method.id.to_owned();
+    let system = ParticleSystem::new(&scene);
+    let start = ParticleSystem::initial_state(&scene);
+    let linearised = Linearised::new(&system, &start, Effort::FULL);
+    let limit = match linearised.predict(method, 1e-3).limit {
+        Limit::At(limit) => limit,
+        _ => 2.0 / linearised.omega_max().unwrap_or(1.0),
+    };
+    // From a twentieth to half of the limit.
+    scene.solver.timestep = limit * 0.05 * 10.0_f64.powf(0.5 * (random.next() + 1.0));
+    scene.duration = (100.0 + 200.0 * (random.next() + 1.0)) * scene.solver.timestep;
+    scene
+}
+
+#[test]
+fn random_scenes_raise_none() {
+    let whole = std::env::var_os("SPRINGCHECK_WHOLE").is_some();
+    let many = if whole { 1000 } else { 60 };
+    for seed in 0..many {
+        let scene = random(seed);
+        let report = Gate::new(&scene).run(&Quiet).expect("nothing is written");
+        // A method that no step makes stable is beyond its limit at every step.
+        let alarms = failed(&report).into_iter().filter(|check| check.id != "limit");
+        let alarms: Vec<&Check> = alarms.collect();
+        assert!(alarms.is_empty(), "seed {seed}, {}: {alarms:#?}", scene.solver.method);
+    }
+}

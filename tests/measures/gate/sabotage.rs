@@ -1,0 +1,123 @@
+//! Mutants of integrators, effects and rapier's mirror, each caught on a shipped scene and named.
+
+use super::*;
+use crate::testkit::mutants::{self, physics};
+use crate::testkit::{everything, part};
+use springcheck::physics::ParticleSystem;
+use springcheck::physics::effects::{self, Effect, EffectRow, Scaled};
+use springcheck::scene::DampingModel;
+
+/// A scene in which everything moves: a net that swings from two anchors.
+fn net() -> Scene {
+    let mut scene = shipped("pa1/scene03.yml");
+    scene.duration = 400.0 * scene.solver.timestep;
+    scene.expect.clear();
+    scene
+}
+
+#[test]
+fn a_wrong_integrator_fails_by_its_name() {
+    let scene = net();
+    let wrong: [(Step, &str); 8] = [
+        (mutants::euler_drifting_with_the_new_velocity, "explicit_euler"),
+        (mutants::euler_drifting_with_the_old_velocity, "symplectic_euler"),
+        (mutants::midpoint_drifting_with_the_end_velocity, "midpoint"),
+        (mutants::verlet_with_a_stale_force, "velocity_verlet"),
+        (mutants::rk4_with_a_wrong_weight, "rk4"),
+        (mutants::rk4_with_swapped_weights, "rk4"),
+        (mutants::yoshida_with_swapped_coefficients, "yoshida4"),
+        (mutants::symplectic_euler_at_half_the_step, "symplectic_euler"),
+    ];
+    for (step, method) in part(&wrong, 2, 0) {
+        let report = claiming(&scene, *step, method);
+        let failed = failed(&report);
+        assert!(!failed.is_empty(), "{method}");
+        for check in failed {
+            assert_eq!(check.subject, "mine", "{method}: {check:?}");
+        }
+    }
+}
+
+/// The same integrator without a fault passes under the same claim.
+#[test]
+fn a_right_integrator_of_ones_own_passes() {
+    let scene = net();
+    let report = claiming(&scene, physics::symplectic_euler, "symplectic_euler");
+    assert!(failed(&report).is_empty(), "{:?}", failed(&report));
+    let own = |check: &&Check| check.subject == "mine" && check.status == CheckStatus::Pass;
+    let passed: Vec<&str> = report.header.checks.iter().filter(own).map(|c| c.id.as_str()).collect();
+    for id in ["scheme", "same-bits", "balance", "claimed-order"] {
+        assert!(passed.contains(&id), "{id}: {passed:?}");
+    }
+}
+
+/// An effect whose force is a hundredth too strong for its own potential and power.
+struct TooStrong(Box<dyn Effect>);
+
+impl Effect for TooStrong {
+    fn members(&self) -> usize {
+        self.0.members()
+    }
+    fn kinds(&self) -> springcheck::physics::ForceKinds {
+        self.0.kinds()
+    }
+    fn add_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> springcheck::physics::Power {
+        let mut own = vec![0.0; f.len()];
+        let power = self.0.add_force(t, x, v, &mut own);
+        for (f, own) in f.iter_mut().zip(own) {
+            *f += 1.01 * own;
+        }
+        power
+    }
+    fn potential(&self, t: f64, x: &[f64]) -> f64 {
+        self.0.potential(t, x)
+    }
+    fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
+        self.0.add_damping(x, w, f);
+    }
+}
+
+#[test]
+fn an_effect_whose_force_is_not_its_energys_fails_by_its_name() {
+    let mut scene = everything(DampingModel::Axial);
+    scene.duration = 100.0 * scene.solver.timestep;
+    for row in effects::REGISTRY {
+        let build = |other: &EffectRow| {
+            let effect = (other.build)(&scene)?;
+            Some(if other.id == row.id { Box::new(TooStrong(effect)) as _ } else { effect })
+        };
+        let mut gate = Gate::new(&scene);
+        gate.plan.system = ParticleSystem::with(&scene, &build);
+        let report = gate.run(&Quiet).expect("nothing is written");
+        let named = |check: &&Check| check.id == "forces" && check.subject == row.id;
+        assert!(failed(&report).iter().any(named_ref(&named)), "{}", row.id);
+    }
+}
+
+fn named_ref<'a>(named: &'a impl Fn(&&Check) -> bool) -> impl Fn(&&Check) -> bool + 'a {
+    move |check| named(check)
+}
+
+/// Any number of the scene that is a hundredth off in one of the two worlds is seen by the twin proof.
+#[test]
+fn a_mirror_that_differs_fails() {
+    let changes: [(&str, fn(&mut Scene)); 6] = [
+        ("stiffness", |s| s.springs[0].stiffness *= 1.01),
+        ("damping", |s| s.springs[0].damping *= 1.01),
+        ("rest_length", |s| s.springs[0].rest_length *= 1.01),
+        ("gravity", |s| s.solver.gravity *= 1.01),
+        ("mass", |s| s.particles[2].mass *= 1.01),
+        ("axis", |s| s.up = springcheck::scene::Axis::Y),
+    ];
+    let scene = net();
+    for (what, change) in changes {
+        let mut other = scene.clone();
+        change(&mut other);
+        let mut gate = Gate::new(&scene);
+        gate.twin = &other;
+        let report = gate.run(&Quiet).expect("nothing is written");
+        let twin = |check: &&Check| check.id.starts_with("twin-");
+        assert!(failed(&report).iter().any(|check| twin(&check)), "{what}");
+    }
+    assert!(failed(&Gate::new(&scene).run(&Quiet).expect("nothing is written")).is_empty());
+}
