@@ -3,6 +3,7 @@
 //! A new verb, a new flag and a new key of a report belong here.
 
 mod cases;
+mod check;
 mod cost;
 mod examples;
 #[cfg(unix)] // the programs it starts are POSIX's

@@ -33,10 +33,22 @@ pub(super) struct Grid {
     /// The last time, s.
     pub until: f64,
     truth: States,
-    /// Largest way any particle gets from its start, m.
+    /// Largest way any particle gets from its start, m; where nothing is fixed, beside the way they go together,
+    /// in which no method that damps a motion errs.
     pub reach: f64,
     /// Largest coordinate, m.
     pub size: f64,
+}
+
+/// Subtracts what all particles have in common.
+fn leave_common(way: &mut [f64]) {
+    let count = (way.len() / 3) as f64;
+    for axis in 0..3 {
+        let mean = way.iter().skip(axis).step_by(3).sum::<f64>() / count;
+        for way in way.iter_mut().skip(axis).step_by(3) {
+            *way -= mean;
+        }
+    }
 }
 
 impl Grid {
@@ -52,8 +64,17 @@ impl Grid {
             .collect();
         let truth = problem.motion.states(&times);
         let each = || (0..times.len()).map(|k| truth.x(k));
+        let start = &problem.start.x;
+        let free = problem.system.inverse_mass().iter().all(|w| *w > 0.0);
+        let together = free && dim > 3;
         let reach = each()
-            .map(|x| farthest(x, &problem.start.x))
+            .map(|x| {
+                let mut way: Vec<f64> = x.iter().zip(start).map(|(x, start)| x - start).collect();
+                if together {
+                    leave_common(&mut way);
+                }
+                farthest(&way, &vec![0.0; dim])
+            })
             .fold(0.0, f64::max);
         let size = each().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
         Self {

@@ -49,7 +49,12 @@ fn random(seed: u64) -> Scene {
             if a + 1 == b || random.next() > 0.3 {
                 let stiffness = 10.0_f64.powf(1.5 + random.next());
                 let (p, q) = (scene.particles[a].position, scene.particles[b].position);
-                let length = p.iter().zip(&q).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt();
+                let length = p
+                    .iter()
+                    .zip(&q)
+                    .map(|(p, q)| (p - q) * (p - q))
+                    .sum::<f64>()
+                    .sqrt();
                 let mut spring = spring([a, b], stiffness, length * (1.0 + 0.2 * random.next()));
                 if damped {
                     spring.damping = 0.3 * (random.next() + 1.0);
@@ -65,10 +70,16 @@ fn random(seed: u64) -> Scene {
         scene.damping_model = DampingModel::Isotropic;
     }
     if windy {
-        scene.wind = Some(Wind { direction: [0.6, 0.8, 0.0], strength: random.next() });
+        scene.wind = Some(Wind {
+            direction: [0.6, 0.8, 0.0],
+            strength: random.next(),
+        });
     }
     if attracted {
-        scene.gravitational.push(GravitationalPair { ends: [0, 1], g: 0.3 });
+        scene.gravitational.push(GravitationalPair {
+            ends: [0, 1],
+            g: 0.3,
+        });
     }
     scene.solver.gravity = if falls { -9.81 } else { 0.0 };
     let methods = integrators::fixed();
@@ -95,8 +106,14 @@ fn random_scenes_raise_none() {
         let scene = random(seed);
         let report = Gate::new(&scene).run(&Quiet).expect("nothing is written");
         // A method that no step makes stable is beyond its limit at every step.
-        let alarms = failed(&report).into_iter().filter(|check| check.id != "limit");
+        let alarms = failed(&report)
+            .into_iter()
+            .filter(|check| check.id != "limit");
         let alarms: Vec<&Check> = alarms.collect();
-        assert!(alarms.is_empty(), "seed {seed}, {}: {alarms:#?}", scene.solver.method);
+        assert!(
+            alarms.is_empty(),
+            "seed {seed}, {}: {alarms:#?}",
+            scene.solver.method
+        );
     }
 }

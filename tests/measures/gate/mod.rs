@@ -16,7 +16,9 @@ use springcheck::verbs::session::Quiet;
 
 fn failed(report: &Report) -> Vec<&Check> {
     let checks = report.header.checks.iter();
-    checks.filter(|check| check.status == CheckStatus::Fail).collect()
+    checks
+        .filter(|check| check.status == CheckStatus::Fail)
+        .collect()
 }
 
 /// The scene's gate with one more integrator, which claims to be a method of the registry.
@@ -30,6 +32,10 @@ fn judged(scene: &Scene, choice: &Choice, method: &str) -> Report {
     let mut gate = Gate::of(scene, choice);
     let method = integrators::find(method).expect("a method");
     let name = "mine".to_owned();
-    gate.claims = vec![Claim { name, method, repeats: true }];
+    gate.claims = vec![Claim {
+        name,
+        method,
+        repeats: true,
+    }];
     gate.run(&Quiet).expect("nothing is written")
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::testkit::mutants::{self, physics};
 use crate::testkit::{everything, part};
 use springcheck::physics::ParticleSystem;
-use springcheck::physics::effects::{self, Effect, EffectRow, Scaled};
+use springcheck::physics::effects::{self, Effect, EffectRow};
 use springcheck::scene::DampingModel;
 
 /// A scene in which everything moves: a net that swings from two anchors.
@@ -19,14 +19,23 @@ fn net() -> Scene {
 fn a_wrong_integrator_fails_by_its_name() {
     let scene = net();
     let wrong: [(Step, &str); 8] = [
-        (mutants::euler_drifting_with_the_new_velocity, "explicit_euler"),
-        (mutants::euler_drifting_with_the_old_velocity, "symplectic_euler"),
+        (
+            mutants::euler_drifting_with_the_new_velocity,
+            "explicit_euler",
+        ),
+        (
+            mutants::euler_drifting_with_the_old_velocity,
+            "symplectic_euler",
+        ),
         (mutants::midpoint_drifting_with_the_end_velocity, "midpoint"),
         (mutants::verlet_with_a_stale_force, "velocity_verlet"),
         (mutants::rk4_with_a_wrong_weight, "rk4"),
         (mutants::rk4_with_swapped_weights, "rk4"),
         (mutants::yoshida_with_swapped_coefficients, "yoshida4"),
-        (mutants::symplectic_euler_at_half_the_step, "symplectic_euler"),
+        (
+            mutants::symplectic_euler_at_half_the_step,
+            "symplectic_euler",
+        ),
     ];
     for (step, method) in part(&wrong, 2, 0) {
         let report = claiming(&scene, *step, method);
@@ -45,7 +54,13 @@ fn a_right_integrator_of_ones_own_passes() {
     let report = claiming(&scene, physics::symplectic_euler, "symplectic_euler");
     assert!(failed(&report).is_empty(), "{:?}", failed(&report));
     let own = |check: &&Check| check.subject == "mine" && check.status == CheckStatus::Pass;
-    let passed: Vec<&str> = report.header.checks.iter().filter(own).map(|c| c.id.as_str()).collect();
+    let passed: Vec<&str> = report
+        .header
+        .checks
+        .iter()
+        .filter(own)
+        .map(|c| c.id.as_str())
+        .collect();
     for id in ["scheme", "same-bits", "balance", "claimed-order"] {
         assert!(passed.contains(&id), "{id}: {passed:?}");
     }
@@ -61,7 +76,13 @@ impl Effect for TooStrong {
     fn kinds(&self) -> springcheck::physics::ForceKinds {
         self.0.kinds()
     }
-    fn add_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> springcheck::physics::Power {
+    fn add_force(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        f: &mut [f64],
+    ) -> springcheck::physics::Power {
         let mut own = vec![0.0; f.len()];
         let power = self.0.add_force(t, x, v, &mut own);
         for (f, own) in f.iter_mut().zip(own) {
@@ -84,7 +105,11 @@ fn an_effect_whose_force_is_not_its_energys_fails_by_its_name() {
     for row in effects::REGISTRY {
         let build = |other: &EffectRow| {
             let effect = (other.build)(&scene)?;
-            Some(if other.id == row.id { Box::new(TooStrong(effect)) as _ } else { effect })
+            Some(if other.id == row.id {
+                Box::new(TooStrong(effect)) as _
+            } else {
+                effect
+            })
         };
         let mut gate = Gate::new(&scene);
         gate.plan.system = ParticleSystem::with(&scene, &build);

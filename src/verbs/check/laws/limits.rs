@@ -1,7 +1,7 @@
 //! Steps inside their stability limit, and runs that reach their end.
 
 use super::{Ran, Row, Subject};
-use crate::measure::stability::Limit;
+use crate::measure::stability::{Limit, is_linear};
 use crate::measure::{Behaviour, Check, CheckStatus};
 use crate::solvers::{SolverKind, Status};
 
@@ -10,12 +10,14 @@ const VISIBLE: f64 = 0.01;
 
 pub(super) const COMPLETES: Row = Row {
     id: "completes",
-    requires: "the scene's own integrator, every program, and every method inside its stability limit run to the end",
+    requires: "the scene's own integrator, every program, and, where forces are linear, every method inside its stability limit run to the end",
     derivation: "a stable method does not diverge, and a program prints all of its rows",
     remedy: "the message says how it ended; for a program, try its command by hand",
     judge: Some(|ran| {
         let due = |subject: &Subject| {
-            let inside = |method| ran.inside(method, subject.case.label.timestep);
+            // Of other forces the limit is that of the start.
+            let linear = is_linear(ran.scene());
+            let inside = |method| linear && ran.inside(method, subject.case.label.timestep);
             let own = ran.report.header.is_own(&subject.outcome.engine);
             let external = subject.case.solver.kind == SolverKind::External;
             // A solve that fails is no divergence.

@@ -6,7 +6,7 @@ pub use keys::names;
 
 use super::plan::{Choice, Expectations, Orders};
 use crate::measure::{Check, CheckStatus};
-use crate::scene::{Expectation, Scene, Wanted};
+use crate::scene::{Expectation, Scene, Scope, Wanted};
 use crate::solvers::{Solver, SolverKind, Status, catalogue};
 use crate::truth::{Demand, TruthKind};
 use crate::verbs::Report;
@@ -47,31 +47,40 @@ pub fn check(scene: &Scene, report: &Report) -> Vec<Check> {
         let of = |o: &&Outcome| o.engine == id && o.timestep == timestep;
         report.outcomes().iter().find(of)
     };
-    let expected = |solver: &Solver| !expected_of(scene, solver).is_empty();
-    let subjects: Vec<Solver> = fixed().filter(expected).collect();
-    if !subjects
-        .iter()
-        .any(|subject| outcome(&subject.id).is_some())
-    {
+    let ours = fixed().map(|solver| (solver.kind == SolverKind::Integrator, solver.id.to_string()));
+    let ours: Vec<(bool, String)> = ours.collect();
+    let mut subjects = ours.clone();
+    for expectation in &scene.expect {
+        // What is none of ours is another program.
+        if let Scope::Engine(id) = &expectation.scope
+            && !subjects.iter().any(|(_, known)| known == id)
+        {
+            subjects.push((false, id.clone()));
+        }
+    }
+    subjects.retain(|(integrator, id)| !scene.expected_of(id, *integrator).is_empty());
+    let ran = subjects.iter().any(|(_, id)| outcome(id).is_some());
+    let programs = subjects.iter().any(|subject| !ours.contains(subject));
+    if !ran && !programs {
         return vec![not_judged(&format!(
             "none of the engines they are about ran at the scene's own timestep, {timestep:?} s; \
              --integrators all runs every integrator"
         ))];
     }
     let mut checks = Vec::new();
-    for subject in subjects {
-        let Some(outcome) = outcome(&subject.id) else {
-            let elsewhere = report.outcomes().iter().any(|o| o.engine == subject.id);
+    for (integrator, id) in subjects {
+        let Some(outcome) = outcome(&id) else {
+            let elsewhere = report.outcomes().iter().any(|o| o.engine == id);
             let why = match elsewhere {
                 true => "did not run at the scene's own timestep",
                 false => "did not run",
             };
-            checks.push(skipped(&subject.id, why.to_owned()));
+            checks.push(skipped(&id, why.to_owned()));
             continue;
         };
         // Every outcome has a JSON form.
         let value = serde_json::to_value(outcome).unwrap_or_default();
-        let expected = expected_of(scene, &subject).into_iter();
+        let expected = scene.expected_of(&id, integrator).into_iter();
         checks.extend(expected.map(|e| judge(e, outcome, &value, report)));
     }
     checks
