@@ -1,7 +1,9 @@
 //! The command line: verbs in, exit codes out.
 
 use clap::{ColorChoice, Parser, Subcommand};
-use springcheck::verbs::{check, compare, cost, explain, list, merge, run, show, stability};
+use springcheck::verbs::{
+    check, compare, cost, expand, explain, init, list, merge, run, schema, show, stability,
+};
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -40,6 +42,12 @@ enum Verb {
     Show(show::Args),
     /// The JSON of parts of a run, joined into that of the whole.
     Merge(merge::Args),
+    /// A scene with all defaults written out, or as the flat arrays that other programs get.
+    Expand(expand::Args),
+    /// A scene, a solver and a workflow to start from: your own solver, held to its scheme in CI.
+    Init(init::Args),
+    /// The JSON Schema of scene files, for editors, or of reports, for programs that read them.
+    Schema(schema::Args),
     /// What an id means: a check, an integrator, an engine, an effect, a mistake.
     Explain(explain::Args),
     /// What there is: integrators, effects, engines, mistakes, with their facts.
@@ -73,6 +81,9 @@ fn main() -> ExitCode {
         Verb::Cost(args) => cost::cost(&args, cli.quiet),
         Verb::Show(args) => show::show(&args, cli.quiet),
         Verb::Merge(args) => merge::merge(&args),
+        Verb::Expand(args) => expand::expand(&args),
+        Verb::Init(args) => init::init(&args),
+        Verb::Schema(args) => schema::schema(&args),
         Verb::Explain(args) => explain::explain(&args),
         Verb::List(args) => list::list(&args),
     };

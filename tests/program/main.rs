@@ -8,7 +8,10 @@ mod cost;
 mod examples;
 #[cfg(unix)] // the programs it starts are POSIX's
 mod external;
+#[cfg(unix)] // the solvers are started as a POSIX shell would
+mod gate;
 mod run;
+mod schema;
 mod show;
 mod stability;
 #[path = "../testkit/mod.rs"]

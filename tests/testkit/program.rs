@@ -185,3 +185,17 @@ pub fn altered(file: &Path, name: &str, change: impl Fn(usize, &mut Vec<String>)
     std::fs::write(&path, with_fields(&text, change)).expect("written");
     path
 }
+
+/// Whether a command that a test needs is there. Without it the test says so and ends; where
+/// `SPRINGCHECK_REQUIRE_TOOLS` is 1 it fails instead.
+pub fn has(program: &str, arguments: &[&str]) -> bool {
+    let answer = std::process::Command::new(program).args(arguments).output();
+    let works = answer.is_ok_and(|output| output.status.success());
+    let command = format!("{program} {}", arguments.join(" "));
+    let required = std::env::var("SPRINGCHECK_REQUIRE_TOOLS").is_ok_and(|value| value == "1");
+    assert!(works || !required, "`{command}` does not work here");
+    if !works {
+        eprintln!("NOT TESTED: `{command}` does not work here");
+    }
+    works
+}

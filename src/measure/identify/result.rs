@@ -1,9 +1,10 @@
 //! The result of an identification, as data.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The scheme a trajectory follows, by one-step replay.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Identified {
     /// A method's id, a composed scheme's, or a common mistake's.
     pub method: String,
@@ -20,6 +21,7 @@ pub struct Identified {
     pub relative: Option<f64>,
     /// The nearest scheme that is not equivalent, as `method` or `method/substeps`.
     pub runner_up: Option<String>,
+    /// Its defect, in the same units.
     pub runner_up_defect: Option<f64>,
     /// Whether one scheme and no other explains the data.
     pub decisive: bool,
@@ -33,7 +35,7 @@ pub struct Identified {
 }
 
 /// The reason why a trajectory's scheme is not decided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Undecided {
     /// The equivalent ones are the same map where this trajectory goes: no data could tell.
@@ -45,7 +47,7 @@ pub enum Undecided {
 }
 
 /// What makes a trajectory differ from a scheme that it was meant to follow.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Explained {
     /// The scheme that the deviations belong to; `truth` where every step is exact to rounding, so that none can be
     /// told; null where nothing explains the trajectory.
@@ -60,7 +62,7 @@ pub struct Explained {
 }
 
 /// One thing that acts otherwise than the scene says.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Deviation {
     /// `gravity`, `springs.stiffness`, `springs.damping`, `springs.rest_length`, `springs.cubic`, `drag`, `wind`,
     /// `gravitational`, `mass`, `velocity`, `timestep`, `axis`, or what a known mistake changes.
@@ -75,7 +77,7 @@ pub struct Deviation {
 }
 
 /// The first step of a trajectory that does not follow its scheme.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Fault {
     /// Step n leads from t_n to t_n+1, zero-based; of rows several steps apart, the first of the
     /// steps between them.
@@ -95,7 +97,7 @@ pub struct Fault {
 }
 
 /// The quantity that a fault shows in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Quantity {
     #[serde(rename = "position_m")]
     Position,
