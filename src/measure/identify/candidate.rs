@@ -28,11 +28,11 @@ pub struct Candidate {
     stretch: f64,
     /// The forces it really computes: the scene's, or altered ones.
     forces: Forces,
-    step: Step,
+    step: Box<Step>,
     /// How the step is applied, where not to all particles at once.
     around: Option<Around>,
     /// The step it begins with, where that is another.
-    first: Option<Step>,
+    first: Option<Box<Step>>,
     scaling: Option<Scaling>,
 }
 
@@ -79,7 +79,7 @@ impl Candidate {
             mistake: false,
             stretch: 1.0,
             forces: Arc::clone(forces),
-            step,
+            step: Box::new(step),
             around: None,
             first: None,
             scaling: None,
@@ -161,6 +161,7 @@ impl Candidate {
 
     /// The same, begun with another step.
     pub(super) fn begun(self, first: Option<Step>) -> Self {
+        let first = first.map(Box::new);
         Self { first, ..self }
     }
 
@@ -281,8 +282,8 @@ impl<'a> Replayer<'a> {
                 .as_ref()
                 .map_or(forces as &dyn System, |rounded| rounded);
             self.scale(ScaledAt::Start, inner, &start.x, state);
-            let first = candidate.first.filter(|_| previous.is_none());
-            let step = first.unwrap_or(candidate.step);
+            let first = candidate.first.as_deref().filter(|_| previous.is_none());
+            let step = first.unwrap_or(&candidate.step);
             let before = previous.as_ref();
             let fresh = |before| step.build(&self.settings, before);
             match (candidate.around, &mut self.kept) {
