@@ -21,8 +21,12 @@ pub const FIT: f64 = 10.0;
 
 /// A defect so small needs no finer unit.
 const CLEAR: f64 = 0.25 * FIT;
-/// Nor does one so large: more directions never raise a unit by as much.
+/// Nor does one so large after a few directions: more of them never raise a unit by as much. In a single one the
+/// roundings of two forces may cancel at all axes of a particle.
 const HOPELESS: f64 = 32.0 * FIT;
+const FEW: u64 = 4;
+/// Beyond this part of the motion one direction is enough.
+const FAR: f64 = 1e-9;
 /// Most directions in which inputs and forces are moved by their rounding.
 const NUDGES: u64 = 16;
 
@@ -188,6 +192,9 @@ impl<'a> Replay<'a> {
                 relative: 0.0,
             });
         }
+        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        let moved: Vec<f64> = self.moved(transition).collect();
+        let far = most(&off) > FAR * most(&moved);
         let mut grown = vec![0.0; off.len()];
         let mut pattern = 0;
         loop {
@@ -195,9 +202,9 @@ impl<'a> Replay<'a> {
             pattern += 1;
             let units = self.with_own(replayer, transition, &predicted, &grown);
             let defect = largest_ratio(&off, &units);
-            let clear = defect <= CLEAR || defect > HOPELESS;
+            let enough = if far { 1 } else { FEW };
+            let clear = defect <= CLEAR || (defect > HOPELESS && pattern >= enough);
             if clear || pattern == NUDGES {
-                let moved: Vec<f64> = self.moved(transition).collect();
                 let motion = largest_ratio(&moved, &units);
                 let digits = self.digits(transition);
                 if defect <= FIT && defect > motion && largest_ratio(&off, &digits) > FIT {

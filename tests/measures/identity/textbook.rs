@@ -2,7 +2,7 @@
 //! of the small folders, whatever their order of operations.
 
 use super::*;
-use crate::testkit::scenes::all_shipped;
+use crate::testkit::scenes::{all_shipped, chain};
 use springcheck::measure::identify::FIT;
 use springcheck::scene::DampingModel;
 
@@ -398,5 +398,18 @@ fn formulas_are_named_by_what_they_compute() {
             named && all && identity.defect <= FIT,
             "{id} {part}: {identity:?}"
         );
+    }
+}
+
+/// At z = h w = 2 the forces of a step, 400 N, cancel to velocities of 1 m/s, and their roundings may cancel as well.
+#[test]
+fn verlet_is_named_at_its_limit() {
+    let mut scene = chain(1, 0.0, 1.0, 400.0);
+    (scene.solver.timestep, scene.solver.gravity) = (0.1, 0.0);
+    scene.particles[1].position = [0.5, 0.13, 0.2];
+    scene.particles[1].velocity = [0.0, 1.0, 0.3];
+    for coding in [Coding::Forward, Coding::Backward] {
+        let rows = written(&scene, coding, METHODS[4].1, 200);
+        names(&scene, &rows, METHODS[4].0).unwrap();
     }
 }
