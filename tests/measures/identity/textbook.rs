@@ -238,9 +238,12 @@ fn textbook_methods_are_named_on_every_small_scene() {
     assert!(names(&scenes[2], &rows, METHODS[1].0).is_err());
 }
 
+/// One step from the last of some states, given those before it.
+type Remembering = fn(Force, f64, &[Point], &Point) -> Point;
+
 /// Schemes that no method of the registry is, as people write them: their id, part of what is said of them, and a
-/// step from the states before the last one, and that.
-const OTHERS: [(&str, &str, fn(Force, f64, &[Point], &Point) -> Point); 17] = [
+/// step.
+const OTHERS: [(&str, &str, Remembering); 17] = [
     ("midpoint_kicked", "", |a, h, _, (x, v)| {
         let half = plus(v, h / 2.0, &a(x, v));
         let middle = a(&plus(x, h / 2.0, &half), &half);
