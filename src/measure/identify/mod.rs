@@ -15,13 +15,17 @@ mod channels;
 mod compose;
 mod explain;
 mod fault;
+mod fit;
 mod mistakes;
+mod near;
+mod numbers;
 mod race;
 mod replay;
 mod result;
 mod same;
 mod transition;
 mod velocity;
+mod words;
 
 pub use altered::{Around, OneStep};
 pub use candidate::{Candidate, Factor, Forces, Map, Replayer, ScaledAt, Scaling, Scheme, Step};

@@ -218,14 +218,30 @@ impl<'a> Replay<'a> {
 
     /// The largest distance of a state from what is recorded at the end, in these units.
     pub(super) fn farthest(&self, transition: &Transition, state: &State, units: &[f64]) -> f64 {
+        let off = self.off(transition, state, units);
+        off.fold(0.0, |most, off| {
+            let off = if off.is_nan() {
+                f64::INFINITY
+            } else {
+                off.abs()
+            };
+            f64::max(most, off)
+        })
+    }
+
+    /// A state minus what is recorded at the end, in these units: positions, then velocities where there are any.
+    pub(super) fn off(
+        &self,
+        transition: &Transition,
+        state: &State,
+        units: &[f64],
+    ) -> impl Iterator<Item = f64> {
         let numbers = state.x.iter().chain(&state.v).zip(units);
-        let ratios = self.recorded(transition).zip(numbers);
-        let ratios = ratios.map(|(recorded, (state, unit))| match state - recorded {
+        let pairs = self.recorded(transition).zip(numbers);
+        pairs.map(|(recorded, (state, unit))| match state - recorded {
             0.0 => 0.0,
-            off if off.is_nan() => f64::INFINITY,
-            off => off.abs() / unit,
-        });
-        ratios.fold(0.0, f64::max)
+            off => off / unit,
+        })
     }
 
     /// Raises `grown` to how far away inputs moved in this direction end.

@@ -41,20 +41,26 @@ pub(super) struct Weighed {
     pub(super) motion: f64,
 }
 
+/// The transitions between neighbouring rows, wherever a replay can start.
+pub(super) fn neighbours(rows: &Rows) -> Vec<Transition> {
+    let finite: Vec<bool> = (0..rows.len()).map(|k| is_finite(rows, k)).collect();
+    let all = (0..rows.len().saturating_sub(1)).map(|from| Transition {
+        before: from.checked_sub(1).filter(|&k| finite[k]),
+        from,
+        to: from + 1,
+    });
+    all.filter(|t| finite[t.from] && (rows.v.is_some() || t.before.is_some()))
+        .collect()
+}
+
 /// The transitions to use, in order: between neighbouring rows, the shortest there are, without
 /// those that are not finite and, if any move, those where nothing does. At most `limit` of them,
 /// evenly spread.
 pub(super) fn choose(rows: &Rows, system: &ParticleSystem, limit: Option<usize>) -> Vec<Weighed> {
-    let finite: Vec<bool> = (0..rows.len()).map(|k| is_finite(rows, k)).collect();
-    let first = if rows.v.is_some() { 0 } else { 1 };
-    let all: Vec<Transition> = (first..rows.len().saturating_sub(1))
-        .map(|from| Transition {
-            before: from.checked_sub(1).filter(|&k| finite[k]),
-            from,
-            to: from + 1,
-        })
-        .filter(|t| finite[t.from] && finite[t.to] && (rows.v.is_some() || t.before.is_some()))
-        .collect();
+    let whole = neighbours(rows)
+        .into_iter()
+        .filter(|t| is_finite(rows, t.to));
+    let all: Vec<Transition> = whole.collect();
     // Beside the short ones of a thinned record its long ones are no use; where all are about
     // alike, all are. A lone short one at the end of a file is no measure: hence the quartile.
     let mut spans: Vec<u64> = all.iter().map(|t| t.reach(rows)).collect();
@@ -75,7 +81,7 @@ pub(super) fn choose(rows: &Rows, system: &ParticleSystem, limit: Option<usize>)
     spread(&used, limit.unwrap_or(usize::MAX))
 }
 
-fn is_finite(rows: &Rows, k: usize) -> bool {
+pub(super) fn is_finite(rows: &Rows, k: usize) -> bool {
     let v = rows.v(k).unwrap_or(&[]);
     rows.x(k).iter().chain(v).all(|c| c.is_finite())
 }
