@@ -5,11 +5,9 @@
 mod anchor;
 mod edits;
 mod explain;
-mod fit;
 mod guesses;
 mod spot;
 mod within;
-mod words;
 
 pub use anchor::moved_anchor;
 

@@ -15,7 +15,10 @@ mod channels;
 mod compose;
 mod explain;
 mod fault;
+mod fit;
 mod mistakes;
+mod near;
+mod numbers;
 mod race;
 mod replay;
 mod result;
@@ -23,6 +26,7 @@ mod same;
 mod step;
 mod transition;
 mod velocity;
+mod words;
 
 pub use altered::{Around, OneStep};
 pub use candidate::{Candidate, Factor, Forces, Replayer, ScaledAt, Scaling};
@@ -198,7 +202,6 @@ fn decide(
                 transitions: all.len(),
                 followed: fit.len(),
                 left_out: race.left_out.clone(),
-                steps: race.replay.steps(),
                 ..Identity::of(&right)
             });
         }
@@ -224,7 +227,6 @@ fn decide(
         transitions: all.len(),
         followed,
         left_out: race.left_out.clone(),
-        steps: race.replay.steps(),
         ..Identity::of(&winner.candidate)
     })
 }

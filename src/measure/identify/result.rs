@@ -42,9 +42,6 @@ pub struct Identity {
     /// How many of them follow the scheme.
     #[serde(skip)]
     pub followed: usize,
-    /// Steps taken to find out, substeps included.
-    #[serde(skip)]
-    pub steps: u64,
 }
 
 /// The reason why a trajectory's scheme is not decided.

@@ -25,7 +25,7 @@ const PATIENCE: usize = 4;
 
 impl Leg {
     /// Sets the velocities of `from` so that the scheme leads to the positions of `to`, and those
-    /// of `to` to what it arrives with. Returns the steps taken.
+    /// of `to` to what it arrives with.
     ///
     /// Broyden's good method (1965) on Φ_x(x0, v) = x1, started from the mean velocity and the
     /// slope span h, which is that of a free flight.
@@ -37,7 +37,7 @@ impl Leg {
         replayer: &mut Replayer,
         from: &mut State,
         to: &mut State,
-    ) -> Result<u64, StepError> {
+    ) -> Result<(), StepError> {
         self.find_within(replayer, from, to, |_| 0.0)
     }
 
@@ -48,7 +48,7 @@ impl Leg {
         from: &mut State,
         to: &mut State,
         enough: impl Fn(f64) -> f64,
-    ) -> Result<u64, StepError> {
+    ) -> Result<(), StepError> {
         let seconds = self.span as f64 * self.timestep;
         let mut v = apart(&to.x, &from.x, seconds);
         let mut inverse = Inverse::default();
@@ -88,7 +88,7 @@ impl Leg {
             Some((off, v, arrived)) if off <= 16.0 => {
                 from.v = v;
                 to.v = arrived;
-                Ok(taken as u64 * self.span)
+                Ok(())
             }
             best => Err(StepError::NotConverged {
                 iterations: taken as u32,
