@@ -153,7 +153,8 @@ fn groups(question: &Question, race: &Race) -> Vec<Group> {
             }));
         }
     }
-    let mut left = race.budget;
+    // A race that finds nothing may have spent nearly all.
+    let mut left = race.budget.max(question.budget / 2);
     let mut group = |mut bases: Vec<Base>, sizes: RangeInclusive<usize>, members| {
         // About so many replays of each fitted transition.
         let replays = if members { 340 } else { 60 };
