@@ -6,6 +6,7 @@
 pub mod cli;
 pub mod clock;
 pub mod compare;
+pub mod completions;
 pub mod cost;
 mod facts;
 pub mod formats;

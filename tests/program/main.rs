@@ -3,10 +3,13 @@
 //! A new verb, a new flag and a new key of a report belong here.
 
 mod cases;
+mod command_line;
 mod cost;
 mod examples;
 #[cfg(unix)] // the programs it starts are POSIX's
 mod external;
+#[cfg(unix)] // signals are POSIX's
+mod interrupted;
 mod run;
 mod show;
 mod stability;
