@@ -163,7 +163,7 @@ fn report(
     let plan = Plan::new(scene, &choice);
     let mut report = plan.execute(session)?;
     let (found, fault) = identity::of_rows(&plan, rows);
-    let identified = found.identity.and_then(|identity| identity.report());
+    let identified = found.identity;
     if let Body::Run { outcomes } = &mut report.body {
         let mut outcomes = std::mem::take(outcomes);
         for outcome in &mut outcomes {
