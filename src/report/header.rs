@@ -15,6 +15,9 @@ pub struct Header {
     pub scene: SceneFacts,
     pub truth: TruthFacts,
     pub checks: Vec<Check>,
+    /// Commands to try next, the most useful first.
+    #[serde(default)]
+    pub advice: Vec<String>,
 }
 
 impl Header {

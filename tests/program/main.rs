@@ -4,10 +4,13 @@
 
 mod cases;
 mod check;
+mod command_line;
 mod cost;
 mod examples;
 #[cfg(unix)] // the programs it starts are POSIX's
 mod external;
+#[cfg(unix)] // signals are POSIX's
+mod interrupted;
 mod run;
 mod show;
 mod stability;

@@ -17,6 +17,11 @@ pub fn springcheck() -> Command {
     command
 }
 
+/// The path of the program, for tests that start it by other means.
+pub fn springcheck_path() -> PathBuf {
+    assert_cmd::cargo::cargo_bin("springcheck")
+}
+
 /// Exit code, stdout, stderr.
 pub fn output(args: &[&str]) -> (i32, String, String) {
     answer(springcheck().args(args))
@@ -77,7 +82,7 @@ pub fn refuse_all(args: &[&str], says: &[&str]) {
 /// A reader that is gone before anything is printed is no error.
 pub fn leave(args: &[&str]) {
     use std::process::Stdio;
-    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("springcheck"))
+    let mut child = std::process::Command::new(springcheck_path())
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .args(args)
         .stdout(Stdio::piped())
@@ -184,4 +189,18 @@ pub fn altered(file: &Path, name: &str, change: impl Fn(usize, &mut Vec<String>)
     let path = file.with_file_name(name);
     std::fs::write(&path, with_fields(&text, change)).expect("written");
     path
+}
+
+/// Whether a command that a test needs is there. Without it the test says so and ends; where
+/// `SPRINGCHECK_REQUIRE_TOOLS` is 1 it fails instead.
+pub fn has(program: &str, arguments: &[&str]) -> bool {
+    let answer = std::process::Command::new(program).args(arguments).output();
+    let works = answer.is_ok_and(|output| output.status.success());
+    let command = format!("{program} {}", arguments.join(" "));
+    let required = std::env::var("SPRINGCHECK_REQUIRE_TOOLS").is_ok_and(|value| value == "1");
+    assert!(works || !required, "`{command}` does not work here");
+    if !works {
+        eprintln!("NOT TESTED: `{command}` does not work here");
+    }
+    works
 }

@@ -5,7 +5,7 @@ mod examples;
 mod failures;
 mod flags;
 
-use crate::testkit::program::{outcomes, output, word};
+use crate::testkit::program::{has, outcomes, output, word};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -52,18 +52,4 @@ fn saved(folder: &Path, every: &str) -> PathBuf {
     ]);
     assert_eq!(code, 0, "{err}");
     folder.join("oscillator/circle/symplectic_euler@0.01.csv")
-}
-
-/// Whether a command that a test needs is there. Without it the test says so and ends; where
-/// `SPRINGCHECK_REQUIRE_TOOLS` is 1 it fails instead.
-fn has(program: &str, arguments: &[&str]) -> bool {
-    let answer = std::process::Command::new(program).args(arguments).output();
-    let works = answer.is_ok_and(|output| output.status.success());
-    let command = format!("{program} {}", arguments.join(" "));
-    let required = std::env::var("SPRINGCHECK_REQUIRE_TOOLS").is_ok_and(|value| value == "1");
-    assert!(works || !required, "`{command}` does not work here");
-    if !works {
-        eprintln!("NOT TESTED: `{command}` does not work here");
-    }
-    works
 }
