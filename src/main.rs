@@ -1,10 +1,11 @@
 //! The command line: verbs in, exit codes out.
 
-use clap::{ColorChoice, Parser, Subcommand};
+use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
+use springcheck::verbs::cli::{interrupt, note::note};
 use springcheck::verbs::{
-    check, compare, cost, expand, explain, init, list, merge, run, schema, show, stability,
+    check, compare, completions, cost, expand, explain, init, list, merge, run, schema, show,
+    stability,
 };
-use std::io::Write;
 use std::process::ExitCode;
 
 /// Is a particle-spring integrator right, and what does being right cost?
@@ -21,37 +22,108 @@ struct Cli {
     #[arg(long, global = true, value_enum, default_value_t)]
     color: ColorChoice,
 
-    /// No progress bar, no notes on stderr; errors still show.
-    #[arg(long, global = true)]
+    /// One line a scene instead of the text; no progress bar and no notes. Errors still show.
+    #[arg(short, long, global = true)]
     quiet: bool,
+}
+
+/// Examples, one a line, for the end of a verb's help.
+macro_rules! examples {
+    ($($line:literal)+) => {
+        concat!("Examples:", $("\n  springcheck ", $line),+)
+    };
 }
 
 #[derive(Debug, Subcommand)]
 enum Verb {
     /// Cross-check scenes: every chosen integrator beside rapier; a table and reports/<scene>/.
+    #[command(after_help = examples!(
+        "run scenes/pa1/scene01.yml"
+        "run scenes/pa1 --integrators all -q"
+        "run scenes/pa1/scene04.yml --external mine='python3 mine.py {scene_json}'"
+    ))]
     Run(run::Args),
     /// A trajectory some other program computed: is it right, and which scheme is it really?
+    #[command(after_help = examples!(
+        "compare mine.npz --scene scenes/pa1/scene01.yml"
+        "compare mine.csv --scene scene.yml --timestep 0.01 --axes xy"
+        "compare mine.npz --scene scene.yml --format json"
+    ))]
     Compare(compare::Args),
     /// The gate: what scenes expect, the laws they imply, and an accepted run; for CI.
+    #[command(after_help = examples!(
+        "check scenes"
+        "check scenes --format github --write junit=check.xml"
+        "check scene.yml --external mine='python3 mine.py {scene_json}' --claims mine=rk4"
+    ))]
     Check(check::Args),
     /// How large a step each integrator may take: predicted, measured, and as a map.
+    #[command(after_help = examples!(
+        "stability scenes/pa1/scene01.yml"
+        "stability scene.yml --vary springs.stiffness=1e2..1e6"
+        "stability scene.yml --largest springs.stiffness --timestep 0.001"
+    ))]
     Stability(stability::Args),
     /// What accuracy costs: errors over time and evaluations, and the cheapest way to a target.
+    #[command(after_help = examples!(
+        "cost scenes/pa1/scene01.yml"
+        "cost scene.yml --targets 1e-2,1e-4 --budget 10s"
+        "cost scene.yml --timestep 0.04,0.02,0.01"
+    ))]
     Cost(cost::Args),
     /// A stored report once more: printed and drawn as by the verb that made it.
+    #[command(after_help = examples!(
+        "show reports/pa1/scene01/report.json"
+        "show report.json --format markdown"
+        "show report.json --output figures"
+    ))]
     Show(show::Args),
     /// The JSON of parts of a run, joined into that of the whole.
+    #[command(after_help = examples!(
+        "merge part1.json part2.json > whole.json"
+        "merge part1.json part2.json --format human"
+        "merge part1.json part2.json --format junit"
+    ))]
     Merge(merge::Args),
     /// A scene with all defaults written out, or as the flat arrays that other programs get.
+    #[command(after_help = examples!(
+        "expand scenes/pa1/scene01.yml"
+        "expand scene.yml --format json > flat.json"
+    ))]
     Expand(expand::Args),
     /// A scene, a solver and a workflow to start from: your own solver, held to its scheme in CI.
+    #[command(after_help = examples!(
+        "init"
+        "init mine"
+    ))]
     Init(init::Args),
     /// The JSON Schema of scene files, for editors, or of reports, for programs that read them.
+    #[command(after_help = examples!(
+        "schema scene > scene.schema.json"
+        "schema report > report.schema.json"
+    ))]
     Schema(schema::Args),
     /// What an id means: a check, an integrator, an engine, an effect, a mistake.
+    #[command(after_help = examples!(
+        "explain balance"
+        "explain rk4"
+        "explain midpoint_end_velocity"
+    ))]
     Explain(explain::Args),
     /// What there is: integrators, effects, engines, mistakes, with their facts.
+    #[command(after_help = examples!(
+        "list integrators"
+        "list engines"
+        "list mistakes"
+    ))]
     List(list::Args),
+    /// Completions of the command line for a shell, or its man pages.
+    #[command(after_help = examples!(
+        "completions bash > ~/.local/share/bash-completion/completions/springcheck"
+        "completions zsh > ~/.zfunc/_springcheck"
+        "completions man run > springcheck-run.1"
+    ))]
+    Completions(completions::Args),
 }
 
 /// The exit code for usage, scene and input errors.
@@ -62,8 +134,13 @@ fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
+            // What the caller wrote may hold what a terminal acts on; help holds nothing of it.
+            if error.use_stderr() {
+                note(error.render().to_string().trim_end());
+            } else {
+                let _ = error.print();
+            }
             // clap's own code is 2 for usage and 0 for --help.
-            let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(USAGE));
         }
     };
@@ -73,6 +150,7 @@ fn main() -> ExitCode {
         ColorChoice::Never => anstream::ColorChoice::Never,
     }
     .write_global();
+    interrupt::watch();
     let done = match cli.verb {
         Verb::Run(args) => run::run(&args, cli.quiet),
         Verb::Compare(args) => compare::compare(&args, cli.quiet),
@@ -86,11 +164,12 @@ fn main() -> ExitCode {
         Verb::Schema(args) => schema::schema(&args),
         Verb::Explain(args) => explain::explain(&args),
         Verb::List(args) => list::list(&args),
+        Verb::Completions(args) => completions::completions(&args, &mut Cli::command()),
     };
     match done {
         Ok(code) => code,
         Err(error) => {
-            let _ = writeln!(anstream::stderr(), "{}", message(&error));
+            note(&message(&error));
             ExitCode::from(USAGE)
         }
     }

@@ -168,11 +168,18 @@ impl Method {
     /// A fresh integrator of fixed steps; for a pair, its advancing formula
     /// ([`Adaptive`](adaptive::Adaptive) is the stepper that chooses its steps).
     pub fn build(&self, settings: &Settings) -> Box<dyn Integrator> {
-        match self.coefficients {
-            Coefficients::Pair(pair) => Box::new(RungeKutta::new(pair.tableau)),
-            Coefficients::Tableau(tableau) => Box::new(RungeKutta::new(tableau)),
-            Coefficients::Composition(stages, damping) => Box::new(Splitting::new(stages, damping)),
-            Coefficients::Implicit(scheme) => Box::new(Implicit::new(scheme, settings)),
+        self.coefficients.build(settings)
+    }
+}
+
+impl Coefficients {
+    /// The stepper of their family, as [`Method::build`].
+    pub fn build(self, settings: &Settings) -> Box<dyn Integrator> {
+        match self {
+            Self::Pair(pair) => Box::new(RungeKutta::new(pair.tableau)),
+            Self::Tableau(tableau) => Box::new(RungeKutta::new(tableau)),
+            Self::Composition(stages, damping) => Box::new(Splitting::new(stages, damping)),
+            Self::Implicit(scheme) => Box::new(Implicit::new(scheme, settings)),
         }
     }
 }

@@ -19,6 +19,9 @@ pub struct Header {
     pub truth: TruthFacts,
     /// Findings held against their bounds.
     pub checks: Vec<Check>,
+    /// Commands to try next, the most useful first.
+    #[serde(default)]
+    pub advice: Vec<String>,
 }
 
 impl Header {

@@ -1,5 +1,6 @@
 //! The reports as JSON, written and read: the contract's keys, indented, with floats that round-trip.
 
+use crate::scene::words::acts;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use serde::de::DeserializeOwned;
@@ -45,6 +46,19 @@ struct Envelope<'a, R> {
 
 /// Renders any number of reports as one object.
 pub fn render<R: Serialize + Debug>(tool: &Tool, reports: &[R]) -> String {
+    rendered(tool, reports, serde_json::to_string_pretty)
+}
+
+/// The same object on one line.
+pub fn line<R: Serialize + Debug>(tool: &Tool, reports: &[R]) -> String {
+    rendered(tool, reports, serde_json::to_string)
+}
+
+fn rendered<'a, R: Serialize + Debug>(
+    tool: &'a Tool,
+    reports: &'a [R],
+    to_text: fn(&Envelope<'a, R>) -> serde_json::Result<String>,
+) -> String {
     debug_assert!(
         reports.iter().all(is_finite),
         "a report holds NaN or infinity, which JSON would turn into null without a reason"
@@ -55,9 +69,22 @@ pub fn render<R: Serialize + Debug>(tool: &Tool, reports: &[R]) -> String {
         reports,
     };
     // Serialization fails only for a `Serialize` that refuses, or a map whose keys are no strings: not here.
-    let mut text = serde_json::to_string_pretty(&envelope).unwrap_or_default();
-    text.push('\n');
-    text
+    escaped(&to_text(&envelope).unwrap_or_default()) + "\n"
+}
+
+/// The same JSON, with characters escaped on which a terminal would act. They only occur inside of strings.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c == '\n' || !acts(c) {
+            escaped.push(c);
+        } else {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                escaped += &format!("\\u{unit:04x}");
+            }
+        }
+    }
+    escaped
 }
 
 /// The JSON Schema of what [`render`] writes: JSON Schema, draft 7, as editors know it. Keys that it does not know are

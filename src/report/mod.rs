@@ -14,10 +14,14 @@ pub mod words;
 
 pub use header::{EffectUse, Header, OWN, SceneFacts, TruthFacts, UNRANKED};
 
+use schemars::JsonSchema;
+use serde::Serialize;
 use verdict::Clause;
 
 /// The parts of a report that differ between verbs; the rest is the same for all.
 pub struct View<'a> {
+    /// The columns of a line in the terminal.
+    pub columns: usize,
     pub header: &'a Header,
     /// The timestep of each outcome, s; empty where the verb chooses its own steps.
     pub timesteps: Vec<f64>,
@@ -34,9 +38,11 @@ pub struct View<'a> {
 }
 
 /// One sentence, and the engines it is about.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Note {
     /// The engines, such as `rapier` or `explicit_euler at h = 0.15`.
     pub subject: String,
+    /// What there is to say of them.
     pub sentence: String,
 }
 

@@ -3,7 +3,7 @@
 //! column, is cut last.
 
 use super::OWN;
-use super::terminal::{Tone, WIDTH, clip, mark, width, wrap};
+use super::terminal::{Tone, clip, mark, width, wrap};
 use super::words::{NOTHING, escape, one_line};
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, TableStyle};
 
@@ -102,34 +102,35 @@ impl<'a, R> Table<'a, R> {
         });
     }
 
-    /// Whether the terminal has room for all columns.
-    pub fn fits(&self) -> bool {
-        self.fitted().1.is_empty()
+    /// Whether a terminal of this width has room for all columns.
+    pub fn fits(&self, width: usize) -> bool {
+        self.fitted(width).1.is_empty()
     }
 
-    /// The lines of the table and its legend. `legend` is given the headers of the columns left out for width;
+    /// The lines of the table and its legend, in a terminal of this width. `legend` is given the headers of the columns left out for width;
     /// the same headers are appended to it, separated by `between`.
     pub fn in_terminal(
         &self,
+        width: usize,
         between: &str,
         legend: impl FnOnce(&[String]) -> String,
     ) -> Vec<String> {
-        let (columns, left_out) = self.fitted();
+        let (columns, left_out) = self.fitted(width);
         let mut legend = legend(&left_out);
         if !left_out.is_empty() {
             legend += &format!(" | left out for width: {}", left_out.join(between));
         }
-        let mut lines = laid_out(&columns);
-        let legend = wrap(&legend, WIDTH, "");
+        let mut lines = laid_out(&columns, width);
+        let legend = wrap(&legend, width, "");
         lines.extend(legend.iter().map(|line| mark(Tone::Dim, line)));
         lines
     }
 
     /// The columns the terminal shows, and the headers of those that do not fit.
-    fn fitted(&self) -> (Vec<&Column>, Vec<String>) {
+    fn fitted(&self, width: usize) -> (Vec<&Column>, Vec<String>) {
         let mut columns: Vec<&Column> = self.columns.iter().filter(|c| c.is_shown()).collect();
         let mut left_out = Vec::new();
-        while room(&columns) < columns[0].width().min(MIN_NAME_WIDTH)
+        while room(&columns, width) < columns[0].width().min(MIN_NAME_WIDTH)
             && let Some(i) = (1..columns.len()).max_by_key(|&i| columns[i].drop_order)
             && columns[i].drop_order > 0
         {
@@ -165,13 +166,13 @@ impl Column {
 }
 
 /// The width the other columns leave to the first.
-fn room(columns: &[&Column]) -> usize {
+fn room(columns: &[&Column], width: usize) -> usize {
     let others: usize = columns[1..].iter().map(|c| c.width() + GAP).sum();
-    WIDTH.saturating_sub(others)
+    width.saturating_sub(others)
 }
 
 /// The table as lines.
-fn laid_out(columns: &[&Column]) -> Vec<String> {
+fn laid_out(columns: &[&Column], width: usize) -> Vec<String> {
     let mut table = comfy_table::Table::new();
     table.load_style(STYLE);
     table.set_content_arrangement(ContentArrangement::Disabled);
@@ -182,7 +183,7 @@ fn laid_out(columns: &[&Column]) -> Vec<String> {
         let above = "\n".repeat(height - lines(column));
         Cell::new(above + &column.headers[0]).set_alignment(column.alignment)
     }));
-    let room = room(columns);
+    let room = room(columns, width);
     for row in 0..columns[0].cells.len() {
         table.add_row(columns.iter().enumerate().map(|(i, column)| {
             let (text, tone) = &column.cells[row];

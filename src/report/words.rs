@@ -2,6 +2,7 @@
 
 use crate::measure::{Behaviour, Check, CheckStatus, Energy};
 use crate::report::TruthFacts;
+use crate::scene::words::acts;
 use crate::truth::TruthKind;
 use serde::Serialize;
 
@@ -203,8 +204,7 @@ pub fn truth(truth: &TruthFacts) -> String {
 /// One printable line: control characters and runs of white space become single spaces; invisible
 /// characters that could reorder or restyle the line go.
 pub fn one_line(text: &str) -> String {
-    // Direction overrides, and the variation selectors that `terminal::paint` uses as marks.
-    let is_invisible = |c: &char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{e0100}'..='\u{e01ef}');
+    let is_invisible = |c: &char| acts(*c) && !c.is_control();
     let visible: String = text.chars().filter(|c| !is_invisible(c)).collect();
     let separates = |c: char| c.is_control() || c.is_whitespace();
     let words = visible.split(separates).filter(|word| !word.is_empty());

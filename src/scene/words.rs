@@ -2,14 +2,35 @@
 
 use strsim::damerau_levenshtein;
 
-/// The character, or a stand-in for one that moves the cursor or reverses the line.
+/// Whether a terminal would act on the character instead of showing it: it moves the cursor, changes colours or
+/// turns the direction of the line. Variation selectors belong to these, since the layout uses them as its marks.
+pub(crate) fn acts(c: char) -> bool {
+    c.is_control()
+        || matches!(
+            c,
+            '\u{61c}'
+                | '\u{200e}'
+                | '\u{200f}'
+                | '\u{202a}'..='\u{202e}'
+                | '\u{2066}'..='\u{2069}'
+                | '\u{e0100}'..='\u{e01ef}'
+        )
+}
+
+/// The character, or a stand-in for one that a terminal would act on. Everything that people read passes here before
+/// it is printed.
 pub(crate) fn printable(c: char) -> char {
     match c {
         '\t' => ' ',
-        '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
-        c if c.is_control() => '\u{fffd}',
+        c if acts(c) => '\u{fffd}',
         c => c,
     }
+}
+
+/// Text of several lines in which every other character is [`printable`].
+pub(crate) fn visible(text: &str) -> String {
+    let shown = |c| if c == '\n' { c } else { printable(c) };
+    text.chars().map(shown).collect()
 }
 
 /// The first 60 characters, so that a message stays a line.
@@ -35,6 +56,11 @@ pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
         .filter(|(distance, word)| *distance <= allowed && *distance < word.len())
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, word)| word)
+}
+
+/// ` (did you mean ...?)` for the middle of a message; empty where no known word is near.
+pub(crate) fn aside(found: &str, known: &[&str]) -> String {
+    did_you_mean(found, known).map_or_else(String::new, |asked| format!(" ({asked})"))
 }
 
 /// `did you mean ...?`, where a known word is near.

@@ -3,8 +3,10 @@
 use super::{Body, Report, check, cost, run, stability};
 use crate::report::json::{self, Tool};
 use crate::report::svg::{Chart, Figure};
-use crate::report::{View, github, junit, terminal};
+use crate::report::{Note, View, github, junit, terminal, verdict};
 use crate::scene;
+use schemars::{JsonSchema, Schema};
+use serde::Serialize;
 
 /// One format of reports.
 pub struct Format {
@@ -24,13 +26,23 @@ pub const FORMATS: &[Format] = &[
         id: "human",
         extension: "txt",
         file: false,
-        render: |_, reports| joined(reports, Report::human),
+        render: |_, reports| joined(reports, |report| report.human(terminal::WIDTH)),
     },
     Format {
         id: "json",
         extension: "json",
         file: true,
-        render: json::render,
+        render: |tool, reports| json::render(tool, &in_words(reports)),
+    },
+    Format {
+        id: "jsonl",
+        extension: "jsonl",
+        file: false,
+        render: |tool, reports| {
+            let words = in_words(reports);
+            let line = |report| json::line(tool, std::slice::from_ref(report));
+            words.iter().map(line).collect()
+        },
     },
     Format {
         id: "markdown",
@@ -57,6 +69,35 @@ pub const FORMATS: &[Format] = &[
     },
 ];
 
+/// A report in JSON, with what the texts say beside the numbers. It reads back as the report alone.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Report")]
+struct InWords<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    /// The verdict in one sentence, as the terminal and the page begin with it.
+    verdict: String,
+    /// All remarks of the page, each with the engines it is about.
+    remarks: Vec<Note>,
+}
+
+fn in_words(reports: &[Report]) -> Vec<InWords<'_>> {
+    fn one(report: &Report) -> InWords<'_> {
+        let view = report.view();
+        InWords {
+            report,
+            verdict: verdict::verdict(&view),
+            remarks: view.notes,
+        }
+    }
+    reports.iter().map(one).collect()
+}
+
+/// The JSON Schema of the format `json`.
+pub fn schema() -> Schema {
+    json::schema::<InWords>()
+}
+
 /// The format with this id.
 pub fn format(id: &str) -> Option<&'static Format> {
     FORMATS.iter().find(|format| format.id == id)
@@ -79,22 +120,28 @@ impl Report {
         }
     }
 
-    /// The parts that the terminal and the page show, as the verb words them.
+    /// The parts that the terminal and the page show, as the verb words them, for a terminal of the usual width.
     pub fn view(&self) -> View<'_> {
+        self.view_in(terminal::WIDTH)
+    }
+
+    /// The same for a terminal of so many columns, at least [`terminal::MIN_WIDTH`].
+    pub fn view_in(&self, columns: usize) -> View<'_> {
+        let columns = columns.max(terminal::MIN_WIDTH);
         match &self.body {
             Body::Run { outcomes } | Body::Check { outcomes } | Body::Compare { outcomes, .. } => {
-                run::view(self, outcomes)
+                run::view(self, outcomes, columns)
             }
-            Body::Stability { stability, .. } => stability::view(self, stability),
-            Body::Cost { cost, .. } => cost::view(self, cost),
+            Body::Stability { stability, .. } => stability::view(self, stability, columns),
+            Body::Cost { cost, .. } => cost::view(self, cost, columns),
         }
     }
 
-    /// The text for people, as the terminal shows it.
-    pub fn human(&self) -> String {
+    /// The text for people, for a terminal of so many columns.
+    pub fn human(&self, columns: usize) -> String {
         match &self.body {
-            Body::Check { .. } => check::human(self),
-            _ => terminal::render(self.view()),
+            Body::Check { .. } => check::human(self, columns),
+            _ => terminal::render(self.view_in(columns)),
         }
     }
 

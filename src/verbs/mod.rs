@@ -7,6 +7,7 @@ pub mod check;
 pub mod cli;
 pub mod clock;
 pub mod compare;
+pub mod completions;
 pub mod cost;
 pub mod expand;
 pub mod explain;

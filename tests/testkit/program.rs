@@ -17,6 +17,11 @@ pub fn springcheck() -> Command {
     command
 }
 
+/// The path of the program, for tests that start it by other means.
+pub fn springcheck_path() -> PathBuf {
+    assert_cmd::cargo::cargo_bin("springcheck")
+}
+
 /// Exit code, stdout, stderr.
 pub fn output(args: &[&str]) -> (i32, String, String) {
     answer(springcheck().args(args))
@@ -77,7 +82,7 @@ pub fn refuse_all(args: &[&str], says: &[&str]) {
 /// A reader that is gone before anything is printed is no error.
 pub fn leave(args: &[&str]) {
     use std::process::Stdio;
-    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("springcheck"))
+    let mut child = std::process::Command::new(springcheck_path())
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .args(args)
         .stdout(Stdio::piped())

@@ -1,32 +1,16 @@
 //! Systems that are not quite the scene's: one particle among others that stand still, forces that are held over a
 //! step, or off by their rounding.
 
+use super::step::acceleration;
 use crate::integrators::StepError;
 use crate::physics::{Dampers, ForceKinds, Jacobian, Linearization, Power, State, Sweep, System};
+use crate::vector::axpy;
 use std::cell::Cell;
 
 /// Applies a step to a state over h, in this many substeps where it has some.
 pub type Around = fn(&OneStep, &dyn System, f64, u32, &mut State) -> Result<(), StepError>;
 /// A step of h from a state in place.
 pub type OneStep<'a> = dyn Fn(&dyn System, f64, &mut State) -> Result<(), StepError> + 'a;
-
-pub(super) fn acceleration(system: &dyn System, t: f64, x: &[f64], v: &[f64]) -> Vec<f64> {
-    let mut a = vec![0.0; x.len()];
-    system.acceleration(t, x, v, &mut a);
-    a
-}
-
-/// y + h x.
-pub(super) fn plus(y: &[f64], h: f64, x: &[f64]) -> Vec<f64> {
-    y.iter().zip(x).map(|(y, x)| y + h * x).collect()
-}
-
-pub(super) fn finish(state: &mut State, h: f64, x: Vec<f64>, v: Vec<f64>) -> Result<(), StepError> {
-    state.x = x;
-    state.v = v;
-    state.t += h;
-    Ok(())
-}
 
 /// One particle of a system, the others where they are.
 pub(super) struct Alone<'a> {
@@ -70,10 +54,10 @@ impl System for Alone<'_> {
     }
 }
 
-/// A system whose forces are partly held, or shifted.
+/// A system with other forces.
 pub(super) struct Altered<'a> {
-    pub(super) inner: &'a dyn System,
-    pub(super) force: Altering,
+    inner: &'a dyn System,
+    force: Altering,
 }
 
 pub(super) enum Altering {
@@ -83,6 +67,32 @@ pub(super) enum Altering {
     PositionsHeld(Vec<f64>),
     /// So much more acceleration.
     Shifted(Vec<f64>),
+    /// Every acceleration off by its rounding, in a direction of its own for each coordinate.
+    Rounded {
+        pattern: u64,
+        /// The step: rounding that always pushed the same way would leave out what grows by alternating.
+        step: u64,
+        /// The evaluations of the step so far, of a scheme that does not iterate: rounding that pushed the same way
+        /// in all of them might cancel. An iteration converges only if it is the same in all.
+        evaluations: Option<Cell<u64>>,
+    },
+}
+
+impl Altering {
+    pub(super) fn rounded(pattern: u64, step: u64, iterates: bool) -> Self {
+        let evaluations = (!iterates).then(Cell::default);
+        Self::Rounded {
+            pattern,
+            step,
+            evaluations,
+        }
+    }
+}
+
+impl<'a> Altered<'a> {
+    pub(super) fn new(inner: &'a dyn System, force: Altering) -> Self {
+        Self { inner, force }
+    }
 }
 
 impl System for Altered<'_> {
@@ -98,9 +108,23 @@ impl System for Altered<'_> {
             }
             Altering::Shifted(shift) => {
                 self.inner.acceleration(t, x, v, a);
-                for (a, shift) in a.iter_mut().zip(shift) {
-                    *a += shift;
+                axpy(a, 1.0, shift);
+            }
+            Altering::Rounded {
+                pattern,
+                step,
+                evaluations,
+            } => {
+                let mut off = vec![0.0; a.len()];
+                self.inner.rounding(t, x, v, &mut off);
+                let evaluations = evaluations.as_ref();
+                let evaluation = evaluations.map_or(0, |all| all.replace(all.get() + 1));
+                let first = evaluation as usize * a.len();
+                let power = self.inner.acceleration(t, x, v, a);
+                for (i, (a, off)) in a.iter_mut().zip(off).enumerate() {
+                    *a += sign((!step, *pattern), first + i) * off;
                 }
+                return power;
             }
         }
         Power::default()
@@ -121,8 +145,12 @@ impl System for Altered<'_> {
         self.inner.sweep(sweep);
     }
 
-    fn potential(&self, _t: f64, _x: &[f64]) -> f64 {
-        0.0
+    fn damping(&self, t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
+        self.inner.damping(t, x, w, a);
+    }
+
+    fn potential(&self, t: f64, x: &[f64]) -> f64 {
+        self.inner.potential(t, x)
     }
 
     fn jacobian(&self, t: f64, x: &[f64], v: &[f64], by: Linearization, out: &mut Jacobian) {
@@ -133,75 +161,8 @@ impl System for Altered<'_> {
                 self.inner.jacobian(t, at, v, by, &mut own);
                 out.velocity.extend(own.velocity);
             }
-            Altering::Shifted(_) => self.inner.jacobian(t, x, v, by, out),
+            _ => self.inner.jacobian(t, x, v, by, out),
         }
-    }
-}
-
-/// A system whose every acceleration is off by its rounding, in a direction of its own for each coordinate.
-pub(super) struct Rounded<'a> {
-    inner: &'a dyn System,
-    pattern: u64,
-    /// The step: rounding that always pushed the same way would leave out what grows by alternating.
-    step: u64,
-    /// The evaluations of the step so far, of a scheme that does not iterate: rounding that pushed the same way in all
-    /// of them might cancel. An iteration converges only if it is the same in all.
-    evaluations: Option<Cell<u64>>,
-}
-
-impl<'a> Rounded<'a> {
-    pub(super) fn new(inner: &'a dyn System, pattern: u64, step: u64, iterates: bool) -> Self {
-        Self {
-            inner,
-            pattern,
-            step,
-            evaluations: (!iterates).then(Cell::default),
-        }
-    }
-}
-
-impl System for Rounded<'_> {
-    fn inverse_mass(&self) -> &[f64] {
-        self.inner.inverse_mass()
-    }
-
-    fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
-        let mut off = vec![0.0; a.len()];
-        self.inner.rounding(t, x, v, &mut off);
-        let power = self.inner.acceleration(t, x, v, a);
-        let evaluation = self
-            .evaluations
-            .as_ref()
-            .map_or(0, |all| all.replace(all.get() + 1));
-        let first = evaluation as usize * a.len();
-        for (i, (a, off)) in a.iter_mut().zip(off).enumerate() {
-            *a += sign((!self.step, self.pattern), first + i) * off;
-        }
-        power
-    }
-
-    fn kinds(&self) -> ForceKinds {
-        self.inner.kinds()
-    }
-
-    fn dampers(&self) -> Dampers {
-        self.inner.dampers()
-    }
-
-    fn sweep(&self, sweep: &mut Sweep) {
-        self.inner.sweep(sweep);
-    }
-
-    fn damping(&self, t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
-        self.inner.damping(t, x, w, a);
-    }
-
-    fn potential(&self, t: f64, x: &[f64]) -> f64 {
-        self.inner.potential(t, x)
-    }
-
-    fn jacobian(&self, t: f64, x: &[f64], v: &[f64], by: Linearization, out: &mut Jacobian) {
-        self.inner.jacobian(t, x, v, by, out);
     }
 }
 

@@ -1,8 +1,9 @@
-//! A scheme that a trajectory may follow: a method under certain forces, whole or in substeps, or a map
-//! that no method of the registry is.
+//! A scheme that a trajectory may follow: a step under certain forces, whole or in substeps, or applied in another
+//! way than to all particles at once.
 
-use super::altered::{Around, Rounded};
-use crate::integrators::{Integrator, Method, PerStep, Settings, Stable, StepError, fixed};
+use super::altered::{Altered, Altering, Around};
+use super::step::Step;
+use crate::integrators::{Integrator, Method, PerStep, Settings, StepError, fixed};
 use crate::physics::{ParticleSystem, State, System};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -23,37 +24,17 @@ pub struct Candidate {
     pub says: Option<Cow<'static, str>>,
     /// Whether it is a known mistake.
     pub mistake: bool,
-    /// Its step depends on the state one step before: it can be replayed only from the first state
-    /// and from states whose predecessor is known.
-    pub remembers: bool,
     /// Length of the step it takes, in timesteps: 1, unless h itself is wrong.
     stretch: f64,
     /// The forces it really computes: the scene's, or altered ones.
     forces: Forces,
-    scheme: Scheme,
+    step: Box<Step>,
+    /// How the step is applied, where not to all particles at once.
+    around: Option<Around>,
+    /// The step it begins with, where that is another.
+    first: Option<Box<Step>>,
     scaling: Option<Scaling>,
 }
-
-/// How a candidate steps.
-#[derive(Clone, Copy)]
-pub enum Scheme {
-    Method(&'static Method),
-    /// A map of its own.
-    Map(Map),
-    /// A step, applied in another way than to all particles at once.
-    Around(Around, Step),
-}
-
-/// A step that something is built around.
-#[derive(Clone, Copy)]
-pub enum Step {
-    Method(&'static Method),
-    Map(Map),
-}
-
-/// A one-step map over h from a state in place, given the state one step (of the same h) before it,
-/// if that is known.
-pub type Map = fn(&dyn System, f64, Option<&State>, &mut State) -> Result<(), StepError>;
 
 /// A factor on velocities, from a rate in 1/s and the length of a step in s.
 pub type Factor = fn(f64, f64) -> f64;
@@ -89,17 +70,18 @@ impl ScaledAt {
 
 impl Candidate {
     /// A candidate under these forces, in one step.
-    pub fn new(forces: &Forces, scheme: Scheme, meant: &'static str) -> Self {
+    pub fn new(forces: &Forces, step: Step, meant: &'static str) -> Self {
         Self {
             id: meant.to_owned(),
             substeps: 1,
             meant,
             says: None,
             mistake: false,
-            remembers: false,
             stretch: 1.0,
             forces: Arc::clone(forces),
-            scheme,
+            step: Box::new(step),
+            around: None,
+            first: None,
             scaling: None,
         }
     }
@@ -107,7 +89,7 @@ impl Candidate {
     /// A registry method in this many substeps.
     pub fn method(system: &ParticleSystem, method: &'static Method, substeps: u32) -> Self {
         let forces: Forces = Arc::new(system.clone());
-        Self::new(&forces, Scheme::Method(method), method.id).in_substeps(substeps)
+        Self::new(&forces, Step::Method(method), method.id).in_substeps(substeps)
     }
 
     /// Every registry method in this many substeps, in the registry's order.
@@ -172,22 +154,26 @@ impl Candidate {
         }
     }
 
-    /// Marks a map that uses the state one step before.
-    pub fn remembering(self, remembers: bool) -> Self {
-        Self { remembers, ..self }
+    /// The same with its step applied so.
+    pub fn around(self, around: Option<Around>) -> Self {
+        Self { around, ..self }
     }
 
-    /// The method it applies, if it applies one.
-    fn applied(&self) -> Option<&'static Method> {
-        match self.scheme {
-            Scheme::Method(method) | Scheme::Around(_, Step::Method(method)) => Some(method),
-            Scheme::Map(_) | Scheme::Around(_, Step::Map(_)) => None,
-        }
+    /// The same, begun with another step.
+    pub(super) fn begun(self, first: Option<Step>) -> Self {
+        let first = first.map(Box::new);
+        Self { first, ..self }
+    }
+
+    /// Whether its step depends on the state one step before, or on whether there is one: it can be replayed only
+    /// from the first state and from states whose predecessor is known.
+    pub fn remembers(&self) -> bool {
+        self.first.is_some() || self.step.looks_back()
     }
 
     /// About how many roundings of positions or velocities one of its whole steps makes.
     pub fn roundings(&self) -> u32 {
-        let stages = match self.applied() {
+        let stages = match self.step.method() {
             // Force, matrix, factors and their solve; iterations before the last are corrected.
             Some(_) if self.solves() => 4,
             Some(method) => match method.evaluations {
@@ -195,7 +181,7 @@ impl Candidate {
                 PerStep::Exactly(n) => 2 * n.max(1),
                 PerStep::PerIteration { plus } => 2 * (1 + plus),
             },
-            // Taken as many as RK4's: more than any of the maps has.
+            // Taken as many as RK4's: no other step has more.
             None => 8,
         };
         stages.saturating_mul(self.substeps.max(1))
@@ -203,21 +189,13 @@ impl Candidate {
 
     /// Whether its steps solve linear systems, which costs as much as many that do not.
     pub fn solves(&self) -> bool {
-        self.applied().is_some_and(|method| {
-            matches!(
-                method.oscillator.stable,
-                Stable::Always | Stable::AlwaysAlong { .. }
-            )
-        })
+        self.step.solves()
     }
 
     /// Whether its steps end when a residual is small, not when a formula is through.
     pub fn iterates(&self) -> bool {
-        let method = match self.scheme {
-            Scheme::Method(method) => method,
-            _ => return false,
-        };
-        matches!(method.evaluations, PerStep::PerIteration { .. })
+        let whole = self.step.method().filter(|_| self.around.is_none());
+        whole.is_some_and(|method| matches!(method.evaluations, PerStep::PerIteration { .. }))
     }
 
     /// Its name in the reports' `equivalent`: the id, and after a slash the substeps if there are several.
@@ -227,14 +205,12 @@ impl Candidate {
 
     /// A replayer that takes its steps. Each thread has its own.
     pub fn replayer(&self, settings: &Settings) -> Replayer<'_> {
+        let kept = self.around.is_none() && !self.remembers();
         Replayer {
             candidate: self,
             settings: *settings,
+            kept: kept.then(|| self.step.build(settings, None)),
             pattern: None,
-            integrator: match self.scheme {
-                Scheme::Method(method) => Some(method.build(settings)),
-                Scheme::Map(_) | Scheme::Around(..) => None,
-            },
         }
     }
 }
@@ -251,7 +227,8 @@ pub(super) fn label(id: &str, substeps: u32) -> String {
 pub struct Replayer<'a> {
     candidate: &'a Candidate,
     settings: Settings,
-    integrator: Option<Box<dyn Integrator>>,
+    /// The integrator of steps that do not depend on those before.
+    kept: Option<Box<dyn Integrator>>,
     pattern: Option<u64>,
 }
 
@@ -280,55 +257,46 @@ impl<'a> Replayer<'a> {
         before: Option<&State>,
         state: &mut State,
     ) -> Result<(), StepError> {
-        let forces = self.candidate.forces.as_ref();
-        // Substeps under forces that are held are the scheme's own.
-        let n = match self.candidate.scheme {
-            Scheme::Around(..) => 1,
-            _ => self.candidate.substeps,
+        let candidate = self.candidate;
+        // Substeps of a step that is applied in another way are the way's own.
+        let n = match candidate.around {
+            Some(_) => 1,
+            None => candidate.substeps,
         };
         let part_of_h = h / f64::from(n);
-        let inner = part_of_h * self.candidate.stretch;
+        let inner = part_of_h * candidate.stretch;
         let mut previous = before.cloned();
-        if self.candidate.remembers && before.is_none() && step > 0 {
+        if candidate.remembers() && before.is_none() && step > 0 {
             // No particle is to blame for it.
             return Err(StepError::NotFinite { particle: 0 });
         }
-        for at in step..step + span {
-            for part in 0..n {
-                // As solvers count time: n h, not a running sum.
-                state.t = (at * u64::from(n) + u64::from(part)) as f64 * part_of_h;
-                let start = state.clone();
-                let rounded = self.pattern.map(|pattern| {
-                    Rounded::new(
-                        forces,
-                        pattern,
-                        at * u64::from(n) + u64::from(part),
-                        self.candidate.solves(),
-                    )
-                });
-                let system: &dyn System = match &rounded {
-                    Some(rounded) => rounded,
-                    None => forces,
-                };
-                self.scale(ScaledAt::Start, inner, &start.x, state);
-                match (&mut self.integrator, self.candidate.scheme) {
-                    (Some(integrator), _) => integrator.step(system, inner, state)?,
-                    (None, Scheme::Map(map)) => map(system, inner, previous.as_ref(), state)?,
-                    (None, Scheme::Around(around, step)) => {
-                        let one = |system: &dyn System, h: f64, state: &mut State| match step {
-                            Step::Method(method) => {
-                                method.build(&self.settings).step(system, h, state)
-                            }
-                            Step::Map(map) => map(system, h, None, state),
-                        };
-                        around(&one, system, inner, self.candidate.substeps, state)?;
-                    }
-                    (None, Scheme::Method(_)) => {}
+        for part in step * u64::from(n)..(step + span) * u64::from(n) {
+            // As solvers count time: n h, not a running sum.
+            state.t = part as f64 * part_of_h;
+            let start = state.clone();
+            let forces = candidate.forces.as_ref();
+            let rounded = self.pattern.map(|pattern| {
+                Altered::new(forces, Altering::rounded(pattern, part, candidate.solves()))
+            });
+            let system = rounded
+                .as_ref()
+                .map_or(forces as &dyn System, |rounded| rounded);
+            self.scale(ScaledAt::Start, inner, &start.x, state);
+            let first = candidate.first.as_deref().filter(|_| previous.is_none());
+            let step = first.unwrap_or(&candidate.step);
+            let before = previous.as_ref();
+            let fresh = |before| step.build(&self.settings, before);
+            match (candidate.around, &mut self.kept) {
+                (Some(around), _) => {
+                    let one = |f: &dyn System, h, s: &mut State| fresh(None).step(f, h, s);
+                    around(&one, system, inner, candidate.substeps, state)?;
                 }
-                self.scale(ScaledAt::Kick, inner, &start.x, state);
-                self.scale(ScaledAt::End, inner, &start.x, state);
-                previous = Some(start);
+                (None, Some(kept)) => kept.step(system, inner, state)?,
+                (None, None) => fresh(before).step(system, inner, state)?,
             }
+            self.scale(ScaledAt::Kick, inner, &start.x, state);
+            self.scale(ScaledAt::End, inner, &start.x, state);
+            previous = Some(start);
         }
         Ok(())
     }

@@ -1,20 +1,18 @@
-//! Schemes that are composed of a method and a way to apply it, or of two steps' forces: right or not, they
+//! Schemes that are composed of a step and a way to apply it, or of two steps' forces: right or not, they
 //! are what people write, and none of them is a row of the registry.
 //!
-//! What they apply a method to is a [`System`] of its own: one particle among others that stand still, or
+//! What they apply a step to is a [`System`] of its own: one particle among others that stand still, or
 //! forces that are held over a step.
 
 use super::Identity;
-use super::altered::{Alone, Altered, Altering, Around, OneStep, acceleration, finish, plus};
-use super::candidate::{Candidate, Factor, Forces, Map, ScaledAt, Scaling, Scheme, Step};
+use super::altered::{Alone, Altered, Altering, Around, OneStep};
+use super::candidate::{Candidate, Factor, Forces, ScaledAt, Scaling};
 use super::channels;
 use super::replay::FIT;
-use crate::integrators::{
-    self, Coefficients, DampingTreatment, Integrator, Method, Settings, Splitting, Stage,
-    StepError, fixed,
-};
+use super::step::{Step, acceleration, plus};
+use crate::integrators::{self, DampingTreatment::Explicit, Method, Stage, StepError, fixed};
 use crate::physics::{ParticleSystem, State, System};
-use crate::scene::Scene;
+use crate::scene::{Particle, Scene};
 use crate::trajectory::Rows;
 use std::sync::Arc;
 
@@ -30,12 +28,12 @@ const ORDERS: [(&str, &str, Around); 2] = [
     (
         "in_place",
         "particles move one after the other, and each sees those that have already moved",
-        in_place,
+        |step, f, h, _, s| each_alone(step, f, h, s, true),
     ),
     (
         "one_by_one",
         "each particle takes its whole step alone, with its neighbours frozen",
-        one_by_one,
+        |step, f, h, _, s| each_alone(step, f, h, s, false),
     ),
 ];
 
@@ -67,111 +65,122 @@ const TREATMENTS: [(&str, &str, Factor); 4] = [
 const EARLY: &str = "the velocity of each row is half a step earlier than its position";
 const LATE: &str = "the velocity of each row is half a step later than its position";
 
-/// Maps of two steps, or with a first step of their own.
-const MAPS: [(&str, &str, Map); 11] = [
+/// The half step at the new velocity.
+const MIDPOINT_KICKED: Step = Step::formula(
+    Some([&[0.5, 0.25], &[1.0, 0.5]]),
+    [&[1.0, 0.5], &[1.0, 0.0, 1.0]],
+);
+
+/// The first steps that Adams and Bashforth's method is begun with.
+const AB2_FIRST: [(&str, &str); 5] = [
+    ("explicit_euler", "explicit Euler"),
+    ("symplectic_euler", "symplectic Euler"),
+    ("midpoint", "midpoint"),
+    ("heun", "Heun's"),
+    ("rk4", "rk4"),
+];
+const AB2: Step = Step::formula(None, [&[1.5, 0.0, 0.0, 0.0, -0.5], PREDICTED]);
+const PREDICTED: &[f64] = &[1.0, 1.5, 0.0, -0.5];
+
+/// Where Beeman's method takes its dampers.
+const BEEMAN: [(&str, Step); 3] = [
+    ("the velocity from the start of the step", beeman(&[1.0])),
+    ("v0 + h a0", beeman(&[1.0, 1.0])),
     (
-        "midpoint_kicked",
-        "midpoint with its half step taken at the new velocity, x0 + h/2 (v0 + h/2 a0): of order 2 as well",
-        midpoint_kicked,
-    ),
-    ("leapfrog_staggered", EARLY, |f, h, before, s| {
-        staggered_early(f, h, before, s)
-    }),
-    ("leapfrog_staggered", LATE, |f, h, before, s| {
-        staggered_late(f, h, before, s)
-    }),
-    (
-        "ab2",
-        "Adams and Bashforth's second-order method, begun with explicit Euler",
-        |f, h, before, s| ab2("explicit_euler", f, h, before, s),
-    ),
-    (
-        "ab2",
-        "Adams and Bashforth's second-order method, begun with symplectic Euler",
-        |f, h, before, s| ab2("symplectic_euler", f, h, before, s),
-    ),
-    (
-        "ab2",
-        "Adams and Bashforth's second-order method, begun with midpoint",
-        |f, h, before, s| ab2("midpoint", f, h, before, s),
-    ),
-    (
-        "ab2",
-        "Adams and Bashforth's second-order method, begun with Heun's",
-        |f, h, before, s| ab2("heun", f, h, before, s),
-    ),
-    (
-        "ab2",
-        "Adams and Bashforth's second-order method, begun with rk4",
-        |f, h, before, s| ab2("rk4", f, h, before, s),
-    ),
-    (
-        "beeman",
-        "Beeman's method, begun with the first force as the one before it; dampers act at the velocity from the \
-         start of the step",
-        |f, h, before, s| beeman(&|v, _, _| v.to_vec(), f, h, before, s),
-    ),
-    (
-        "beeman",
-        "Beeman's method, begun with the first force as the one before it; dampers act at v0 + h a0",
-        |f, h, before, s| beeman(&|v, now, _| plus(v, h, now), f, h, before, s),
-    ),
-    (
-        "beeman",
-        "Beeman's method, begun with the first force as the one before it; dampers act at the velocity that \
-         Adams and Bashforth's method predicts",
-        |f, h, before, s| {
-            let predicted =
-                |v: &[f64], now: &[f64], then: &[f64]| plus(&plus(v, 1.5 * h, now), -0.5 * h, then);
-            beeman(&predicted, f, h, before, s)
-        },
+        "the velocity that Adams and Bashforth's method predicts",
+        beeman(PREDICTED),
     ),
 ];
 
+/// Beeman 1976, with the second force at this velocity.
+const fn beeman(velocity: &'static [f64]) -> Step {
+    const X: &[f64] = &[1.0, 2.0 / 3.0, 0.0, -1.0 / 6.0];
+    const V: &[f64] = &[1.0, 5.0 / 6.0, 1.0 / 3.0, -1.0 / 6.0];
+    Step::formula(Some([X, velocity]), [X, V])
+}
+
+/// Velocity Verlet with the second force at this velocity.
+const fn verlet(velocity: &'static [f64]) -> Step {
+    const X: &[f64] = &[1.0, 0.5];
+    Step::formula(Some([X, velocity]), [X, &[1.0, 0.5, 0.5]])
+}
+
+/// Schemes of two steps, or with a first step of their own.
+fn two_steps(forces: &Forces) -> Vec<Candidate> {
+    let new = |id, step| Candidate::new(forces, step, id);
+    let splitting = |stages| Step::splitting(stages, Explicit);
+    let staggered = |says, first, then| {
+        let then = new("leapfrog_staggered", splitting(then));
+        then.begun(Some(splitting(first)))
+            .named("leapfrog_staggered", says)
+    };
+    let mut all = vec![
+        staggered(
+            EARLY,
+            &[Stage::Kick(0.5), Stage::Drift(1.0)],
+            Stage::SYMPLECTIC_EULER,
+        ),
+        staggered(
+            LATE,
+            &[Stage::Kick(0.5), Stage::Drift(1.0), Stage::Kick(1.0)],
+            Stage::SYMPLECTIC_EULER_DRIFT_FIRST,
+        ),
+    ];
+    all.extend(AB2_FIRST.map(|(first, name)| {
+        let says = format!("Adams and Bashforth's second-order method, begun with {name}");
+        let first = integrators::find(first).map(Step::Method);
+        new("ab2", AB2).begun(first).named("ab2", says)
+    }));
+    all.extend(BEEMAN.map(|(at, step)| {
+        let says = format!(
+            "Beeman's method, begun with the first force as the one before it; dampers act at {at}"
+        );
+        new("beeman", step).named("beeman", says)
+    }));
+    all
+}
+
 /// Treatments of dampers and drag in splitting methods that are not the exact flow: methods of their own where
 /// there is damping. The id, the method without damping, what it does, and how.
-const TREATED: [(&str, &str, &str, Map); 6] = [
+const TREATED: [(&str, &str, &str, Step); 6] = [
     (
         "velocity_verlet_explicit_damping",
         "velocity_verlet",
         "each half kick takes the dampers at the velocity before it, which is of order 1",
-        |f, h, _, s| splitting(Stage::VERLET, f, h, s),
+        Step::splitting(Stage::VERLET, Explicit),
     ),
     (
         "velocity_verlet_predicted_velocity",
         "velocity_verlet",
         "the second half kick takes the dampers at the predicted velocity v0 + h a0: of order 2, but stable for \
          smaller steps",
-        |f, h, _, s| verlet(&|v, a, _| plus(v, h, a), f, h, s),
+        verlet(&[1.0, 1.0]),
     ),
     (
         "velocity_verlet_old_velocity",
         "velocity_verlet",
         "the second half kick takes the dampers at the velocity from the start of the step, which is of order 1",
-        |f, h, _, s| verlet(&|v, _, _| v.to_vec(), f, h, s),
+        verlet(&[1.0]),
     ),
     (
         "position_verlet_explicit_damping",
         "position_verlet",
         "the kick takes the dampers at the velocity before it, which is of order 1",
-        |f, h, _, s| splitting(DRIFT_FIRST, f, h, s),
+        Step::splitting(Stage::POSITION_VERLET, Explicit),
     ),
     (
         "yoshida4_explicit_damping",
         "yoshida4",
         "each kick takes the dampers at the velocity before it, which is of order 1",
-        |f, h, _, s| splitting(Stage::YOSHIDA4, f, h, s),
+        Step::splitting(Stage::YOSHIDA4, Explicit),
     ),
     (
         "pefrl_explicit_damping",
         "pefrl",
         "each kick takes the dampers at the velocity before it, which is of order 1",
-        |f, h, _, s| splitting(Stage::PEFRL, f, h, s),
+        Step::splitting(Stage::PEFRL, Explicit),
     ),
 ];
-
-/// Position Verlet.
-pub(super) const DRIFT_FIRST: &[Stage] = &[Stage::Drift(0.5), Stage::Kick(1.0), Stage::Drift(0.5)];
 
 /// The splitting methods with other treatments of damping; none where nothing is damped.
 pub(super) fn treated(system: &ParticleSystem) -> Vec<Candidate> {
@@ -179,89 +188,78 @@ pub(super) fn treated(system: &ParticleSystem) -> Vec<Candidate> {
         return Vec::new();
     }
     let forces: Forces = Arc::new(system.clone());
-    let treated = TREATED.map(|(id, meant, says, map)| {
-        Candidate::new(&forces, Scheme::Map(map), meant).named(id, says)
-    });
+    let treated =
+        TREATED.map(|(id, meant, says, step)| Candidate::new(&forces, step, meant).named(id, says));
     treated.to_vec()
 }
 
 /// Every composed scheme in this scene, the likelier ones first.
 pub fn composed(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
     let forces: Forces = Arc::new(system.clone());
+    let around = |around, method: &'static Method, meant| {
+        Candidate::new(&forces, Step::Method(method), meant).around(Some(around))
+    };
     let mut all = treated(system);
-    for (id, says, map) in MAPS {
-        let map = Candidate::new(&forces, Scheme::Map(map), id);
-        all.push(map.named(id, says).remembering(id != "midpoint_kicked"));
-    }
-    if let Some(newton) = one_newton_step() {
+    all.push(Candidate::new(&forces, MIDPOINT_KICKED, "midpoint_kicked").named(
+        "midpoint_kicked",
+        "midpoint with its half step taken at the new velocity, x0 + h/2 (v0 + h/2 a0): of order 2 as well",
+    ));
+    all.extend(two_steps(&forces));
+    // Implicit Euler's first Newton iterate from v0.
+    let newton = integrators::find("linearized_implicit_predicted");
+    if let Some(newton) = newton {
         all.extend(STOPPED.map(|n| {
             let says = "Newton's iteration is stopped before it has converged";
-            let scheme = Scheme::Around(stopped, Step::Method(newton));
-            let stopped = Candidate::new(&forces, scheme, "implicit_euler").in_substeps(n);
+            let stopped = around(stopped, newton, "implicit_euler").in_substeps(n);
             stopped.named("stopped(implicit_euler)", says)
         }));
     }
     all.extend(damped(scene));
-    if let (true, Some(newton)) = (system.kinds().depends_on_velocity(), one_newton_step()) {
-        let says = "dampers and drag are solved implicitly, at the velocity after the kick";
-        let scheme = Scheme::Around(implicit_damping, Step::Method(newton));
-        let candidate = Candidate::new(&forces, scheme, "symplectic_euler");
-        all.push(candidate.named("symplectic_euler+implicit_damping", says));
+    if let Some(newton) = newton.filter(|_| system.kinds().depends_on_velocity()) {
+        all.push(around(implicit_damping, newton, "symplectic_euler").named(
+            "symplectic_euler+implicit_damping",
+            "dampers and drag are solved implicitly, at the velocity after the kick",
+        ));
     }
     if let Some(euler) = integrators::find("symplectic_euler") {
         all.extend((2..=MOST_SUBSTEPS).map(|n| {
             let says = "forces are computed once a step and held over its substeps";
-            let candidate =
-                Candidate::new(&forces, Scheme::Around(held, Step::Method(euler)), euler.id);
-            let candidate = candidate.in_substeps(n);
-            candidate.named("forces_held(symplectic_euler)", says)
+            let held = around(held, euler, euler.id).in_substeps(n);
+            held.named("forces_held(symplectic_euler)", says)
         }));
     }
     for (id, says, around) in ORDERS {
         let single = |step, name| {
-            let candidate = Candidate::new(&forces, Scheme::Around(around, step), name);
+            let candidate = Candidate::new(&forces, step, name).around(Some(around));
             candidate.named(format!("{id}({name})"), says)
         };
         all.extend(explicit().map(|method| single(Step::Method(method), method.id)));
-        all.push(single(Step::Map(midpoint_kicked), "midpoint"));
+        all.push(single(MIDPOINT_KICKED, "midpoint"));
     }
     all
 }
 
 /// The ids of all composed schemes that a scene may have.
 pub fn ids() -> Vec<String> {
-    let treated = TREATED.iter().map(|(id, ..)| *id);
-    let maps = MAPS.iter().map(|(id, ..)| *id).chain(treated);
-    let maps = maps.map(str::to_owned);
-    let orders = ORDERS
-        .iter()
-        .flat_map(|(id, ..)| explicit().map(move |method| format!("{id}({})", method.id)));
-    let damped = TREATMENTS
-        .iter()
-        .flat_map(|(id, ..)| explicit().map(move |method| format!("{}+{id}", method.id)));
-    let single = [
-        "stopped(implicit_euler)",
-        "symplectic_euler+implicit_damping",
-        "forces_held(symplectic_euler)",
-    ];
-    let mut ids: Vec<String> = maps
-        .chain(single.map(str::to_owned))
-        .chain(orders)
-        .chain(damped)
-        .collect();
+    // Drag makes room for all of them.
+    let damped = Particle {
+        drag: 1.0,
+        ..Particle::default()
+    };
+    let scene = Scene {
+        particles: vec![damped],
+        ..Scene::default()
+    };
+    let all = composed(&scene, &ParticleSystem::new(&scene));
+    let mut ids: Vec<String> = all.into_iter().map(|candidate| candidate.id).collect();
     ids.dedup();
     ids
 }
 
-/// Implicit Euler's first Newton iterate from v0.
-fn one_newton_step() -> Option<&'static Method> {
-    integrators::find("linearized_implicit_predicted")
-}
-
 /// The methods whose steps solve nothing.
 fn explicit() -> impl Iterator<Item = &'static Method> {
-    let solves = |method: &&Method| matches!(method.coefficients, Coefficients::Implicit(_));
-    fixed().iter().filter(move |method| !solves(method))
+    let methods = fixed().iter();
+    methods.filter(|method| !Step::Method(method).solves())
 }
 
 /// Methods under all forces but drag, which multiplies velocities before the kick, after it or at the end.
@@ -270,7 +268,7 @@ fn damped(scene: &Scene) -> Vec<Candidate> {
         return Vec::new();
     };
     let forces: Forces = Arc::new(ParticleSystem::new(&without));
-    let rate = |p: &crate::scene::Particle| if p.fixed { 0.0 } else { p.drag / p.mass };
+    let rate = |p: &Particle| if p.fixed { 0.0 } else { p.drag / p.mass };
     let rates: Arc<[f64]> = scene.particles.iter().flat_map(|p| [rate(p); 3]).collect();
     let mut all = Vec::new();
     for method in explicit() {
@@ -280,7 +278,7 @@ fn damped(scene: &Scene) -> Vec<Candidate> {
                     continue;
                 }
                 let rates = Arc::clone(&rates);
-                let candidate = Candidate::new(&forces, Scheme::Method(method), method.id);
+                let candidate = Candidate::new(&forces, Step::Method(method), method.id);
                 let candidate = candidate.scaled(Scaling { factor, rates, at });
                 let says = format!("{says}, {}", at.words());
                 all.push(candidate.named(format!("{}+{id}", method.id), says));
@@ -324,21 +322,10 @@ fn each_alone(
     Ok(())
 }
 
-fn in_place(step: &OneStep, system: &dyn System, h: f64, _: u32, state: &mut State) -> Stepped {
-    each_alone(step, system, h, state, true)
-}
-
-fn one_by_one(step: &OneStep, system: &dyn System, h: f64, _: u32, state: &mut State) -> Stepped {
-    each_alone(step, system, h, state, false)
-}
-
 /// The method's substeps under the acceleration at the start.
 fn held(step: &OneStep, system: &dyn System, h: f64, substeps: u32, state: &mut State) -> Stepped {
     let a = acceleration(system, state.t, &state.x, &state.v);
-    let held = Altered {
-        inner: system,
-        force: Altering::Held(a),
-    };
+    let held = Altered::new(system, Altering::Held(a));
     for _ in 0..substeps {
         step(&held, h / f64::from(substeps), state)?;
     }
@@ -358,10 +345,7 @@ fn stopped(
     for _ in 0..iterations {
         let gained = |(u, v0): (&f64, &f64)| (v0 - u) / h;
         let shift = state.v.iter().zip(&start.v).map(gained).collect();
-        let shifted = Altered {
-            inner: system,
-            force: Altering::Shifted(shift),
-        };
+        let shifted = Altered::new(system, Altering::Shifted(shift));
         let mut next = State {
             v: state.v.clone(),
             ..start.clone()
@@ -381,10 +365,7 @@ fn implicit_damping(
     _: u32,
     state: &mut State,
 ) -> Stepped {
-    let held = Altered {
-        inner: system,
-        force: Altering::PositionsHeld(state.x.clone()),
-    };
+    let held = Altered::new(system, Altering::PositionsHeld(state.x.clone()));
     step(&held, h, state)
 }
 
@@ -425,77 +406,4 @@ pub(super) fn staggered(
         undecided: None,
         ..identity
     }
-}
-
-fn midpoint_kicked(f: &dyn System, h: f64, _: Option<&State>, s: &mut State) -> Stepped {
-    let v = plus(&s.v, 0.5 * h, &acceleration(f, s.t, &s.x, &s.v));
-    let a = acceleration(f, s.t + 0.5 * h, &plus(&s.x, 0.5 * h, &v), &v);
-    finish(s, h, plus(&s.x, h, &v), plus(&s.v, h, &a))
-}
-
-fn staggered_early(f: &dyn System, h: f64, before: Option<&State>, s: &mut State) -> Stepped {
-    let share = if before.is_none() { 0.5 } else { 1.0 };
-    let v = plus(&s.v, share * h, &acceleration(f, s.t, &s.x, &s.v));
-    finish(s, h, plus(&s.x, h, &v), v)
-}
-
-fn staggered_late(f: &dyn System, h: f64, before: Option<&State>, s: &mut State) -> Stepped {
-    let v = match before {
-        None => plus(&s.v, 0.5 * h, &acceleration(f, s.t, &s.x, &s.v)),
-        Some(_) => s.v.clone(),
-    };
-    let x = plus(&s.x, h, &v);
-    let a = acceleration(f, s.t + h, &x, &v);
-    finish(s, h, x, plus(&v, h, &a))
-}
-
-fn ab2(first: &str, f: &dyn System, h: f64, before: Option<&State>, s: &mut State) -> Stepped {
-    let Some(before) = before else {
-        let Some(method) = integrators::find(first) else {
-            return Err(StepError::NotFinite { particle: 0 });
-        };
-        return method.build(&Settings::default()).step(f, h, s);
-    };
-    let now = acceleration(f, s.t, &s.x, &s.v);
-    let then = acceleration(f, s.t - h, &before.x, &before.v);
-    let x = plus(&plus(&s.x, 1.5 * h, &s.v), -0.5 * h, &before.v);
-    let v = plus(&plus(&s.v, 1.5 * h, &now), -0.5 * h, &then);
-    finish(s, h, x, v)
-}
-
-/// The velocity at which a step's last force takes its dampers, from v0, a0 and the acceleration before.
-type Predict<'a> = &'a dyn Fn(&[f64], &[f64], &[f64]) -> Vec<f64>;
-
-/// Beeman 1976.
-fn beeman(
-    predict: Predict,
-    f: &dyn System,
-    h: f64,
-    before: Option<&State>,
-    s: &mut State,
-) -> Stepped {
-    let now = acceleration(f, s.t, &s.x, &s.v);
-    let then = match before {
-        Some(before) => acceleration(f, s.t - h, &before.x, &before.v),
-        None => now.clone(),
-    };
-    let x = plus(&plus(&s.x, h, &s.v), h * h * 2.0 / 3.0, &now);
-    let x = plus(&x, -h * h / 6.0, &then);
-    let next = acceleration(f, s.t + h, &x, &predict(&s.v, &now, &then));
-    let v = plus(&plus(&s.v, h / 3.0, &next), h * 5.0 / 6.0, &now);
-    finish(s, h, x, plus(&v, -h / 6.0, &then))
-}
-
-/// x0 + h v0 + h²/2 a0, and the mean of a0 and the force there at a velocity from v0 and a0.
-fn verlet(predict: Predict, f: &dyn System, h: f64, s: &mut State) -> Stepped {
-    let a = acceleration(f, s.t, &s.x, &s.v);
-    let half = plus(&s.v, 0.5 * h, &a);
-    let x = plus(&s.x, h, &half);
-    let next = acceleration(f, s.t + h, &x, &predict(&s.v, &a, &a));
-    finish(s, h, x, plus(&half, 0.5 * h, &next))
-}
-
-/// Kicks that take dampers at the velocity before them.
-fn splitting(stages: &'static [Stage], f: &dyn System, h: f64, s: &mut State) -> Stepped {
-    Splitting::new(stages, DampingTreatment::Explicit).step(f, h, s)
 }

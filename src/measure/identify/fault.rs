@@ -5,17 +5,15 @@
 mod anchor;
 mod edits;
 mod explain;
-mod fit;
 mod guesses;
 mod spot;
 mod within;
-mod words;
 
 pub use anchor::moved_anchor;
 
 use super::candidate::{Candidate, Replayer};
 use super::replay::{FIT, Replay};
-use super::transition::Transition;
+use super::transition::{Transition, is_finite, neighbours};
 use super::{Identity, Question, Undecided, candidates};
 use crate::integrators;
 use crate::measure::identify::Fault;
@@ -70,7 +68,7 @@ pub fn first_departure(question: &Question, candidate: &Candidate) -> Option<Fau
     } else {
         candidate.clone()
     };
-    let transitions = transitions(rows);
+    let transitions: Vec<Transition> = neighbours(rows).collect();
     let departures = departures(&replay, &followed, &transitions);
     // A closer look at one may find that rounding explains it after all.
     let spot = (0..departures.len())
@@ -81,23 +79,6 @@ pub fn first_departure(question: &Question, candidate: &Candidate) -> Option<Fau
             Some(says) => spot.throughout(says.to_string()),
         },
     )
-}
-
-/// The transitions between neighbouring rows, wherever a replay can start.
-fn transitions(rows: &Rows) -> Vec<Transition> {
-    let finite: Vec<bool> = (0..rows.len()).map(|k| is_finite(rows, k)).collect();
-    let all = (0..rows.len().saturating_sub(1)).map(|from| Transition {
-        before: from.checked_sub(1).filter(|&k| finite[k]),
-        from,
-        to: from + 1,
-    });
-    all.filter(|t| finite[t.from] && (rows.v.is_some() || t.before.is_some()))
-        .collect()
-}
-
-fn is_finite(rows: &Rows, k: usize) -> bool {
-    let v = rows.v(k).unwrap_or(&[]);
-    rows.x(k).iter().chain(v).all(|c| c.is_finite())
 }
 
 /// The indices of the transitions that do not follow the candidate, in order.

@@ -5,16 +5,17 @@
 //! `symplectic_euler_drift_first`, leapfrog without its first half kick is `symplectic_euler`, and
 //! two half steps of explicit Euler taken for midpoint are `explicit_euler` in two substeps.
 
-mod maps;
 mod physics;
 mod rows;
 mod springs;
 
 pub use rows::MISTAKES;
 
-use super::candidate::{Candidate, Forces, Map, Scheme};
+use super::altered::Around;
+use super::candidate::{Candidate, Forces};
 use super::channels;
 use super::compose::treated;
+use super::step::Step;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -36,9 +37,9 @@ pub enum Wrong {
     Step {
         /// Registry id of the method it was meant to be.
         meant: &'static str,
-        map: Map,
-        /// Whether it uses the state one step before.
-        remembers: bool,
+        step: Step,
+        /// How it is applied, where not to all particles at once.
+        around: Option<Around>,
     },
     /// Numbers of the scene, in any method, as the row's deviations say.
     Scaled,
@@ -96,13 +97,12 @@ impl Mistake {
         match self.wrong {
             Wrong::Step {
                 meant,
-                map,
-                remembers,
+                step,
+                around,
             } => {
                 let forces: Forces = Arc::new(system.clone());
-                let candidate = Candidate::new(&forces, Scheme::Map(map), meant);
-                let candidate = candidate.named(self.id, self.says).mistaken();
-                Some(candidate.remembering(remembers))
+                let candidate = Candidate::new(&forces, step, meant).around(around);
+                Some(candidate.named(self.id, self.says).mistaken())
             }
             _ => None,
         }

@@ -15,23 +15,29 @@ mod channels;
 mod compose;
 mod explain;
 mod fault;
+mod fit;
 mod mistakes;
+mod near;
+mod numbers;
 mod race;
 mod replay;
 mod result;
 mod same;
+mod step;
 mod transition;
 mod velocity;
+mod words;
 
 pub use altered::{Around, OneStep};
-pub use candidate::{Candidate, Factor, Forces, Map, Replayer, ScaledAt, Scaling, Scheme, Step};
+pub use candidate::{Candidate, Factor, Forces, Replayer, ScaledAt, Scaling};
 pub use compose::{composed, ids as composed_ids};
 
 pub use explain::TRUTH;
 pub use fault::{first_departure, first_fault, moved_anchor};
 pub use mistakes::{MISTAKES, Mistake, Wrong, mistakes};
 pub use replay::{Defect, FIT, Replay, solve_effort};
-pub use result::{Deviation, Explained, Fault, Identified, Quantity, Undecided};
+pub use result::{Deviation, Explained, Fault, Identity, Quantity, Undecided};
+pub use step::{Formula, Place, Step};
 pub use transition::Transition;
 
 use crate::integrators::Settings;
@@ -40,7 +46,6 @@ use crate::scene::Scene;
 use crate::trajectory::{Precision, Rows};
 use race::{Entry, Race, Ranking, defects_of_all, quantile};
 use same::Comparison;
-use std::borrow::Cow;
 use transition::Weighed;
 
 /// Substeps that are tried.
@@ -66,48 +71,6 @@ pub struct Question<'a> {
     pub hint: Option<(&'static str, u32)>,
 }
 
-/// The scheme a trajectory follows, exactly or nearly.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Identity {
-    /// Id of a method, of a composed scheme, or of a mistake.
-    pub method: String,
-    /// Steps it takes in a timestep.
-    pub substeps: u32,
-    /// What it does, where its name does not say it.
-    pub says: Option<Cow<'static, str>>,
-    /// Whether it is a known mistake.
-    pub mistake: bool,
-    /// Largest distance of a replayed row from the recorded one, in units of what rounding explains,
-    /// over the transitions that follow it; the median over all where it is only near.
-    pub defect: f64,
-    /// The same in parts of what the transition moves.
-    pub relative: f64,
-    /// The nearest candidate that is told from it.
-    pub runner_up: Option<RunnerUp>,
-    /// The candidates that the data cannot tell from it, each method once with the fewest substeps:
-    /// `heun`, `implicit_euler/4`.
-    pub equivalent: Vec<String>,
-    /// Why it is not the only one; None where it is.
-    pub undecided: Option<Undecided>,
-    /// Transitions replayed.
-    pub transitions: usize,
-    /// How many of them follow the scheme.
-    pub followed: usize,
-    /// Candidates that were not tried, for want of time.
-    pub left_out: Vec<String>,
-    /// Steps taken to find out, substeps included.
-    pub steps: u64,
-}
-
-/// The nearest scheme that it is not.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunnerUp {
-    pub method: String,
-    pub substeps: u32,
-    /// As [`Identity::defect`], over the transitions that told it apart.
-    pub defect: f64,
-}
-
 /// What is known of a trajectory's scheme.
 #[derive(Debug, Clone, Default)]
 pub struct Found {
@@ -120,7 +83,19 @@ pub struct Found {
 /// Finds the scheme. Nothing is found where there is nothing to replay: fewer than two rows, three without
 /// velocities, rows of another scene, or rows more than 20,000 steps apart.
 pub fn identify(question: &Question) -> Found {
-    found(question).unwrap_or_default()
+    let Found {
+        identity,
+        explained,
+    } = found(question).unwrap_or_default();
+    let numbered = identity.filter(|identity| identity.defect.is_finite());
+    let identity = numbered.map(|identity| Identity {
+        decisive: identity.undecided.is_none(),
+        ..identity
+    });
+    Found {
+        identity,
+        explained,
+    }
 }
 
 fn found(question: &Question) -> Option<Found> {
@@ -227,7 +202,6 @@ fn decide(
                 transitions: all.len(),
                 followed: fit.len(),
                 left_out: race.left_out.clone(),
-                steps: race.replay.steps(),
                 ..Identity::of(&right)
             });
         }
@@ -244,23 +218,22 @@ fn decide(
     Some(Identity {
         defect: quantile(&defects, share),
         relative: median_relative(&defects),
-        runner_up: runner_up.map(|(i, defect)| RunnerUp {
-            method: candidate(i).id.clone(),
-            substeps: candidate(i).substeps,
-            defect,
-        }),
+        runner_up: runner_up.map(|(i, _)| candidate(i).label()),
+        runner_up_defect: runner_up
+            .map(|(_, defect)| defect)
+            .filter(|d| d.is_finite()),
         equivalent: equals.iter().map(|(i, _)| candidate(*i).label()).collect(),
         undecided,
         transitions: all.len(),
         followed,
         left_out: race.left_out.clone(),
-        steps: race.replay.steps(),
         ..Identity::of(&winner.candidate)
     })
 }
 
-fn median_relative(defects: &[Defect]) -> f64 {
-    median(defects.iter().map(|d| d.relative)).unwrap_or(f64::INFINITY)
+/// None where that is no number.
+fn median_relative(defects: &[Defect]) -> Option<f64> {
+    median(defects.iter().map(|d| d.relative)).filter(|r| r.is_finite())
 }
 
 /// The upper median; None of nothing.
@@ -287,53 +260,14 @@ fn candidates(scene: &Scene, system: &ParticleSystem) -> impl Iterator<Item = Ca
 
 impl Identity {
     /// The name alone.
-    pub(super) fn of(candidate: &Candidate) -> Self {
+    fn of(candidate: &Candidate) -> Self {
         Self {
             method: candidate.id.clone(),
             substeps: candidate.substeps,
             says: candidate.says.clone(),
             mistake: candidate.mistake,
             defect: f64::INFINITY,
-            relative: f64::INFINITY,
-            runner_up: None,
-            equivalent: Vec::new(),
-            undecided: None,
-            transitions: 0,
-            followed: 0,
-            left_out: Vec::new(),
-            steps: 0,
+            ..Self::default()
         }
-    }
-
-    /// Whether no other candidate explains the data, and this one does to rounding.
-    pub fn decisive(&self) -> bool {
-        self.undecided.is_none()
-    }
-
-    /// The identity as reports write it; None if its defect is no number.
-    pub fn report(&self) -> Option<Identified> {
-        self.defect.is_finite().then(|| {
-            let runner_up = self.runner_up.as_ref();
-            Identified {
-                method: self.method.clone(),
-                substeps: self.substeps,
-                says: self.says.clone().map(Cow::into_owned),
-                defect: self.defect,
-                relative: Some(self.relative).filter(|r| r.is_finite()),
-                runner_up: runner_up.map(RunnerUp::label),
-                runner_up_defect: runner_up.map(|r| r.defect).filter(|d| d.is_finite()),
-                decisive: self.decisive(),
-                equivalent: self.equivalent.clone(),
-                undecided: self.undecided,
-                left_out: self.left_out.clone(),
-            }
-        })
-    }
-}
-
-impl RunnerUp {
-    /// The method, and after a slash its substeps if there are several.
-    pub fn label(&self) -> String {
-        candidate::label(&self.method, self.substeps)
     }
 }

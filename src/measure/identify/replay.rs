@@ -9,7 +9,6 @@ use crate::integrators::{Settings, StepError};
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
 use crate::trajectory::Rows;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A transition follows a scheme if its defect is at most this many units.
 ///
@@ -21,8 +20,12 @@ pub const FIT: f64 = 10.0;
 
 /// A defect so small needs no finer unit.
 const CLEAR: f64 = 0.25 * FIT;
-/// Nor does one so large: more directions never raise a unit by as much.
+/// Nor does one so large after a few directions: more of them never raise a unit by as much. In a single one the
+/// roundings of two forces may cancel at all axes of a particle.
 const HOPELESS: f64 = 32.0 * FIT;
+const FEW: u64 = 4;
+/// Beyond this part of the motion one direction is enough.
+const FAR: f64 = 1e-9;
 /// Most directions in which inputs and forces are moved by their rounding.
 const NUDGES: u64 = 16;
 
@@ -90,7 +93,6 @@ pub struct Replay<'a> {
     differenced: bool,
     /// Whether the rows themselves are known no better than an iterative solve's tolerance.
     pub(super) iterated: bool,
-    steps: AtomicU64,
 }
 
 impl<'a> Replay<'a> {
@@ -118,13 +120,7 @@ impl<'a> Replay<'a> {
             length: lengths.fold(0.0, f64::max),
             differenced: is_differenced(rows),
             iterated: false,
-            steps: AtomicU64::new(0),
         })
-    }
-
-    /// Steps replayed so far, substeps included.
-    pub fn steps(&self) -> u64 {
-        self.steps.load(Ordering::Relaxed)
     }
 
     /// The state at `transition.to` by the candidate, from the data up to `transition.from`.
@@ -188,6 +184,9 @@ impl<'a> Replay<'a> {
                 relative: 0.0,
             });
         }
+        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        let moved: Vec<f64> = self.moved(transition).collect();
+        let far = most(&off) > FAR * most(&moved);
         let mut grown = vec![0.0; off.len()];
         let mut pattern = 0;
         loop {
@@ -195,9 +194,9 @@ impl<'a> Replay<'a> {
             pattern += 1;
             let units = self.with_own(replayer, transition, &predicted, &grown);
             let defect = largest_ratio(&off, &units);
-            let clear = defect <= CLEAR || defect > HOPELESS;
+            let enough = if far { 1 } else { FEW };
+            let clear = defect <= CLEAR || (defect > HOPELESS && pattern >= enough);
             if clear || pattern == NUDGES {
-                let moved: Vec<f64> = self.moved(transition).collect();
                 let motion = largest_ratio(&moved, &units);
                 let digits = self.digits(transition);
                 if defect <= FIT && defect > motion && largest_ratio(&off, &digits) > FIT {
@@ -218,14 +217,30 @@ impl<'a> Replay<'a> {
 
     /// The largest distance of a state from what is recorded at the end, in these units.
     pub(super) fn farthest(&self, transition: &Transition, state: &State, units: &[f64]) -> f64 {
+        let off = self.off(transition, state, units);
+        off.fold(0.0, |most, off| {
+            let off = if off.is_nan() {
+                f64::INFINITY
+            } else {
+                off.abs()
+            };
+            f64::max(most, off)
+        })
+    }
+
+    /// A state minus what is recorded at the end, in these units: positions, then velocities where there are any.
+    pub(super) fn off(
+        &self,
+        transition: &Transition,
+        state: &State,
+        units: &[f64],
+    ) -> impl Iterator<Item = f64> {
         let numbers = state.x.iter().chain(&state.v).zip(units);
-        let ratios = self.recorded(transition).zip(numbers);
-        let ratios = ratios.map(|(recorded, (state, unit))| match state - recorded {
+        let pairs = self.recorded(transition).zip(numbers);
+        pairs.map(|(recorded, (state, unit))| match state - recorded {
             0.0 => 0.0,
-            off if off.is_nan() => f64::INFINITY,
-            off => off.abs() / unit,
-        });
-        ratios.fold(0.0, f64::max)
+            off => off / unit,
+        })
     }
 
     /// Raises `grown` to how far away inputs moved in this direction end.
@@ -345,14 +360,12 @@ impl<'a> Replay<'a> {
             let leg = self.leg(*k, transition.from);
             // A thousandth of what the data is rounded to is as good as exact.
             let enough = |x: f64| 1e-3 * rows.precision.half_unit(x);
-            let taken = leg.find_within(replayer, earlier, &mut state, enough)?;
-            self.count(replayer, taken);
+            leg.find_within(replayer, earlier, &mut state, enough)?;
         }
         let one_back = before
             .filter(|(k, _)| rows.steps[*k] + 1 == step)
             .map(|(_, state)| state);
         replayer.advance(step, span, rows.timestep, one_back.as_ref(), &mut state)?;
-        self.count(replayer, span);
         let not_finite = |c: &f64| !c.is_finite();
         let lost = |values: &[f64]| values.iter().position(not_finite);
         match lost(&state.x).or_else(|| lost(&state.v)) {
@@ -386,12 +399,6 @@ impl<'a> Replay<'a> {
             timestep: rows.timestep,
             roundings: f64::EPSILON * self.length,
         }
-    }
-
-    fn count(&self, replayer: &Replayer, steps: u64) {
-        let substeps = u64::from(replayer.candidate().substeps.max(1));
-        self.steps
-            .fetch_add(steps.saturating_mul(substeps), Ordering::Relaxed);
     }
 
     /// The state of row `k`, velocities 0 where they are unknown; each free number moved by its

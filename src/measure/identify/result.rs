@@ -2,36 +2,47 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
-/// The scheme a trajectory follows, by one-step replay.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-pub struct Identified {
-    /// A method's id, a composed scheme's, or a common mistake's.
+/// The scheme a trajectory follows, exactly or nearly, by one-step replay.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Identity {
+    /// Id of a method, of a composed scheme, or of a common mistake.
     pub method: String,
     /// Steps it takes inside one timestep.
     pub substeps: u32,
     /// What it does, where its name does not say it.
     #[serde(default)]
-    pub says: Option<String>,
-    /// Largest distance of a replayed step from the recorded one over the steps that follow the
-    /// scheme, in units of what rounding explains; the median over all where the scheme is only near.
+    pub says: Option<Cow<'static, str>>,
+    /// Largest distance of a replayed row from the recorded one, in units of what rounding explains, over the
+    /// transitions that follow the scheme; the median over all where it is only near.
     pub defect: f64,
-    /// The median of the same distance in parts of what a step moves.
+    /// The median of the same distance in parts of what a transition moves.
     #[serde(default)]
     pub relative: Option<f64>,
-    /// The nearest scheme that is not equivalent, as `method` or `method/substeps`.
+    /// The nearest candidate that is told from it, as `method` or `method/substeps`.
     pub runner_up: Option<String>,
-    /// Its defect, in the same units.
+    /// Its defect over the transitions that told it apart.
     pub runner_up_defect: Option<f64>,
-    /// Whether one scheme and no other explains the data.
+    /// Whether it explains the data to rounding, and no other candidate does.
     pub decisive: bool,
-    /// Other schemes that explain the data as well.
+    /// The candidates that the data cannot tell from it, each method once with the fewest substeps:
+    /// `heun`, `implicit_euler/4`.
     pub equivalent: Vec<String>,
     /// Why it is not decisive; null where it is.
     pub undecided: Option<Undecided>,
-    /// Schemes that were not tried, to keep judging a run cheaper than the run.
+    /// Candidates that were not tried, for want of time.
     #[serde(default)]
     pub left_out: Vec<String>,
+    /// Whether it is a known mistake.
+    #[serde(skip)]
+    pub mistake: bool,
+    /// Transitions replayed.
+    #[serde(skip)]
+    pub transitions: usize,
+    /// How many of them follow the scheme.
+    #[serde(skip)]
+    pub followed: usize,
 }
 
 /// The reason why a trajectory's scheme is not decided.

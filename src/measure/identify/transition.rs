@@ -45,16 +45,7 @@ pub(super) struct Weighed {
 /// those that are not finite and, if any move, those where nothing does. At most `limit` of them,
 /// evenly spread.
 pub(super) fn choose(rows: &Rows, system: &ParticleSystem, limit: Option<usize>) -> Vec<Weighed> {
-    let finite: Vec<bool> = (0..rows.len()).map(|k| is_finite(rows, k)).collect();
-    let first = if rows.v.is_some() { 0 } else { 1 };
-    let all: Vec<Transition> = (first..rows.len().saturating_sub(1))
-        .map(|from| Transition {
-            before: from.checked_sub(1).filter(|&k| finite[k]),
-            from,
-            to: from + 1,
-        })
-        .filter(|t| finite[t.from] && finite[t.to] && (rows.v.is_some() || t.before.is_some()))
-        .collect();
+    let all: Vec<Transition> = neighbours(rows).filter(|t| is_finite(rows, t.to)).collect();
     // Beside the short ones of a thinned record its long ones are no use; where all are about
     // alike, all are. A lone short one at the end of a file is no measure: hence the quartile.
     let mut spans: Vec<u64> = all.iter().map(|t| t.reach(rows)).collect();
@@ -75,7 +66,28 @@ pub(super) fn choose(rows: &Rows, system: &ParticleSystem, limit: Option<usize>)
     spread(&used, limit.unwrap_or(usize::MAX))
 }
 
-fn is_finite(rows: &Rows, k: usize) -> bool {
+/// Between neighbouring rows, wherever a replay can start.
+pub(super) fn neighbours(rows: &Rows) -> impl Iterator<Item = Transition> {
+    from_each(rows, 0..rows.len(), 1, 1)
+}
+
+/// From these rows to those `ahead`, with the rows `back`, wherever a replay can start.
+fn from_each(
+    rows: &Rows,
+    starts: impl Iterator<Item = usize>,
+    back: usize,
+    ahead: usize,
+) -> impl Iterator<Item = Transition> {
+    let all = starts.map(move |from| Transition {
+        before: from.checked_sub(back).filter(|&k| is_finite(rows, k)),
+        from,
+        to: from + ahead,
+    });
+    all.filter(move |t| t.to < rows.len() && is_finite(rows, t.from))
+        .filter(move |t| rows.v.is_some() || t.before.is_some())
+}
+
+pub(super) fn is_finite(rows: &Rows, k: usize) -> bool {
     let v = rows.v(k).unwrap_or(&[]);
     rows.x(k).iter().chain(v).all(|c| c.is_finite())
 }
@@ -84,15 +96,8 @@ fn is_finite(rows: &Rows, k: usize) -> bool {
 pub(super) fn stretches(rows: &Rows, apart: usize, limit: usize) -> Vec<Transition> {
     let back = if rows.v.is_some() { 0 } else { apart };
     let starts = (back..rows.len()).step_by((apart + back).max(1));
-    let stretches: Vec<Transition> = starts
-        .map(|from| Transition {
-            before: from.checked_sub(back.max(1)),
-            from,
-            to: from + apart,
-        })
-        .filter(|t| t.to < rows.len() && t.reach(rows) <= LONGEST)
-        .filter(|t| is_finite(rows, t.from) && is_finite(rows, t.to))
-        .filter(|t| back == 0 || t.before.is_some_and(|k| is_finite(rows, k)))
+    let stretches: Vec<Transition> = from_each(rows, starts, back.max(1), apart)
+        .filter(|t| t.reach(rows) <= LONGEST && is_finite(rows, t.to))
         .collect();
     spread(&stretches, limit)
 }

@@ -3,6 +3,7 @@
 use super::candidate::Replayer;
 use crate::integrators::StepError;
 use crate::physics::State;
+use crate::vector::axpy;
 
 /// From one row of positions to the next.
 pub(super) struct Leg {
@@ -24,7 +25,7 @@ const PATIENCE: usize = 4;
 
 impl Leg {
     /// Sets the velocities of `from` so that the scheme leads to the positions of `to`, and those
-    /// of `to` to what it arrives with. Returns the steps taken.
+    /// of `to` to what it arrives with.
     ///
     /// Broyden's good method (1965) on Φ_x(x0, v) = x1, started from the mean velocity and the
     /// slope span h, which is that of a free flight.
@@ -36,7 +37,7 @@ impl Leg {
         replayer: &mut Replayer,
         from: &mut State,
         to: &mut State,
-    ) -> Result<u64, StepError> {
+    ) -> Result<(), StepError> {
         self.find_within(replayer, from, to, |_| 0.0)
     }
 
@@ -47,13 +48,9 @@ impl Leg {
         from: &mut State,
         to: &mut State,
         enough: impl Fn(f64) -> f64,
-    ) -> Result<u64, StepError> {
+    ) -> Result<(), StepError> {
         let seconds = self.span as f64 * self.timestep;
-        let mut v: Vec<f64> =
-            to.x.iter()
-                .zip(&from.x)
-                .map(|(to, from)| (to - from) / seconds)
-                .collect();
+        let mut v = apart(&to.x, &from.x, seconds);
         let mut inverse = Inverse::default();
         let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
         let mut last: Option<(Vec<f64>, Vec<f64>)> = None;
@@ -63,12 +60,7 @@ impl Leg {
             end.v.clone_from(&v);
             replayer.advance(self.step, self.span, self.timestep, None, &mut end)?;
             taken += 1;
-            let miss: Vec<f64> = end
-                .x
-                .iter()
-                .zip(&to.x)
-                .map(|(end, to)| (end - to) / seconds)
-                .collect();
+            let miss = apart(&end.x, &to.x, seconds);
             let off = self.roundings_off(&miss, to, seconds, &enough);
             if !off.is_finite() {
                 break;
@@ -85,13 +77,10 @@ impl Leg {
                 break;
             }
             if let Some((step, before)) = last.take() {
-                let change: Vec<f64> = miss.iter().zip(&before).map(|(a, b)| a - b).collect();
-                inverse.learn(&step, &change);
+                inverse.learn(&step, &apart(&miss, &before, 1.0));
             }
             let step: Vec<f64> = inverse.times(&miss).iter().map(|s| -s).collect();
-            for (v, s) in v.iter_mut().zip(&step) {
-                *v += s;
-            }
+            axpy(&mut v, 1.0, &step);
             last = Some((step, miss));
         }
         match best {
@@ -99,7 +88,7 @@ impl Leg {
             Some((off, v, arrived)) if off <= 16.0 => {
                 from.v = v;
                 to.v = arrived;
-                Ok(taken as u64 * self.span)
+                Ok(())
             }
             best => Err(StepError::NotConverged {
                 iterations: taken as u32,
@@ -143,7 +132,7 @@ impl Inverse {
     fn times(&self, y: &[f64]) -> Vec<f64> {
         let mut out = y.to_vec();
         for (a, b) in &self.terms {
-            add(&mut out, dot(b, y), a);
+            axpy(&mut out, dot(b, y), a);
         }
         out
     }
@@ -151,7 +140,7 @@ impl Inverse {
     fn transposed_times(&self, y: &[f64]) -> Vec<f64> {
         let mut out = y.to_vec();
         for (a, b) in &self.terms {
-            add(&mut out, dot(a, y), b);
+            axpy(&mut out, dot(a, y), b);
         }
         out
     }
@@ -169,12 +158,12 @@ impl Inverse {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// (a - b) / seconds.
+fn apart(a: &[f64], b: &[f64], seconds: f64) -> Vec<f64> {
+    let pairs = a.iter().zip(b);
+    pairs.map(|(a, b)| (a - b) / seconds).collect()
 }
 
-fn add(y: &mut [f64], factor: f64, x: &[f64]) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += factor * x;
-    }
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,5 +1,6 @@
 //! The terminal's report: the scene, the verdict, the verb's own part, the first notes on single engines,
-//! the checks of the harness, and facts about the scene. No line exceeds [`WIDTH`] columns.
+//! the checks of the harness, and facts about the scene. No line exceeds the columns of
+//! the [`View`].
 
 mod fit;
 mod paint;
@@ -14,24 +15,27 @@ use crate::measure::{Check, CheckStatus};
 /// The most remarks the terminal shows.
 const MAX_NOTES: usize = 5;
 
-/// The most visible columns of a line.
+/// The columns of a line where there is no terminal that states its own.
 pub const WIDTH: usize = 100;
+/// The fewest columns that a report is laid out for.
+pub const MIN_WIDTH: usize = 60;
 
 /// The report with ANSI colours, which the caller's stream strips where they are not wanted: the
 /// verdict below the scene's name, then the verb's own part. Ends with a newline.
 pub fn render(view: View) -> String {
-    let verdict = wrap(&verdict::within(&view, WIDTH), WIDTH, "");
+    let columns = view.columns;
+    let verdict = wrap(&verdict::within(&view, columns), columns, "");
     let verdict = verdict.iter().map(|line| mark(Tone::Strong, line));
     let mut lines = scene(&view);
     lines.extend(after_blank_line(verdict.collect()));
     let table = view.lines.into_iter().skip_while(String::is_empty);
     lines.extend(after_blank_line(table.collect()));
-    lines.extend(after_blank_line(notes(&view.notes)));
-    lines.extend(after_blank_line(checks(&view.header.checks)));
-    lines.extend(after_blank_line(labelled(view.last.into_iter())));
+    lines.extend(after_blank_line(notes(&view.notes, columns)));
+    lines.extend(after_blank_line(checks(&view.header.checks, columns)));
+    lines.extend(after_blank_line(labelled(view.last.into_iter(), columns)));
     let facts = view.facts.into_iter();
     let facts = facts.map(|(label, text)| (label, one_line(&text)));
-    lines.extend(after_blank_line(labelled(facts)));
+    lines.extend(after_blank_line(labelled(facts, columns)));
     paint(&(lines.join("\n") + "\n"))
 }
 
@@ -54,29 +58,29 @@ fn scene(view: &View) -> Vec<String> {
         words::timestep(scene.timestep, &view.timesteps),
         clip(&one_line(&scene.own_integrator), 28),
     );
-    let room = WIDTH.saturating_sub(width(&facts)).max(12);
+    let room = view.columns.saturating_sub(width(&facts)).max(12);
     let name = clip(&one_line(&scene.name), room);
-    let mut lines = wrap(&(mark(Tone::Strong, &name) + &facts), WIDTH, "");
+    let mut lines = wrap(&(mark(Tone::Strong, &name) + &facts), view.columns, "");
     if let Some(description) = &scene.description {
-        lines.extend(wrap(&one_line(description), WIDTH, ""));
+        lines.extend(wrap(&one_line(description), view.columns, ""));
     }
     lines
 }
 
 /// Lines of texts after their labels.
-fn labelled<'a>(facts: impl Iterator<Item = (&'a str, String)>) -> Vec<String> {
-    let line = |(label, text)| wrap(&format!("{label:<9}{text}"), WIDTH, "         ");
+fn labelled<'a>(facts: impl Iterator<Item = (&'a str, String)>, columns: usize) -> Vec<String> {
+    let line = |(label, text)| wrap(&format!("{label:<9}{text}"), columns, "         ");
     facts.flat_map(line).collect()
 }
 
-fn notes(notes: &[Note]) -> Vec<String> {
+fn notes(notes: &[Note], columns: usize) -> Vec<String> {
     let note = |Note { subject, sentence }: &Note| {
         let text = if sentence.starts_with(subject.as_str()) {
             sentence.clone()
         } else {
             format!("{subject}: {sentence}")
         };
-        wrap(&format!("- {text}"), WIDTH, "  ")
+        wrap(&format!("- {text}"), columns, "  ")
     };
     let shown = notes.iter().take(MAX_NOTES);
     let more = notes.len().saturating_sub(MAX_NOTES) as u64;
@@ -87,7 +91,7 @@ fn notes(notes: &[Note]) -> Vec<String> {
     shown.flat_map(note).chain(more).collect()
 }
 
-fn checks(checks: &[Check]) -> Vec<String> {
+fn checks(checks: &[Check], columns: usize) -> Vec<String> {
     let ids = checks.iter().map(|c| width(&one_line(&c.id))).max();
     let ids = ids.unwrap_or(0).min(24);
     let groups = grouped(checks.iter().map(|check| {
@@ -105,12 +109,15 @@ fn checks(checks: &[Check]) -> Vec<String> {
         let head = mark(tone, word) + "  " + &pad(&clip(&one_line(id), ids), ids);
         let wrapped = |texts: Vec<String>| {
             let line = format!("{head}  {}", texts.join(", "));
-            wrap(&line, WIDTH, &" ".repeat(8 + ids))
+            wrap(&line, columns, &" ".repeat(8 + ids))
         };
         lines.extend(match group.as_slice() {
             // Expectations that are met are counted.
             met if id == "expect" && why.is_none() => wrapped(counted(met)),
-            [check] => vec![format!("{head}  {}", alone(check, WIDTH - 10 - ids))],
+            [check] => vec![format!(
+                "{head}  {}",
+                alone(check, columns.saturating_sub(10 + ids))
+            )],
             several => wrapped(several.iter().map(|check| measured(check)).collect()),
         });
         let message = match group.as_slice() {
@@ -119,7 +126,7 @@ fn checks(checks: &[Check]) -> Vec<String> {
         };
         if let Some(message) = message.filter(|message| !message.is_empty()) {
             let message = format!("      {}", one_line(message));
-            lines.extend(wrap(&message, WIDTH, "      "));
+            lines.extend(wrap(&message, columns, "      "));
         }
     }
     lines
@@ -145,7 +152,10 @@ fn reason(check: &Check) -> &str {
 /// The subject of a check, its measured value and its bound, in at most `columns` and two spaces.
 fn alone(check: &Check, columns: usize) -> String {
     let measured = words::measured(check);
-    let subject = clip(&one_line(&check.subject), columns - width(&measured));
+    let subject = clip(
+        &one_line(&check.subject),
+        columns.saturating_sub(width(&measured)),
+    );
     format!("{subject}  {measured}")
 }
 

@@ -4,6 +4,7 @@
 //! zero-width marks (variation selectors, which [`words::one_line`](crate::report::words::one_line)
 //! takes out of foreign text) that become ANSI sequences once everything stands in its place.
 
+use crate::scene::words::printable;
 use anstyle::{AnsiColor, Style};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,7 +39,7 @@ pub fn mark(tone: Tone, text: &str) -> String {
     format!("{start}{text}{END}")
 }
 
-/// Replaces the marks by ANSI sequences.
+/// Replaces the marks by ANSI sequences. No other character that a terminal acts on passes, but the line's end.
 pub fn paint(text: &str) -> String {
     let mut painted = String::with_capacity(text.len() + 256);
     for c in text.chars() {
@@ -47,8 +48,10 @@ pub fn paint(text: &str) -> String {
             painted += &format!("{:#}", Style::new().bold());
         } else if let Some((_, style)) = TONES.get(tone) {
             painted += &style.to_string();
-        } else {
+        } else if c == '\n' {
             painted.push(c);
+        } else {
+            painted.push(printable(c));
         }
     }
     painted

@@ -1,5 +1,6 @@
 //! A command line with placeholders, split as a POSIX shell would split it, without a shell.
 
+use crate::scene::words::aside;
 use std::ffi::{OsStr, OsString};
 use std::str::FromStr;
 
@@ -49,7 +50,8 @@ pub enum CommandError {
     #[error("a quote is not closed in `{0}`")]
     Quote(String),
     #[error(
-        "unknown placeholder `{{{found}}}`; known: {}; braces themselves are `{{{{` and `}}}}`",
+        "unknown placeholder `{{{found}}}`{}; known: {}; braces themselves are `{{{{` and `}}}}`",
+        aside(found, &NAMES.map(|(name, _)| name)),
         known()
     )]
     Unknown { found: String },

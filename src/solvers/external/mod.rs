@@ -69,6 +69,12 @@ pub enum Failure {
          or less to do with --duration"
     )]
     TimedOut { after: Duration },
+    /// The program ended well, but a stream or file of it has no end.
+    #[error(
+        "it ended well, but {what} had no end after {after:?}: something that it left in the background still holds \
+         it, or it is no plain file; let the program wait for what it started"
+    )]
+    Held { what: &'static str, after: Duration },
     #[error(
         "it ended with exit code {code}, expected 0: what it wrote to stderr is shown as it came"
     )]

@@ -9,7 +9,10 @@ use crate::solvers::Solver;
 use crate::trajectory::{self, Expected, limits};
 use crate::verbs::cli::external::{self, External};
 use crate::verbs::cli::flags::{self, Time};
+use crate::verbs::cli::interrupt;
+use crate::verbs::cli::note::note;
 use crate::verbs::cli::output;
+use crate::verbs::cli::place::put;
 use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::compare::{Recorded, method};
 use crate::verbs::{Report, formats};
@@ -116,7 +119,7 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     let files = select::scenes(&args.paths, args.partition)?;
     if files.is_empty() {
-        let _ = writeln!(anstream::stderr(), "no scene was selected");
+        note("no scene was selected");
         return Ok(ExitCode::from(NOTHING));
     }
     let names = names(args)?;
@@ -133,32 +136,40 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         None => None,
     };
     let human = args.format == "human";
+    let by_line = args.format == "jsonl";
+    let rendered = |reports: &[Report]| output::rendered(&args.format, &Tool::this(), reports);
     let mut reports = Vec::new();
-    for (path, scene) in &scenes {
+    for (at, (path, scene)) in scenes.iter().enumerate() {
+        interrupt::unfinished(&files[at..]);
         let mut report = one(args, quiet, scene, path, &trajectories)?;
         if let Some(baseline) = &baseline {
             report.header.checks.extend(baseline.check(&report));
         }
         if human {
-            output::print(&text::human(&report))?;
+            let text = text::human(&report, output::columns());
+            let line = text.lines().next().unwrap_or_default();
+            output::print(&if quiet { format!("{line}\n") } else { text })?;
+        } else if by_line {
+            output::print(&rendered(std::slice::from_ref(&report))?)?;
         }
         reports.push(report);
     }
+    interrupt::unfinished(&[]);
     if human {
         output::print(&format!("{}\n", text::closing(&reports)))?;
-    } else {
-        output::print(&output::rendered(&args.format, &Tool::this(), &reports)?)?;
+    } else if !by_line {
+        output::print(&rendered(&reports)?)?;
     }
     for Named { name, value } in &args.write {
         let text = output::rendered(name, &Tool::this(), &reports)?;
-        output::put(value, text.as_bytes())?;
+        put(value, text.as_bytes())?;
     }
     if args.format == "github" {
         summarise(&reports)?;
     }
     if let (Some(path), Some(mut accepted)) = (&args.accept, accepted) {
         accepted.accept(&reports);
-        output::put(path, accepted.text().as_bytes())?;
+        put(path, accepted.text().as_bytes())?;
     }
     Ok(ExitCode::from(code(&reports, args.strict)))
 }
@@ -265,11 +276,11 @@ fn one(
     let mut gate = Gate::of(scene, &choice);
     gate.claims = claimed(args)?;
     gate.require_all = args.require_all;
+    let terminal = Terminal::new(quiet);
     let estimates = gate.plan.estimate();
     // Every integrator runs twice.
     let expected = 2.0 * terminal::expected(&estimates);
-    terminal::announce(&estimates, expected, SHORTER, quiet);
-    let terminal = Terminal::new(gate.plan.units(), expected, quiet);
+    terminal.expect(gate.plan.units(), expected, &estimates, SHORTER);
     Ok(gate.run(&terminal)?)
 }
 

@@ -1,6 +1,6 @@
 //! Which scene files are checked: files and folders, and a part of them for one machine among several.
 
-use anyhow::{Context, bail};
+use crate::verbs::cli::flags;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -63,16 +63,14 @@ impl Partition {
 /// The scene files of these paths, each once, in the order of their names below each path.
 ///
 /// # Errors
-/// Fails where a path does not exist or a folder cannot be read.
+/// Fails where a folder cannot be read.
 pub fn scenes(paths: &[PathBuf], partition: Option<Partition>) -> anyhow::Result<Vec<PathBuf>> {
     let mut found: Vec<PathBuf> = Vec::new();
     for path in paths {
         if path.is_dir() {
-            below(path, &mut found)?;
-        } else if path.exists() {
-            found.push(path.clone());
+            found.extend(flags::below(path)?);
         } else {
-            bail!("{}: there is no such file or folder", path.display());
+            found.push(path.clone());
         }
     }
     let mut seen = std::collections::BTreeSet::new();
@@ -84,27 +82,6 @@ pub fn scenes(paths: &[PathBuf], partition: Option<Partition>) -> anyhow::Result
         .filter(part)
         .map(|(_, path)| path)
         .collect())
-}
-
-fn below(folder: &Path, found: &mut Vec<PathBuf>) -> anyhow::Result<()> {
-    let cannot = || format!("cannot read {}", folder.display());
-    let entries = std::fs::read_dir(folder).with_context(cannot)?;
-    let entries = entries.map(|entry| entry.map(|entry| entry.path()));
-    let mut paths: Vec<PathBuf> = entries.collect::<Result<_, _>>().with_context(cannot)?;
-    paths.sort();
-    for path in paths {
-        let hidden = path
-            .file_name()
-            .is_some_and(|name| name.to_string_lossy().starts_with('.'));
-        let scene = path.extension().is_some_and(|e| e == "yml" || e == "yaml");
-        // A link to a folder could lead back here.
-        if path.is_dir() && !hidden && !path.is_symlink() {
-            below(&path, found)?;
-        } else if scene && path.is_file() {
-            found.push(path);
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -2,12 +2,12 @@
 
 use super::{Verdict, laws, verdict};
 use crate::measure::{Check, CheckStatus};
-use crate::report::terminal::{Tone, WIDTH, mark, paint, wrap};
+use crate::report::terminal::{Tone, mark, paint, wrap};
 use crate::report::words::{one_line, plural, short};
 use crate::verbs::Report;
 
-/// A line for the scene, and below it what failed, what is open, and what its file skips.
-pub fn human(report: &Report) -> String {
+/// A line for the scene, and below it what failed, what is open, and what its file skips, in so many columns.
+pub fn human(report: &Report, columns: usize) -> String {
     let checks = &report.header.checks;
     let count = |status| checks.iter().filter(|c| c.status == status).count() as u64;
     let (tone, word) = match verdict(report) {
@@ -36,7 +36,7 @@ pub fn human(report: &Report) -> String {
     };
     let told: Vec<&Check> = checks.iter().filter(told).collect();
     for group in told.chunk_by(|a, b| a.id == b.id && a.derivation == b.derivation) {
-        lines.extend(details(group));
+        lines.extend(details(group, columns));
     }
     paint(&(lines.join("\n") + "\n"))
 }
@@ -48,7 +48,7 @@ fn skipped_by_file(check: &Check) -> bool {
 
 /// What was measured of each subject, when it broke, and why; then the bound that they share, where it comes from,
 /// and what to do.
-fn details(group: &[&Check]) -> Vec<String> {
+fn details(group: &[&Check], columns: usize) -> Vec<String> {
     let mut lines = Vec::new();
     for check in group {
         let head = format!(
@@ -63,10 +63,10 @@ fn details(group: &[&Check]) -> Vec<String> {
             .first_s
             .map(|t| format!(", first at t = {} s", short(t)));
         let text = head + &said + &first.unwrap_or_default();
-        lines.extend(wrap(&text, WIDTH, "        "));
+        lines.extend(wrap(&text, columns, "        "));
         if let Some(cause) = check.cause.as_ref().filter(|_| !skipped_by_file(check)) {
             let text = format!("        likely: {}", one_line(cause));
-            lines.extend(wrap(&text, WIDTH, "          "));
+            lines.extend(wrap(&text, columns, "          "));
         }
     }
     let Some(check) = group.iter().find(|check| !skipped_by_file(check)) else {
@@ -75,7 +75,7 @@ fn details(group: &[&Check]) -> Vec<String> {
     let bound = format!("the bound: {}", one_line(&check.derivation));
     let todo = laws::find(&check.id).map(|row| format!("what to do: {}", one_line(row.remedy)));
     for text in [Some(bound), todo].into_iter().flatten() {
-        lines.extend(wrap(&format!("        {text}"), WIDTH, "          "));
+        lines.extend(wrap(&format!("        {text}"), columns, "          "));
     }
     lines
 }

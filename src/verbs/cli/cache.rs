@@ -1,6 +1,6 @@
 //! The cache that keeps truths between runs.
 
-use super::output::temporary;
+use super::temporary;
 use crate::truth::Store;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -46,6 +46,7 @@ impl Store for Cache {
         // Failures are ignored: without the entry, the truth is computed again.
         if let Some(folder) = &self.folder {
             let _ = put(folder, key, bytes);
+            temporary::sweep(folder);
             let _ = prune(folder);
         }
     }
@@ -53,7 +54,7 @@ impl Store for Cache {
 
 fn put(folder: &Path, key: &str, bytes: &[u8]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
-    let mut file = temporary(folder)?;
+    let mut file = temporary::file(folder)?;
     file.write_all(bytes)?;
     file.persist(folder.join(key))?;
     Ok(())

@@ -4,10 +4,74 @@ use crate::scene::{self, Names, Scene};
 use crate::trajectory::Plane;
 use crate::truth::Demand;
 use crate::verbs;
+use anyhow::{Context, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
+
+/// The extensions of scene files, the usual one first.
+pub const EXTENSIONS: [&str; 2] = ["yml", "yaml"];
+
+/// The scene files that paths state: of a folder all in it and in its folders, sorted.
+///
+/// # Errors
+/// Fails where a folder cannot be read or has no scene in it.
+pub fn scenes(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+    let mut scenes: Vec<PathBuf> = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            let mut found = below(path)?;
+            if found.is_empty() {
+                let what = EXTENSIONS.map(|extension| format!("*.{extension}"));
+                bail!(
+                    "{}: there is no scene in this folder, expected files {}",
+                    path.display(),
+                    what.join(" or ")
+                );
+            }
+            found.retain(|scene| !scenes.contains(scene));
+            scenes.extend(found);
+        } else {
+            scenes.push(path.clone());
+        }
+    }
+    Ok(scenes)
+}
+
+/// The scene files of a folder and of its folders, sorted.
+///
+/// # Errors
+/// Fails where a folder cannot be read.
+pub fn below(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let read = collect(folder, &mut found);
+    read.with_context(|| format!("cannot read {}", folder.display()))?;
+    found.sort();
+    Ok(found)
+}
+
+/// Collects the scene files of a folder. Hidden ones, and folders behind links, which may lead back, are left out.
+fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        let path = entry.path();
+        let hidden = entry.file_name().as_encoded_bytes().starts_with(b".");
+        let is_scene = || {
+            EXTENSIONS
+                .iter()
+                .any(|e| path.extension().is_some_and(|own| own == *e))
+        };
+        if hidden {
+            continue;
+        } else if entry.file_type()?.is_dir() {
+            collect(&path, found)?;
+        } else if is_scene() && path.is_file() {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
 
 /// The scene of a file, with another duration, s, where a flag states one.
 ///

@@ -3,7 +3,11 @@
 pub(in crate::verbs) mod cache;
 pub mod external;
 pub mod flags;
+pub mod interrupt;
+pub mod note;
 pub mod output;
+pub mod place;
 pub mod save;
 pub mod solvers;
+mod temporary;
 pub mod terminal;

@@ -1,15 +1,21 @@
-//! The output of verbs: `--format` and `--output`, the report's folder, the last lines printed, and files that are
-//! written whole.
+//! The output of verbs: `--format` and `--output`, and what is printed.
 
+use super::place::Place;
 use crate::report::json::Tool;
-use crate::verbs::{Report, formats, series};
+use crate::report::terminal::{self, width};
+use crate::report::verdict;
+use crate::report::words::one_line;
+use crate::scene::words::{acts, visible};
+use crate::verbs::{Report, formats};
 use anyhow::Context;
 use clap::builder::PossibleValuesParser;
 use std::io::{ErrorKind, Write};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// The format of tables for people, with files beside them.
 const HUMAN: &str = "human";
+/// The format of a line a report.
+const LINES: &str = "jsonl";
 
 #[derive(Debug, clap::Args)]
 pub struct Output {
@@ -18,9 +24,16 @@ pub struct Output {
     format: String,
 
     /// Where reports go [default: reports; with a --format other than human, nowhere].
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR|none")]
     output: Option<PathBuf>,
+
+    /// Write no files, as `--output none` does.
+    #[arg(long, conflicts_with = "output")]
+    no_files: bool,
 }
+
+/// The `--output` that writes nothing. A folder of this name is `./none`.
+const NOWHERE: &str = "none";
 
 pub fn format_ids() -> PossibleValuesParser {
     PossibleValuesParser::new(formats::FORMATS.iter().map(|format| format.id))
@@ -32,22 +45,32 @@ impl Output {
         self.format == HUMAN
     }
 
+    /// Whether the format has a line for each report, which can be printed before the next is there.
+    pub fn is_by_line(&self) -> bool {
+        self.format == LINES
+    }
+
     /// Whether figures are wanted: in files, or as links.
     pub fn draws(&self) -> bool {
-        self.output.is_some() || self.format == "markdown"
+        self.stated().is_some() || self.format == "markdown"
+    }
+
+    /// The folder that `--output` states.
+    fn stated(&self) -> Option<&Path> {
+        let stated = self.output.as_deref()?;
+        (stated != Path::new(NOWHERE)).then_some(stated)
     }
 
     /// The folder of this file's report, where `--output` is stated.
     pub fn stated_place(&self, file: &Path) -> Option<Place> {
-        let output = self.output.as_ref()?;
-        Some(Place::new(output, file))
+        Some(Place::new(self.stated()?, file))
     }
 
     /// The same; without `--output` a folder in `reports`, where the format is for people.
     pub fn place(&self, scene: &Path) -> Option<Place> {
-        let default = || Place::new("reports".as_ref(), scene);
-        self.stated_place(scene)
-            .or_else(|| self.is_human().then(default))
+        let by_default = self.output.is_none() && !self.no_files && self.is_human();
+        let default = by_default.then_some(Path::new("reports"));
+        Some(Place::new(self.stated().or(default)?, scene))
     }
 
     /// Prints the reports to stdout.
@@ -55,18 +78,37 @@ impl Output {
         print(&rendered(&self.format, tool, reports)?)
     }
 
-    /// Prints one report to stdout; for people, the text of [`human`].
+    /// Writes the report to its folder and prints it, also where it could not be written.
+    ///
+    /// # Errors
+    /// Fails where the report could not be written or printed.
+    pub fn finish(
+        &self,
+        report: Report,
+        place: Option<Place>,
+        otherwise: &str,
+        quiet: bool,
+    ) -> anyhow::Result<Report> {
+        let (report, saved) = written(report, place.as_ref());
+        // The path of a report is not shown where the report could not be written.
+        let place = place.filter(|_| saved.is_ok());
+        self.print_one(&report, place.as_ref(), otherwise, quiet)?;
+        saved?;
+        Ok(report)
+    }
+
+    /// Prints one report to stdout; for people the text of [`human`], or where it is to be quiet the [`summary`].
     pub fn print_one(
         &self,
         report: &Report,
         place: Option<&Place>,
-        next: Option<String>,
         otherwise: &str,
+        quiet: bool,
     ) -> anyhow::Result<()> {
-        if self.is_human() {
-            print(&human(report, place, next, otherwise))
-        } else {
-            self.print(&Tool::this(), std::slice::from_ref(report))
+        match (self.is_human(), quiet) {
+            (true, true) => print(&summary(report)),
+            (true, false) => print(&human(report, place, otherwise)),
+            (false, _) => self.print(&Tool::this(), std::slice::from_ref(report)),
         }
     }
 }
@@ -86,142 +128,55 @@ pub fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// The folder of one scene's report.
-#[derive(Debug, Clone)]
-pub struct Place {
-    folder: PathBuf,
-}
-
-impl Place {
-    /// `output` followed by the scene's path without its extension; a leading `scenes` is dropped,
-    /// and a path outside the working directory is mirrored from its root.
-    pub fn new(output: &Path, scene: &Path) -> Self {
-        let stem = scene.with_extension("");
-        let absolute = std::path::absolute(&stem).unwrap_or(stem);
-        let here = std::env::current_dir().unwrap_or_default();
-        let inside = absolute.strip_prefix(&here).unwrap_or(&absolute);
-        let mut parts: Vec<_> = Vec::new();
-        for component in inside.components() {
-            match component {
-                Component::Normal(part) => parts.push(part),
-                Component::ParentDir => {
-                    parts.pop();
-                }
-                Component::Prefix(_) | Component::RootDir | Component::CurDir => {}
-            }
-        }
-        if parts.len() > 1 && parts[0] == "scenes" {
-            parts.remove(0);
-        }
-        Self {
-            folder: output.join(parts.iter().collect::<PathBuf>()),
-        }
-    }
-
-    pub fn folder(&self) -> &Path {
-        &self.folder
-    }
-
-    /// The report's page, which a reader opens first.
-    pub fn report(&self, report: &Report) -> PathBuf {
-        self.folder.join(format!("{}.md", report.stem()))
-    }
-
-    /// Makes the folder if it does not exist.
-    pub fn create(&self) -> anyhow::Result<()> {
-        std::fs::create_dir_all(&self.folder)
-            .with_context(|| format!("cannot make {}", self.folder.display()))
-    }
-
-    /// Writes the report in every file format, its figures, and their series. `tool` is the program that made it.
-    pub fn write(&self, tool: &Tool, report: &Report) -> anyhow::Result<()> {
-        let reports = std::slice::from_ref(report);
-        let stem = report.stem();
-        if let Some(bytes) = series::pack(reports) {
-            self.put(&format!("{stem}.{}", series::EXTENSION), &bytes)?;
-        }
-        for format in formats::FORMATS.iter().filter(|format| format.file) {
-            let name = format!("{stem}.{}", format.extension);
-            let text = (format.render)(tool, reports);
-            self.put(&name, text.as_bytes())?;
-        }
-        for (name, svg) in report.svg() {
-            self.put(name, svg.as_bytes())?;
-        }
-        Ok(())
-    }
-
-    /// Writes a file whole or not at all: it is written under a temporary name, then renamed.
-    fn put(&self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
-        put(&self.folder.join(name), bytes)
-    }
-}
-
-/// Writes a file whole or not at all.
-pub fn put(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    let write = || -> std::io::Result<()> {
-        let mut file = temporary(folder.unwrap_or_else(|| Path::new(".")))?;
-        file.write_all(bytes)?;
-        file.persist(path)?;
-        Ok(())
-    };
-    write().with_context(|| format!("cannot write {}", path.display()))
-}
-
-/// A temporary file in the folder of the final one, with the permissions of any other file.
-pub fn temporary(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The process's umask still applies.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    builder.prefix(".springcheck-").tempfile_in(folder)
-}
-
-/// Writes the report to its folder and returns it. Without a folder there are no figures, so the report loses its
-/// series and nothing links to them.
-pub fn written(report: Report, place: Option<&Place>) -> anyhow::Result<Report> {
+/// Writes the report to its folder, and returns it with the result of that: where writing fails, the report is not
+/// lost. Without a folder there are no figures, so the report loses its series and nothing links to them.
+pub fn written(report: Report, place: Option<&Place>) -> (Report, anyhow::Result<()>) {
     let Some(place) = place else {
-        return Ok(report.without_series());
+        return (report.without_series(), Ok(()));
     };
-    place.create()?;
-    place.write(&Tool::this(), &report)?;
-    Ok(report)
+    let written = place.write(&Tool::this(), &report);
+    (report, written)
 }
 
 /// The table and its verdict, then the report's path if it has a folder.
 pub fn table(report: &Report, place: Option<&Place>) -> String {
-    let table = report.human();
+    let table = report.human(columns());
     let written = place.map_or_else(String::new, |place| {
         let file = place.report(report).display().to_string();
-        format!("report: {}\n", file.replace(char::is_control, "?"))
+        format!("report: {}\n", visible(&file))
     });
     format!("{table}{written}")
 }
 
-/// The same with a command to try next as the last line: `next`, or `otherwise` where that is missing or too long.
-pub fn human(
-    report: &Report,
-    place: Option<&Place>,
-    next: Option<String>,
-    otherwise: &str,
-) -> String {
-    let next = next
-        .filter(|next| next.chars().count() + "next: ".len() <= crate::report::terminal::WIDTH)
-        .unwrap_or_else(|| otherwise.to_owned());
-    format!("{}next: {next}\n", table(report, place))
+/// The same with the first command of the report's advice as the last line, or `otherwise` where there is none that
+/// fits the line.
+pub fn human(report: &Report, place: Option<&Place>, otherwise: &str) -> String {
+    let fits = |next: &&String| width(next) + "next: ".len() <= columns();
+    let next = report.header.advice.first().filter(fits);
+    let next = next.map_or(otherwise, String::as_str);
+    format!("{}next: {}\n", table(report, place), visible(next))
+}
+
+/// The report's scene and its verdict on one line.
+pub fn summary(report: &Report) -> String {
+    let name = one_line(&report.header.scene.file);
+    let room = columns().saturating_sub(width(&name) + ": ".len());
+    format!(
+        "{name}: {}\n",
+        verdict::within(&report.view_in(columns()), room)
+    )
+}
+
+/// The columns of a line on stdout: those of the terminal, and a fixed number where there is none.
+pub fn columns() -> usize {
+    let terminal = terminal_size::terminal_size_of(std::io::stdout());
+    let columns = terminal.map_or(terminal::WIDTH, |(columns, _)| usize::from(columns.0));
+    columns.max(terminal::MIN_WIDTH)
 }
 
 /// The path quoted as one word for a POSIX shell; None where a terminal cannot show it.
 pub fn quoted(path: &Path) -> Option<String> {
-    let text = path
-        .to_str()
-        .filter(|text| !text.contains(char::is_control))?;
+    let text = path.to_str().filter(|text| !text.contains(acts))?;
     let text = if text.starts_with('-') {
         format!("./{text}")
     } else {

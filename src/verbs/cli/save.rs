@@ -1,6 +1,6 @@
 //! `--save` writes every step of every engine to files beside the report.
 
-use super::output::temporary;
+use super::temporary;
 use crate::physics::State;
 use crate::trajectory::{CsvWriter, NpzWriter, Observer, SaveError};
 use crate::verbs::session::{Label, Saver};
@@ -37,7 +37,7 @@ impl Files {
             let name = format!("{engine}@{timestep}.{extension}");
             self.folder.join(name)
         };
-        let file = temporary(&self.folder)?;
+        let file = temporary::file(&self.folder)?;
         Ok(match self.kind {
             FileKind::Csv => Box::new(Saving {
                 writer: CsvWriter::new(file, *steps, self.every, *timestep),

@@ -2,6 +2,7 @@
 
 use crate::integrators::{self, Method};
 use crate::scene::Scene;
+use crate::scene::words::aside;
 use crate::solvers::{self, Solver, SolverKind, rapier};
 use anyhow::{Context, bail};
 use std::str::FromStr;
@@ -21,14 +22,14 @@ pub fn chosen(
     let mut chosen = if usual.iter().any(|solver| solver.as_pair().is_some()) {
         with_pairs(integrators, scene, usual)?
     } else {
-        methods(integrators, scene, usual)?
+        methods(integrators, scene, usual, &[])?
     };
-    let known = || format!("engines: {}, or none", rapier::IDS.join(", "));
+    let known = ("engines", rapier::IDS.to_vec(), "none");
     let find = |id: &str| solvers::find(id).filter(|solver| solver.kind == SolverKind::Rapier);
     chosen.extend(match engines {
         [] => of_kind(usual, SolverKind::Rapier),
         [none] if none == "none" => Vec::new(),
-        ids => look_up(ids, find, known)?,
+        ids => look_up(ids, find, &known)?,
     });
     for custom in custom.iter().map(Custom::solver) {
         if !chosen.iter().any(|known| known.id == custom.id) {
@@ -38,19 +39,21 @@ pub fn chosen(
     Ok(chosen)
 }
 
-fn methods(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result<Vec<Solver>> {
+/// The methods of these ids. An error names those `beside` them too.
+fn methods(
+    ids: &[String],
+    scene: &Scene,
+    usual: &[Solver],
+    beside: &[&'static str],
+) -> anyhow::Result<Vec<Solver>> {
     let fixed = integrators::fixed();
-    let known = || {
-        format!(
-            "integrators: {}, or all",
-            integrators::ids(fixed).join(", ")
-        )
-    };
+    let names = [integrators::ids(fixed), beside.to_vec()].concat();
+    let known = ("integrators", names, "all");
     let find = |id: &str| find_in(fixed, id);
     match ids {
         [] => Ok(of_kind(usual, SolverKind::Integrator)),
         [all] if all == "all" => Ok(solvers::methods(&scene.solver.method)),
-        ids => look_up(ids, find, known),
+        ids => look_up(ids, find, &known),
     }
 }
 
@@ -59,16 +62,17 @@ fn with_pairs(ids: &[String], scene: &Scene, usual: &[Solver]) -> anyhow::Result
     let find = |id: &str| find_in(integrators::pairs(), id);
     let (pairs, others): (Vec<String>, Vec<String>) =
         ids.iter().cloned().partition(|id| find(id).is_some());
-    let pairs = look_up(&pairs, find, String::new)?;
+    let pairs = look_up(&pairs, find, &Known::default())?;
     if others.is_empty() && !pairs.is_empty() {
         return Ok(pairs);
     }
-    let known = || {
-        let pairs = integrators::ids(integrators::pairs()).join(", ");
-        format!("--integrators (adaptive: {pairs})")
-    };
     let all = others.first().is_some_and(|id| id == "all");
-    let mut chosen = methods(&others, scene, usual).with_context(known)?;
+    let mut chosen = methods(
+        &others,
+        scene,
+        usual,
+        &integrators::ids(integrators::pairs()),
+    )?;
     chosen.extend(if all && pairs.is_empty() {
         usual
             .iter()
@@ -99,15 +103,25 @@ pub fn without_timestep(rapier: &[Custom], what: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Looks up each id once. An unknown one is an error that lists the known ones.
+/// What ids may name: the kind, the ids, and the word that stands for all or none of them.
+type Known = (&'static str, Vec<&'static str>, &'static str);
+
+/// Looks up each id once. An unknown one is an error that lists the known ones, and the nearest of them.
 fn look_up(
     ids: &[String],
     find: impl Fn(&str) -> Option<Solver>,
-    known: impl Fn() -> String,
+    (kind, known, word): &Known,
 ) -> anyhow::Result<Vec<Solver>> {
     let mut rows: Vec<Solver> = Vec::new();
     for id in ids {
-        let row = find(id).with_context(|| format!("unknown `{id}`; known {}", known()))?;
+        let row = find(id).with_context(|| {
+            let words = known.iter().copied().chain([*word]).collect::<Vec<_>>();
+            format!(
+                "unknown `{id}`{}; known {kind}: {}, or {word}",
+                aside(id, &words),
+                known.join(", ")
+            )
+        })?;
         if !rows.iter().any(|known| known.id == row.id) {
             rows.push(row);
         }
@@ -125,6 +139,8 @@ pub struct Custom {
 
 /// The largest number of iterations or sweeps; more is a typing error.
 const MAX_COUNT: u32 = 1_000_000;
+/// The keys of the flag.
+const KEYS: [&str; 5] = ["dt", "iterations", "pgs", "stabilization", "speed"];
 
 impl FromStr for Custom {
     type Err = String;
@@ -157,8 +173,9 @@ impl FromStr for Custom {
                 "stabilization" => custom.settings.stabilization = count(0)?,
                 _ => {
                     return Err(format!(
-                        "unknown key `{key}`; known: dt, iterations, pgs, stabilization, \
-                         speed"
+                        "unknown key `{key}`{}; known: {}",
+                        aside(key, &KEYS),
+                        KEYS.join(", ")
                     ));
                 }
             }

@@ -2,9 +2,8 @@
 //! scheme that it follows.
 
 use crate::integrators::{self, Method};
-use crate::measure::identify::{Identified, Undecided};
+use crate::measure::identify::{Identity, Undecided};
 use crate::measure::{Check, CheckStatus};
-use crate::report::json::Tool;
 use crate::scene::Scene;
 use crate::scene::words::nearest;
 use crate::solvers::Solver;
@@ -12,6 +11,7 @@ use crate::solvers::external::{Failure, Program, Recording, Task};
 use crate::trajectory::{self, Expected, Plane, Rows, SaveError, limits};
 use crate::truth::Demand;
 use crate::verbs::cli::flags::{self, demand, plane};
+use crate::verbs::cli::interrupt;
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::terminal::Terminal;
 use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity};
@@ -36,7 +36,7 @@ pub struct Args {
     scene: PathBuf,
 
     /// The step it took, seconds; rows may lie several of them apart. Default: the scene's.
-    #[arg(long, value_name = "H")]
+    #[arg(long, value_name = "H", allow_hyphen_values = true)]
     timestep: Option<f64>,
 
     /// The axes that two-dimensional data has. Default: data has all three.
@@ -105,18 +105,23 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         .map_or(scene.duration, |n| *n as f64 * timestep);
     let file_name = args.file.file_name();
     let name = file_name.map_or(name, |n| n.to_string_lossy().into_owned());
-    let steps = rows.steps.last().copied().unwrap_or(0);
-    let terminal = Terminal::new(steps, 0.0, quiet);
+    let place = args.output.stated_place(&args.file);
+    if let Some(place) = &place {
+        place.prepare()?;
+    }
+    interrupt::unfinished(std::slice::from_ref(&args.file));
+    let terminal = Terminal::new(quiet);
     let mut report = report(&scene, &Arc::new(rows), &name, args.truth, &terminal)?;
     report.header.checks.extend(wanted(args, &report));
-    let place = args.output.stated_place(&args.file);
-    let report = output::written(report, place.as_ref())?;
-    if args.output.is_human() {
+    drop(terminal);
+    let (report, saved) = output::written(report, place.as_ref());
+    let place = place.filter(|_| saved.is_ok());
+    if args.output.is_human() && !quiet {
         output::print(&output::table(&report, place.as_ref()))?;
     } else {
-        let reports = std::slice::from_ref(&report);
-        args.output.print(&Tool::this(), reports)?;
+        args.output.print_one(&report, place.as_ref(), "", quiet)?;
     }
+    saved?;
     Ok(ExitCode::from(code(&report)))
 }
 
@@ -141,7 +146,7 @@ fn wanted(args: &Args, report: &Report) -> Vec<Check> {
     let error = outcome.position_error_m.as_ref().map(|error| error.max);
     let scheme = args.expect.map(|method| {
         let found = outcome.identified.as_ref();
-        let is = |found: &Identified| {
+        let is = |found: &Identity| {
             let named = found.method == method.id && found.substeps == 1;
             let listed = found.equivalent.iter().any(|id| id == method.id);
             (named || listed) && found.undecided != Some(Undecided::Near)
@@ -275,7 +280,7 @@ fn report(
     let plan = Plan::new(scene, &choice);
     let mut report = plan.execute(session)?;
     let (found, fault) = identity::of_rows(&plan, rows);
-    let identified = found.identity.and_then(|identity| identity.report());
+    let identified = found.identity;
     if let Body::Run { outcomes } = &mut report.body {
         let mut outcomes = std::mem::take(outcomes);
         for outcome in &mut outcomes {

@@ -5,9 +5,10 @@ use crate::solvers::Solver;
 use crate::truth::Demand;
 use crate::verbs::Report;
 use crate::verbs::cli::flags::{self, Time, demand};
+use crate::verbs::cli::interrupt;
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::solvers::{Custom, chosen, without_timestep};
-use crate::verbs::cli::terminal::{self, Terminal};
+use crate::verbs::cli::terminal::Terminal;
 use crate::verbs::cost::{self, CostChoice, CostPlan};
 use anyhow::{Context, bail};
 use std::path::PathBuf;
@@ -38,21 +39,26 @@ pub struct Args {
     targets: Vec<f64>,
 
     /// Steps (of adaptive pairs: tolerances) to try of each engine.
-    #[arg(long, value_name = "N", default_value_t = cost::SETTINGS as u32, value_parser = clap::value_parser!(u32).range(2..=200))]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value_t = cost::SETTINGS as u32, value_parser = clap::value_parser!(u32).range(2..=200))]
     steps: u32,
 
     /// About what the sweep may take: 30s, 2m. It sets the finest step of each engine, by counted work on
     /// a nominal machine, so that every machine tries the same steps.
-    #[arg(long, value_name = "TIME", default_value = "30s")]
+    #[arg(
+        long,
+        value_name = "TIME",
+        allow_hyphen_values = true,
+        default_value = "30s"
+    )]
     budget: Time,
 
     /// Exactly these timesteps, seconds, separated by commas, and a picture of them side by side; without
     /// adaptive pairs, which choose their own.
-    #[arg(long, value_name = "H,...", value_delimiter = ',', conflicts_with_all = ["steps", "budget"])]
+    #[arg(long, value_name = "H,...", value_delimiter = ',', allow_hyphen_values = true, conflicts_with_all = ["steps", "budget"])]
     timestep: Vec<f64>,
 
     /// Seconds to simulate. Default: the scene's.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     duration: Option<f64>,
 
     /// What errors are measured against: a closed form or else a converged reference (auto), a
@@ -82,14 +88,19 @@ pub fn cost(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let scene = read(args)?;
     let plan = CostPlan::new(&scene, &choice(args, &scene)?);
     let place = args.output.place(&args.scene);
+    if let Some(place) = &place {
+        place.prepare()?;
+    }
+    interrupt::unfinished(std::slice::from_ref(&args.scene));
+    let terminal = Terminal::new(quiet);
     let estimates = plan.estimate();
     let expected = estimates.iter().map(|e| e.seconds).sum();
-    terminal::announce(&estimates, expected, SHORTER, quiet);
-    let report = plan.execute(&Terminal::new(plan.work(), expected, quiet));
-    let report = output::written(report, place.as_ref())?;
-    let (next, otherwise) = (next(args, &scene, &report), "springcheck cost --help");
-    args.output
-        .print_one(&report, place.as_ref(), next, otherwise)?;
+    terminal.expect(plan.work(), expected, &estimates, SHORTER);
+    let mut report = plan.execute(&terminal);
+    drop(terminal);
+    report.header.advice = next(args, &scene, &report).into_iter().collect();
+    let otherwise = "springcheck cost --help";
+    args.output.finish(report, place, otherwise, quiet)?;
     Ok(ExitCode::SUCCESS)
 }
 

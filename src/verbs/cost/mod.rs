@@ -151,6 +151,7 @@ impl<'a> CostPlan<'a> {
                 scene: facts::scene(scene, system, counted, scale),
                 truth: facts::truth(&truth),
                 checks: facts::no_scale(scale).into_iter().collect(),
+                advice: Vec::new(),
             },
             body: Body::Cost { outcomes: [], cost },
             series: panels.map_or(SeriesState::Nothing, |panels| {

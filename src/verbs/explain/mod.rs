@@ -3,7 +3,7 @@
 use crate::integrators;
 use crate::measure::identify::MISTAKES;
 use crate::physics::effects;
-use crate::report::terminal::{WIDTH, wrap};
+use crate::report::terminal::wrap;
 use crate::scene::words::nearest;
 use crate::solvers::catalogue;
 use crate::verbs::check;
@@ -33,7 +33,7 @@ pub fn explain(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let mut text = format!("{id}, {kind}\n");
     for (label, fact) in facts {
-        let lines = wrap(&format!("{label}: {fact}"), WIDTH, "  ");
+        let lines = wrap(&format!("{label}: {fact}"), output::columns(), "  ");
         text += &format!("\n{}\n", lines.join("\n"));
     }
     output::print(&text)?;

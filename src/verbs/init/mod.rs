@@ -1,6 +1,7 @@
 //! `springcheck init [DIR]`: the files of a solver that is held to its scheme in CI. They are those of
 //! `examples/gate-python`, and the schema that the scene names.
 
+use crate::scene::words::visible;
 use crate::verbs::cli::output;
 use crate::verbs::schema;
 use anyhow::{Context, bail};
@@ -56,7 +57,7 @@ pub fn init(args: &Args) -> anyhow::Result<ExitCode> {
     }
     for (path, text) in &files {
         write(path, text).with_context(|| format!("cannot write {}", path.display()))?;
-        output::print(&format!("wrote {}\n", path.display()))?;
+        output::print(&format!("wrote {}\n", visible(&path.display().to_string())))?;
     }
     if let Some(command) = command(folder) {
         output::print(&format!("next: {command}\n"))?;

@@ -7,6 +7,7 @@ use crate::physics::effects;
 use crate::solvers::SolverKind;
 use crate::solvers::catalogue;
 use crate::verbs::check;
+use crate::verbs::cli::output::{columns, print};
 use clap::ValueEnum;
 use comfy_table::{ColumnConstraint, ContentArrangement, Table, presets};
 use std::process::ExitCode;
@@ -68,7 +69,7 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
             .to_string()
         }
     };
-    crate::verbs::cli::output::print(&format!("{text}\n"))?;
+    print(&format!("{text}\n"))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -181,7 +182,7 @@ fn table(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {
     table
         .load_style(presets::NOTHING)
         .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(100)
+        .set_width(u16::try_from(columns()).unwrap_or(u16::MAX))
         .set_header(header.to_vec());
     for row in rows {
         table.add_row(row);

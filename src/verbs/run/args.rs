@@ -8,7 +8,9 @@ use crate::verbs::Report;
 use crate::verbs::cli::cache::Cache;
 use crate::verbs::cli::external::{self, External};
 use crate::verbs::cli::flags::{self, Time, demand};
+use crate::verbs::cli::interrupt;
 use crate::verbs::cli::output::{self, Output};
+use crate::verbs::cli::place::Place;
 use crate::verbs::cli::save::{FileKind, Files};
 use crate::verbs::cli::solvers::{Custom, chosen};
 use crate::verbs::cli::terminal::{self, Terminal};
@@ -19,7 +21,7 @@ use std::process::ExitCode;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Scene files (YAML).
+    /// Scene files (YAML), or folders of them.
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
 
@@ -46,17 +48,23 @@ pub struct Args {
     #[arg(
         long,
         value_name = "TIME",
+        allow_hyphen_values = true,
         requires = "external",
         default_value = "60s"
     )]
     external_timeout: Time,
 
     /// Timesteps in seconds, separated by commas: everything runs at each. Default: the scene's.
-    #[arg(long, value_name = "H,...", value_delimiter = ',')]
+    #[arg(
+        long,
+        value_name = "H,...",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
     timestep: Vec<f64>,
 
     /// Seconds to simulate. Default: the scene's.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     duration: Option<f64>,
 
     /// What errors are measured against: a closed form or else a converged reference (auto), a
@@ -76,7 +84,7 @@ pub struct Args {
     save: Option<FileKind>,
 
     /// Save only every N-th step, and the last.
-    #[arg(long, value_name = "N", requires = "save", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", requires = "save", allow_hyphen_values = true, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     every: u64,
 }
 
@@ -86,25 +94,49 @@ const SHORTER: &str = "--duration, a larger --timestep, --integrators A,B, --eng
 /// Runs the verb.
 pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     // All scenes are read before any of them runs: a typo in the last one costs no time.
-    let read = |path: &PathBuf| read(args, path);
-    let scenes = args.scenes.iter().map(read);
-    let scenes = scenes.collect::<anyhow::Result<Vec<_>>>()?;
-    distinct(args)?;
+    let paths = flags::scenes(&args.scenes)?;
+    distinct(args, &paths)?;
     external::distinct(&args.external)?;
+    let read = |path: &PathBuf| {
+        let (scene, stated) = read(args, path)?;
+        let choice = choice(args, &scene, stated, path)?;
+        Ok((scene, choice))
+    };
+    let scenes = paths.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
+    let places: Vec<_> = paths.iter().map(|path| args.output.place(path)).collect();
+    if args.save.is_some() && places.contains(&None) {
+        bail!("--save needs a folder: state --output");
+    }
+    for place in places.iter().flatten() {
+        place.prepare()?;
+    }
     let mut reports = Vec::new();
-    for ((scene, stated), path) in scenes.iter().zip(&args.scenes) {
-        let report = one(args, quiet, scene, *stated, path)?;
-        if args.output.is_human() {
-            let separator = if reports.is_empty() { "" } else { "\n" };
-            let (place, next) = (args.output.place(path), next(args, path, &report));
-            let text = output::human(&report, place.as_ref(), next, "springcheck run --help");
-            output::print(&format!("{separator}{text}"))?;
+    let mut failure = Ok(());
+    for (at, ((scene, choice), place)) in scenes.iter().zip(&places).enumerate() {
+        interrupt::unfinished(&paths[at..]);
+        let (report, saved) = one(args, quiet, scene, choice, &paths[at], place.as_ref())?;
+        if args.output.is_human() && !quiet && at > 0 {
+            output::print("\n")?;
         }
+        if args.output.is_human() || args.output.is_by_line() {
+            // The path of a report is not shown where the report could not be written.
+            let place = place.as_ref().filter(|_| saved.is_ok());
+            let otherwise = "springcheck run --help";
+            args.output.print_one(&report, place, otherwise, quiet)?;
+        }
+        failure = failure.and(saved);
         reports.push(report);
     }
-    if !args.output.is_human() {
+    interrupt::unfinished(&[]);
+    if args.output.is_human() {
+        if reports.len() > 1 && !quiet {
+            let lines: String = reports.iter().map(output::summary).collect();
+            output::print(&format!("\n{lines}"))?;
+        }
+    } else if !args.output.is_by_line() {
         args.output.print(&Tool::this(), &reports)?;
     }
+    failure?;
     let mut checks = reports.iter().flat_map(|report| &report.header.checks);
     let failed = checks.any(|check| check.status == CheckStatus::Fail);
     Ok(ExitCode::from(u8::from(failed)))
@@ -129,36 +161,31 @@ fn read(args: &Args, path: &Path) -> anyhow::Result<(Scene, f64)> {
     Ok((scene, stated))
 }
 
+/// The report of one scene, and whether all of it could be written.
 fn one(
     args: &Args,
     quiet: bool,
     scene: &Scene,
-    stated: f64,
+    choice: &Choice,
     path: &Path,
-) -> anyhow::Result<Report> {
-    let place = args.output.place(path);
-    let files = match (args.save, &place) {
-        (None, _) => None,
-        (Some(kind), Some(place)) => Some(Files {
-            kind,
-            folder: place.folder().to_owned(),
-            every: args.every,
-        }),
-        (Some(_), None) => bail!("--save needs --output when --format is not human"),
-    };
-    let mut choice = choice(args, scene)?;
-    choice.expectations = expectations(args, scene, stated);
-    let programs = external::chosen(&args.external, path, args.external_timeout);
-    choice.solvers.extend(programs);
-    let plan = Plan::new(scene, &choice).expecting(files.is_some(), &Cache::new());
+    place: Option<&Place>,
+) -> anyhow::Result<(Report, anyhow::Result<()>)> {
+    let files = args.save.zip(place).map(|(kind, place)| Files {
+        kind,
+        folder: place.folder().to_owned(),
+        every: args.every,
+    });
+    let saving = files.is_some();
+    let terminal = Terminal::new(quiet).saving(files);
+    let plan = Plan::new(scene, choice).expecting(saving, &Cache::new());
     let estimates = plan.estimate();
     let expected = terminal::expected(&estimates);
-    terminal::announce(&estimates, expected, SHORTER, quiet);
-    if let Some(place) = &place {
-        place.create()?;
-    }
-    let terminal = Terminal::new(plan.units(), expected, quiet).saving(files);
-    output::written(plan.execute(&terminal)?, place.as_ref())
+    terminal.expect(plan.units(), expected, &estimates, SHORTER);
+    let mut report = plan.execute(&terminal)?;
+    report.header.advice = next(args, path, &report).into_iter().collect();
+    let (report, written) = output::written(report, place);
+    let saved = terminal.saved().context("--save");
+    Ok((report, saved.and(written)))
 }
 
 /// Whether the scene's expectations are judged: flags may have changed the run they are stated for.
@@ -174,14 +201,14 @@ fn expectations(args: &Args, scene: &Scene, stated: f64) -> Expectations {
 }
 
 /// Refuses two scenes that would write into one folder.
-fn distinct(args: &Args) -> anyhow::Result<()> {
+fn distinct(args: &Args, paths: &[PathBuf]) -> anyhow::Result<()> {
     let folder = |path: &PathBuf| Some(args.output.place(path)?.folder().to_owned());
-    for (at, path) in args.scenes.iter().enumerate() {
+    for (at, path) in paths.iter().enumerate() {
         let Some(own) = folder(path) else {
             return Ok(());
         };
         let same = |other: &&PathBuf| folder(other).as_ref() == Some(&own);
-        if let Some(other) = args.scenes[..at].iter().find(same) {
+        if let Some(other) = paths[..at].iter().find(same) {
             let (other, path, own) = (other.display(), path.display(), own.display());
             bail!("{other} and {path} would both write to {own}");
         }
@@ -208,14 +235,18 @@ fn next(args: &Args, path: &Path, report: &Report) -> Option<String> {
     Some(format!("springcheck run {path} --timestep {steps}"))
 }
 
-fn choice(args: &Args, scene: &Scene) -> anyhow::Result<Choice> {
+/// What runs on this scene; `stated` is the duration that its file states, s.
+fn choice(args: &Args, scene: &Scene, stated: f64, path: &Path) -> anyhow::Result<Choice> {
     let mut choice = Choice::default_for(scene);
+    choice.expectations = expectations(args, scene, stated);
     choice.truth = args.truth;
     if args.order {
         choice.order = Orders::Always;
     }
     let usual = &choice.solvers;
     choice.solvers = chosen(&args.integrators, &args.engines, &args.rapier, scene, usual)?;
+    let programs = external::chosen(&args.external, path, args.external_timeout);
+    choice.solvers.extend(programs);
     if !args.timestep.is_empty() {
         choice.timesteps.clear();
         for &timestep in &args.timestep {

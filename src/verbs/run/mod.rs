@@ -113,6 +113,7 @@ impl Plan<'_> {
                 .chain(budget::left_out(left_out))
                 .chain(facts::no_scale(scale))
                 .collect(),
+            advice: Vec::new(),
         };
         let series = curves::series(self, &records, &energies, &truths, scale);
         let mut report = Report {

@@ -52,7 +52,7 @@ pub fn all(
                 linear_solves: record.counts.linear_solves,
                 wall_s: record.wall.clone(),
             },
-            identified: found.identity.and_then(|identity| identity.report()),
+            identified: found.identity,
             explained: found.explained,
             remarks: Vec::new(),
         };

@@ -1,7 +1,7 @@
 //! The results of `run` and `compare` as data: an [`Outcome`] for each engine and timestep, and the series its
 //! figures are drawn from.
 
-use crate::measure::identify::{Explained, Identified};
+use crate::measure::identify::{Explained, Identity};
 use crate::measure::{Deviation, Energy, ErrorSummary, Momentum};
 use crate::solvers::{SolverKind, Status};
 use crate::verbs::clock::WallTime;
@@ -39,7 +39,7 @@ pub struct Outcome {
     /// What the run took.
     pub work: WorkSummary,
     /// The scheme it follows by replay; null where there is nothing to replay.
-    pub identified: Option<Identified>,
+    pub identified: Option<Identity>,
     /// What it deviates in, where it follows no scheme exactly; null where it does.
     pub explained: Option<Explained>,
     /// Plain sentences for the table's foot.

@@ -2,8 +2,8 @@
 
 mod scene;
 
-use crate::report::json;
-use crate::verbs::{Report, cli::output, names};
+use crate::verbs::cli::output;
+use crate::verbs::{formats, names};
 use clap::ValueEnum;
 use std::process::ExitCode;
 
@@ -25,7 +25,7 @@ enum What {
 pub fn schema(args: &Args) -> anyhow::Result<ExitCode> {
     let text = match args.what {
         What::Scene => scene_text(),
-        What::Report => format!("{:#}\n", json::schema::<Report>().as_value()),
+        What::Report => format!("{:#}\n", formats::schema().as_value()),
     };
     output::print(&text)?;
     Ok(ExitCode::SUCCESS)

@@ -1,12 +1,14 @@
 //! `springcheck show FILE.json`
 
 use crate::report::json::{self, Tool};
-use crate::verbs::cli::output::{self, Output, Place};
+use crate::verbs::cli::note::note;
+use crate::verbs::cli::output::{self, Output};
+use crate::verbs::cli::place::Place;
 use crate::verbs::{Body, Report, SeriesState, series};
 
 use anyhow::{Context, bail};
 use std::fs::File;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -28,25 +30,32 @@ const MAX_BYTES: u64 = 1 << 28;
 pub fn show(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let (tool, reports) = stored(&args.file)?;
     let places = places(args, &reports)?;
-    for (report, place) in reports.iter().zip(places.iter().flatten()) {
-        place.create()?;
-        place.write(&tool, report)?;
+    for place in places.iter().flatten() {
+        place.prepare()?;
     }
-    if args.output.is_human() {
-        let places = places.iter().map(Option::as_ref);
+    let write = |(report, place): (&Report, &Option<Place>)| match place {
+        Some(place) => place.write(&tool, report),
+        None => Ok(()),
+    };
+    let saved: Vec<_> = reports.iter().zip(&places).map(write).collect();
+    if args.output.is_human() && quiet {
+        output::print(&reports.iter().map(output::summary).collect::<String>())?;
+    } else if args.output.is_human() {
+        let places = places.iter().zip(&saved);
+        let places = places.map(|(place, saved)| place.as_ref().filter(|_| saved.is_ok()));
         let tables = reports.iter().zip(places);
         let tables: Vec<String> = tables.map(|(r, place)| output::table(r, place)).collect();
         output::print(&tables.join("\n"))?;
     } else {
         args.output.print(&tool, &reports)?;
     }
+    saved.into_iter().collect::<anyhow::Result<()>>()?;
     let missing = |report: &Report| matches!(report.series, SeriesState::Missing);
     if args.output.draws() && !quiet && reports.iter().any(missing) {
-        let _ = writeln!(
-            anstream::stderr(),
+        note(&format!(
             "figures of curves over time are left out: {} is missing, or of another run",
             args.file.with_extension(series::EXTENSION).display()
-        );
+        ));
     }
     Ok(ExitCode::SUCCESS)
 }

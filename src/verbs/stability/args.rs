@@ -4,6 +4,7 @@ use crate::scene::{self, Scene, limits};
 use crate::solvers;
 use crate::verbs::Report;
 use crate::verbs::cli::flags;
+use crate::verbs::cli::interrupt;
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::solvers::{Custom, chosen, without_timestep};
 use crate::verbs::cli::terminal::{self, Terminal};
@@ -34,25 +35,30 @@ pub struct Args {
     rapier: Vec<Custom>,
 
     /// The step at which growth is taken, seconds. Default: the scene's.
-    #[arg(long, value_name = "H")]
+    #[arg(long, value_name = "H", allow_hyphen_values = true)]
     timestep: Option<f64>,
 
     /// How far the trajectory is followed in search of tighter limits, seconds. Default: the scene's.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     duration: Option<f64>,
 
     /// Draw a map of timestep against this: `springs.stiffness=1e2..1e8`, of one member
     /// `particles[1].mass=0.01..100`, with `:N` for N values (default 24).
-    #[arg(long, value_name = "KEY=A..B[:N]")]
+    #[arg(long, value_name = "KEY=A..B[:N]", allow_hyphen_values = true)]
     vary: Option<String>,
 
     /// The map's timesteps, seconds. Default: 24 around the predicted limits, a decade on both sides.
-    #[arg(long, value_name = "A..B[:N]", requires = "vary")]
+    #[arg(
+        long,
+        value_name = "A..B[:N]",
+        allow_hyphen_values = true,
+        requires = "vary"
+    )]
     steps: Option<Range>,
 
     /// Steps times particles that the whole map may take; each cell gets its share. Default: 4e7, or
     /// 256 steps a cell where that is more.
-    #[arg(long, value_name = "STEPS", requires = "vary", value_parser = count)]
+    #[arg(long, value_name = "STEPS", allow_hyphen_values = true, requires = "vary", value_parser = count)]
     budget: Option<u64>,
 
     /// Find the largest value of this that is stable at the timestep: `springs.stiffness`, of one member
@@ -62,7 +68,12 @@ pub struct Args {
 
     /// Draw from where a step does not enlarge the spring's force, at these stiffnesses, N/m. For two
     /// free particles on one spring.
-    #[arg(long, value_name = "K,...", value_delimiter = ',')]
+    #[arg(
+        long,
+        value_name = "K,...",
+        allow_hyphen_values = true,
+        value_delimiter = ','
+    )]
     admissible: Vec<f64>,
 
     #[command(flatten)]
@@ -79,16 +90,22 @@ const UNANSWERED: u8 = 1;
 pub fn stability(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let scene = read(args)?;
     let plan = plan(args, &scene)?;
-    // The estimate comes before anything runs, so that a budget that is too small leaves no folder behind.
+    // What is refused is found before anything runs, and leaves no folder behind.
     let place = args.output.place(&args.scene);
+    let terminal = Terminal::new(quiet);
     let estimates = estimates(&plan)?;
+    plan.picture()?;
+    if let Some(place) = &place {
+        place.prepare()?;
+    }
+    interrupt::unfinished(std::slice::from_ref(&args.scene));
     let expected = terminal::expected(&estimates);
-    terminal::announce(&estimates, expected, SHORTER, quiet);
-    let report = plan.execute(&Terminal::new(plan.steps()?, expected, quiet))?;
-    let report = output::written(report, place.as_ref())?;
-    let (next, otherwise) = (next(args, &scene, &report), "springcheck stability --help");
-    args.output
-        .print_one(&report, place.as_ref(), next, otherwise)?;
+    terminal.expect(plan.steps()?, expected, &estimates, SHORTER);
+    let mut report = plan.execute(&terminal)?;
+    drop(terminal);
+    report.header.advice = next(args, &scene, &report).into_iter().collect();
+    let otherwise = "springcheck stability --help";
+    let report = args.output.finish(report, place, otherwise, quiet)?;
     let mut rows = report.stability().into_iter().flat_map(|s| &s.rows);
     // An unsupported engine has no limit; its reason is the answer.
     let answered = rows.all(|row| row.limit().is_some() || row.unsupported);

@@ -73,10 +73,7 @@ impl StabilityPlan<'_> {
     /// scene that is not two free particles on one spring.
     pub fn execute(&self, session: &dyn Session) -> Result<Report, StabilityError> {
         let scene = self.scene;
-        let admissible = match self.admissible.as_slice() {
-            [] => None,
-            stiffnesses => Some(admissible::draw(scene, self.timestep, stiffnesses)?),
-        };
+        let admissible = self.picture()?;
         let [_, steps_per_cell] = self.cells()?;
         let system = ParticleSystem::new(scene);
         let start = ParticleSystem::initial_state(scene);
@@ -120,6 +117,7 @@ impl StabilityPlan<'_> {
                 scene: facts::scene(scene, system, tally.evaluations(), scale),
                 truth: facts::truth(&truth),
                 checks: Vec::new(),
+                advice: Vec::new(),
             },
             body: Body::Stability {
                 outcomes: [],
@@ -138,6 +136,17 @@ impl StabilityPlan<'_> {
         let [cells, each] = self.cells()?;
         let rows: u64 = self.steps_by_row().iter().sum();
         Ok(rows.saturating_add(cells.saturating_mul(each)))
+    }
+
+    /// The picture of a stiff spring, where it is asked for.
+    ///
+    /// # Errors
+    /// Fails where the scene is not two free particles on one spring.
+    pub fn picture(&self) -> Result<Option<Admissible>, StabilityError> {
+        match self.admissible.as_slice() {
+            [] => Ok(None),
+            stiffnesses => admissible::draw(self.scene, self.timestep, stiffnesses).map(Some),
+        }
     }
 
     /// The map's cells and the steps each may take; 0 without a map.

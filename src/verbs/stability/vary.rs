@@ -2,7 +2,7 @@
 
 use crate::scene::limits::Bounds;
 use crate::scene::model::{PARTICLES, PARTS, Part, Row, ValueKind};
-use crate::scene::words::nearest;
+use crate::scene::words::aside;
 use crate::scene::{Scene, Value};
 use std::fmt;
 use std::str::FromStr;
@@ -135,11 +135,10 @@ impl VariedKey {
         found.map(|key| VariedKey { member, ..key }).ok_or_else(|| {
             let known: Vec<String> = keys().map(|key| key.to_string()).collect();
             let words: Vec<&str> = known.iter().map(String::as_str).collect();
-            let hint = nearest(&plain, &words).map(|near| format!(" (did you mean `{near}`?)"));
             VaryError(format!(
                 "unknown key `{id}`{}; known: {}, and of one member such as springs[3].stiffness \
                  or particles[1].mass",
-                hint.unwrap_or_default(),
+                aside(&plain, &words),
                 known.join(", ")
             ))
         })

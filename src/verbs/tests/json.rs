@@ -20,7 +20,9 @@ fn json_has_the_contract_s_keys() {
     assert_eq!(keys(&document["tool"]), ["name", "platform", "version"]);
     assert_eq!(
         keys(value),
-        ["checks", "outcomes", "scene", "series", "truth", "verb"]
+        [
+            "advice", "checks", "outcomes", "scene", "series", "truth", "verb"
+        ]
     );
     assert_eq!(
         keys(&value["scene"]),

@@ -196,6 +196,7 @@ pub fn empty(name: &str) -> Report {
                 twin("twin_forces", CheckStatus::Pass),
                 twin("twin_converged", CheckStatus::Pass),
             ],
+            advice: Vec::new(),
         },
         body: Body::Run {
             outcomes: Vec::new(),

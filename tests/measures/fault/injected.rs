@@ -265,6 +265,10 @@ fn what_has_a_number_is_told_with_it() {
     let heavier = altered(&scene, id, |s| s.solver.gravity = -9.0);
     let by = |step| if step < AT { &own } else { &heavier };
     let light = run(&scene, STEPS, by, |_, _| {});
+    // This particle has no drag in the scene.
+    let dragged = altered(&scene, id, |s| s.particles[2].drag = 0.3);
+    let by = |step| if step < AT { &own } else { &dragged };
+    let drag = run(&scene, STEPS, by, |_, _| {});
     let by = |step| if step < AT { &own } else { &softer };
     let soft_on = run(&scene, STEPS, by, |_, _| {});
     for (states, particle, says) in [
@@ -287,6 +291,11 @@ fn what_has_a_number_is_told_with_it() {
             &soft_on,
             2,
             "from this step on: the stiffness of spring 1 (particles 1 and 2) is 20 N/m, not 25",
+        ),
+        (
+            &drag,
+            2,
+            "from this step on: the drag of particle 2 is 0.3 N s/m, not 0",
         ),
         (
             &light,

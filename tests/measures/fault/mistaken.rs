@@ -3,14 +3,11 @@
 use super::record::{PRECISIONS, fault_of, question, rows, run, thinned};
 use crate::testkit::{distance, everything, mutants, part, swinging_triangle};
 use springcheck::integrators::{Settings, fixed};
-use springcheck::measure::identify::{
-    Candidate, Forces, MISTAKES, Scheme, Wrong, first_fault, identify, mistakes,
-};
+use springcheck::measure::identify::{Candidate, MISTAKES, Wrong, first_fault, identify, mistakes};
 use springcheck::physics::{ParticleSystem, State};
 use springcheck::scene::{DampingModel, Scene};
 use springcheck::trajectory::Precision;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// A step long enough that schemes part, short enough that implicit ones solve.
 fn scene(model: DampingModel) -> Scene {
@@ -29,11 +26,16 @@ fn built(scene: &Scene) -> (ParticleSystem, Vec<Candidate>, Vec<Candidate>) {
     (system, methods, wrong)
 }
 
-/// One step from the second state of an RK4 run, whose first is known.
-fn second_step(scene: &Scene, candidate: &Candidate) -> State {
+/// The first two states of an RK4 run.
+fn begun(scene: &Scene) -> Vec<State> {
     let system = ParticleSystem::new(scene);
     let rk4 = Candidate::method(&system, crate::testkit::method("rk4"), 1);
-    let states = run(scene, 1, |_| &rk4, |_, _| {});
+    run(scene, 1, |_| &rk4, |_, _| {})
+}
+
+/// One step from the second of them, the first known.
+fn second_step(scene: &Scene, candidate: &Candidate) -> State {
+    let states = begun(scene);
     let mut state = states[1].clone();
     let mut replayer = candidate.replayer(&Settings::default());
     let h = scene.solver.timestep;
@@ -77,13 +79,13 @@ fn every_mistake_is_a_map_of_its_own() {
         let mut ends = ends(&scene);
         all_differ(&ends, bound).unwrap_or_else(|error| panic!("{error}"));
         // A second name for a scheme that is there already.
-        let forces: Forces = Arc::new(ParticleSystem::new(&scene));
-        let map = Scheme::Map(|system, h, _, state| {
-            mutants::midpoint_drifting_with_the_end_velocity(system, h, state);
-            Ok(())
-        });
-        let again = Candidate::new(&forces, map, "midpoint").named("another_name", "nothing");
-        ends.push((again.id.clone(), second_step(&scene, &again)));
+        let mut again = begun(&scene).swap_remove(1);
+        mutants::midpoint_drifting_with_the_end_velocity(
+            &ParticleSystem::new(&scene),
+            scene.solver.timestep,
+            &mut again,
+        );
+        ends.push(("another_name".to_owned(), again));
         assert!(all_differ(&ends, bound).is_err());
     }
 }
@@ -144,7 +146,7 @@ fn names_itself(scene: &Scene, made: &Candidate, expected: &Candidate) -> Result
     }
     let fault = first_fault(&question, &identity).ok_or("no fault")?;
     // What adds up or comes late is right in the first step.
-    let first = u64::from(expected.remembers);
+    let first = u64::from(expected.remembers());
     let says = expected.says.as_deref().ok_or("no mistake")?;
     if fault.step != first || !fault.explanation.starts_with(says) {
         return Err(format!("{}: {fault:?}", expected.id));

@@ -43,8 +43,8 @@ fn honest(identity: &Identity, method: &str, substeps: u32) -> Result<(), String
             .iter()
             .any(|e| e.split('/').next() == Some(method));
     let held = match identity.undecided {
-        None => right && identity.decisive(),
-        Some(Undecided::SameMap | Undecided::DataTooCoarse) => listed && !identity.decisive(),
+        None => right && identity.decisive,
+        Some(Undecided::SameMap | Undecided::DataTooCoarse) => listed && !identity.decisive,
         Some(Undecided::Near) => false,
     };
     if held && identity.followed == identity.transitions && identity.defect <= FIT {
@@ -72,7 +72,7 @@ fn what_is_said_of_rounded_data_holds() {
             continue;
         };
         honest(&identity, method.id, *substeps).unwrap();
-        decided += usize::from(identity.decisive());
+        decided += usize::from(identity.decisive);
     }
     // The rest are methods of high order, which such data does not tell apart at this step.
     assert!(2 * decided >= tried.len(), "{decided} of {}", tried.len());
@@ -94,7 +94,7 @@ fn six_digits_tell_methods_of_low_order() {
     {
         for precision in ROUNDINGS {
             let identity = name(&scene, &rounded(run(&scene, method.id, 1, 200), precision));
-            let named = identity.decisive() && identity.method == method.id;
+            let named = identity.decisive && identity.method == method.id;
             assert!(
                 named || method.id == "implicit_euler",
                 "{precision:?} {identity:?}"
@@ -128,7 +128,7 @@ fn few_replays_decide_nothing() {
         let identity = found_within(budget, &scene, &rows, None).identity;
         let identity = identity.expect("something to replay");
         honest(&identity, "rk4", 1).unwrap();
-        assert!(!identity.decisive(), "{budget}: {identity:?}");
+        assert!(!identity.decisive, "{budget}: {identity:?}");
     }
 }
 
@@ -173,7 +173,7 @@ fn differences_add_up_over_longer_stretches() {
         };
         let identity = name(&scene, &few);
         assert!(
-            !identity.decisive() && identity.undecided == Some(Undecided::DataTooCoarse),
+            !identity.decisive && identity.undecided == Some(Undecided::DataTooCoarse),
             "{identity:?}"
         );
     }

@@ -13,7 +13,7 @@ fn names(scene: &Scene, rows: &Rows, method: &str, substeps: u32) -> Result<Iden
     let identity = name_of(scene, rows, None).ok_or("no scheme")?;
     let right = identity.method == method
         && identity.substeps == substeps
-        && identity.decisive()
+        && identity.decisive
         && identity.equivalent.is_empty()
         && identity.undecided.is_none()
         && !identity.mistake
@@ -140,7 +140,7 @@ fn a_bad_step_does_not_change_the_name() {
         v.truncate((bad + 1) * rows.dim);
         v.extend(rest.v.expect("velocities"));
         let identity = name(&scene, &rows);
-        assert!(identity.decisive(), "{identity:?}");
+        assert!(identity.decisive, "{identity:?}");
         assert_eq!(identity.method, "velocity_verlet");
         assert_eq!((identity.followed, identity.transitions), (99, 100));
         assert_eq!(identity.defect, 0.0);
@@ -170,7 +170,7 @@ fn a_hint_names_among_equals_and_never_else() {
         let identity = ask(Some((hint, 1)));
         assert_eq!(identity.method, hint);
         assert!(!identity.equivalent.contains(&hint.to_owned()));
-        assert!(!identity.decisive() && identity.undecided == Some(Undecided::SameMap));
+        assert!(!identity.decisive && identity.undecided == Some(Undecided::SameMap));
     }
     assert_ne!(ask(Some(("explicit_euler", 1))).method, "explicit_euler");
 }

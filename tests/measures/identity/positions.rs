@@ -67,7 +67,7 @@ fn uneven_rows_of_positions_tell_too() {
             ..all.clone()
         };
         let identity = name(&scene, &rows);
-        assert!(identity.decisive() && identity.method == id, "{identity:?}");
+        assert!(identity.decisive && identity.method == id, "{identity:?}");
     }
 }
 
@@ -84,7 +84,7 @@ fn coarse_positions_at_a_small_step_tell_nothing() {
     rows.precision_v = rows.precision;
     let identity = name(&scene, &rows);
     assert!(
-        !identity.decisive() && identity.undecided == Some(Undecided::DataTooCoarse),
+        !identity.decisive && identity.undecided == Some(Undecided::DataTooCoarse),
         "{identity:?}"
     );
     let found = names(&identity);

@@ -15,7 +15,8 @@ const REACHED: [&str; 7] = [
 /// Exactly the contract's keys, and null only where it allows it.
 pub fn keep_the_contract(report: &Value) {
     let top = [
-        "verb", "series", "scene", "truth", "outcomes", "checks", "cost",
+        "verb", "series", "scene", "truth", "outcomes", "checks", "advice", "verdict", "remarks",
+        "cost",
     ];
     assert_eq!(keys(report), set(&top));
     assert_eq!(report["verb"], "cost");

@@ -16,6 +16,8 @@ pub fn without_the_clock(value: &mut Value) {
                 "wall_ratio",
                 "extrapolated_wall_ratio",
                 "cheapest",
+                "verdict",
+                "advice",
             ] {
                 map.remove(key);
             }

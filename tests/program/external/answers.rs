@@ -3,7 +3,7 @@
 use crate::testkit::scenes::parsed;
 use springcheck::integrators::{self, Settings};
 use springcheck::measure::EnergyClass;
-use springcheck::measure::identify::{Identified, Undecided};
+use springcheck::measure::identify::{Identity, Undecided};
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
 use springcheck::solvers::Solver;
@@ -222,6 +222,6 @@ fn a_programs_scheme_is_told_from_the_digits_it_gives() {
     );
     // Taken for doubles the same rows are nobody's.
     let untold = rounded(Precision::Double).identified;
-    let near = |found: &Identified| found.undecided == Some(Undecided::Near);
+    let near = |found: &Identity| found.undecided == Some(Undecided::Near);
     assert!(untold.as_ref().is_none_or(near), "{untold:?}");
 }

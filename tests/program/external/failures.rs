@@ -143,3 +143,34 @@ fn a_program_that_hangs_is_stopped_with_all_it_started() {
         assert!(state.is_empty() || state.starts_with('Z'), "{id}: {state}");
     }
 }
+
+#[test]
+fn what_a_program_leaves_in_the_background_is_told_from_the_program() {
+    let run = |command: &str| {
+        let command = format!("bad={command}");
+        let (report, _) = run(SCENE, &command, &["--external-timeout", "1s"]);
+        theirs(&report).clone()
+    };
+    let reason = |outcome: &Value| outcome["reason"].as_str().unwrap_or_default().to_owned();
+    // It has ended well, and its stdout is open.
+    let held = reason(&run("sh -c 'sleep 1000 & exit 0'"));
+    assert!(held.contains("ended well, but its stdout"), "{held}");
+    assert!(!held.contains("had not ended"), "{held}");
+    // It has ended badly, which is known at once.
+    let failed = reason(&run("sh -c 'sleep 1000 & exit 3'"));
+    assert!(failed.contains("exit code 3"), "{failed}");
+    // A file without an end.
+    let fifo = reason(&run("sh -c 'mkfifo \"$0\"' {output}"));
+    assert!(fifo.contains("its {output} had no end"), "{fifo}");
+    // stderr may stay open.
+    let folder = tempfile::tempdir().expect("a folder");
+    let (every, id) = (saved(folder.path(), "1"), folder.path().join("id"));
+    let well = run(&format!(
+        "sh -c 'sleep 1000 >&2 & echo $! > \"$1\"; cat \"$0\"' '{}' '{}'",
+        every.display(),
+        id.display()
+    ));
+    let id = std::fs::read_to_string(id).expect("an id");
+    let _ = std::process::Command::new("kill").arg(id.trim()).status();
+    assert_eq!(well["status"], "completed", "{well}");
+}

@@ -83,7 +83,8 @@ fn comparisons_have_the_contracts_keys() {
     assert_eq!(
         keys(&clean),
         set(&[
-            "verb", "series", "scene", "truth", "outcomes", "checks", "fault"
+            "verb", "series", "scene", "truth", "outcomes", "checks", "advice", "verdict",
+            "remarks", "fault"
         ])
     );
     assert_eq!(

@@ -8,7 +8,10 @@ fn the_json_has_exactly_the_contracts_keys() {
     let report = json(&["run", SCENE]);
     assert_eq!(
         keys(&report),
-        set(&["verb", "scene", "truth", "outcomes", "checks", "series"])
+        set(&[
+            "verb", "scene", "truth", "outcomes", "checks", "advice", "series", "verdict",
+            "remarks"
+        ])
     );
     assert_eq!(report["verb"], "run");
     assert_eq!(report["series"], false);

@@ -1,8 +1,8 @@
 //! Numbers that were overwritten: what a row shows without any step that explains it.
 
 use super::super::replay::FIT;
+use super::super::words::digits;
 use super::spot::{Spot, vector};
-use super::words::short;
 use crate::measure::identify::Quantity;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -26,34 +26,22 @@ pub(super) fn of_row(spot: &Spot) -> Option<String> {
 
 /// Two particles have each other's numbers.
 fn swapped(spot: &Spot) -> Option<String> {
-    let i = spot.worst;
-    let has = |of: usize, from: usize| {
-        (0..3).all(|axis| {
-            near(
-                spot,
-                Quantity::Position,
-                3 * of + axis,
-                spot.predicted.x[3 * from + axis],
-            ) && near(
-                spot,
-                Quantity::Velocity,
-                3 * of + axis,
-                spot.predicted.v[3 * from + axis],
-            )
-        })
-    };
     let [a, b] = spot.off[..] else { return None };
-    let other = if a == i { b } else { a };
-    (has(i, other) && has(other, i)).then(|| format!("particles {a} and {b} are exchanged"))
+    let has = |of: usize, from: usize| {
+        [Quantity::Position, Quantity::Velocity]
+            .into_iter()
+            .all(|quantity| {
+                let there = &spot.predicted(quantity)[3 * from..3 * from + 3];
+                (0..3).all(|axis| near(spot, quantity, 3 * of + axis, there[axis]))
+            })
+    };
+    (has(a, b) && has(b, a)).then(|| format!("particles {a} and {b} are exchanged"))
 }
 
 /// Whether the number found is this value, to rounding.
 fn near(spot: &Spot, quantity: Quantity, at: usize, value: f64) -> bool {
-    if quantity == Quantity::Velocity && spot.replay.rows.v.is_none() {
-        return true;
-    }
-    let off = (spot.found(quantity, at) - value).abs();
-    off <= FIT * spot.unit(quantity, at)
+    let unknown = quantity == Quantity::Velocity && spot.replay.rows.v.is_none();
+    unknown || (spot.found(quantity, at) - value).abs() <= FIT * spot.unit(quantity, at)
 }
 
 /// Every particle that is off has the numbers of the row before, to the last digit.
@@ -75,24 +63,17 @@ fn left_behind(spot: &Spot) -> Option<String> {
 /// One particle's position or velocity overwritten, the other untouched.
 pub(super) fn rewritten(spot: &Spot) -> Option<String> {
     let [i] = spot.off[..] else { return None };
-    let is_off = |quantity| (0..3).any(|axis| spot.is_off(quantity, 3 * i + axis));
-    let both = is_off(Quantity::Position) && is_off(Quantity::Velocity);
+    let both = spot.has_off(Quantity::Position, i) && spot.has_off(Quantity::Velocity, i);
     overwritten(spot, spot.quantity).filter(|_| !both)
 }
 
 /// Velocities overwritten or kicked, positions moved: what one particle shows.
 pub(super) fn of_step(spot: &Spot) -> Option<String> {
     let [i] = spot.off[..] else { return None };
-    let is_off = |quantity| (0..3).any(|axis| spot.is_off(quantity, 3 * i + axis));
-    if !is_off(Quantity::Velocity) {
-        let moved = overwritten(spot, Quantity::Position);
-        let by = || {
-            format!(
-                "particle {i} is moved by {} m",
-                vector(spot, Quantity::Position, 1.0)
-            )
-        };
-        return Some(moved.unwrap_or_else(by));
+    if !spot.has_off(Quantity::Velocity, i) {
+        let by = vector(spot, Quantity::Position, 1.0);
+        let moved = || format!("particle {i} is moved by {by} m");
+        return Some(overwritten(spot, Quantity::Position).unwrap_or_else(moved));
     }
     if !drifts_along(spot) {
         return None;
@@ -124,42 +105,28 @@ fn drifts_along(spot: &Spot) -> bool {
 
 /// Components that are 0, kept, or turned round where they should not be.
 fn overwritten(spot: &Spot, quantity: Quantity) -> Option<String> {
-    let i = spot.worst;
-    let wrong: Vec<usize> = (0..3)
-        .filter(|a| spot.is_off(quantity, 3 * i + a))
-        .collect();
-    let (predicted, row, name) = match quantity {
-        Quantity::Position => (
-            &spot.predicted.x,
-            Some(spot.replay.rows.x(spot.at.from)),
-            "position",
-        ),
-        Quantity::Velocity => (
-            &spot.predicted.v,
-            spot.replay.rows.v(spot.at.from),
-            "velocity",
-        ),
+    let (i, rows, from) = (spot.worst, spot.replay.rows, spot.at.from);
+    let (start, name) = match quantity {
+        Quantity::Position => (rows.x(from), "position"),
+        Quantity::Velocity => (rows.v(from)?, "velocity"),
     };
-    let start = row?;
-    let all = |test: &dyn Fn(usize, f64) -> bool| {
-        wrong
-            .iter()
-            .all(|a| test(3 * i + a, spot.found(quantity, 3 * i + a)))
-    };
-    let what = if all(&|_, found| found == 0.0) {
+    let wrong = (0..3).filter(|axis| spot.is_off(quantity, 3 * i + axis));
+    let wrong: Vec<usize> = wrong.collect();
+    let all = |is: &dyn Fn(usize) -> bool| wrong.iter().all(|axis| is(3 * i + axis));
+    let found = |at| spot.found(quantity, at);
+    let what = if all(&|at| found(at) == 0.0) {
         "is set to 0"
-    } else if all(&|at, found| found == start[at]) {
+    } else if all(&|at| found(at) == start[at]) {
         "keeps its value from the row before"
-    } else if all(&|at, _| near(spot, quantity, at, -predicted[at])) {
+    } else if all(&|at| near(spot, quantity, at, -spot.predicted(quantity)[at])) {
         "has the wrong sign"
     } else {
         return None;
     };
-    let axes: Vec<&str> = wrong.iter().map(|&a| AXES[a]).collect();
-    let axes = if axes.len() == 3 {
-        String::new()
-    } else {
-        format!("{} component of the ", axes.join(" and "))
+    let axes: Vec<&str> = wrong.iter().map(|&axis| AXES[axis]).collect();
+    let axes = match axes.len() {
+        3 => String::new(),
+        _ => format!("{} component of the ", axes.join(" and ")),
     };
     Some(format!("the {axes}{name} of particle {i} {what}"))
 }
@@ -168,26 +135,22 @@ fn overwritten(spot: &Spot, quantity: Quantity) -> Option<String> {
 fn capped(spot: &Spot) -> Option<String> {
     let rows = spot.replay.rows;
     let speed = |v: &[f64]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let i = 3 * spot.worst;
-    let predicted = spot.predicted.v.get(i..i + 3)?;
-    let cap = speed(rows.v(spot.at.to)?.get(i..i + 3)?);
+    let at = 3 * spot.worst..3 * spot.worst + 3;
+    let predicted = spot.predicted.v.get(at.clone())?;
+    let cap = speed(rows.v(spot.at.to)?.get(at.clone())?);
     let share = cap / speed(predicted);
-    let along = (0..3).all(|a| near(spot, Quantity::Velocity, i + a, share * predicted[a]));
-    let directions = (0..3)
-        .filter(|a| spot.is_off(Quantity::Velocity, i + a))
-        .count();
-    let slack = (0..3)
-        .map(|a| FIT * spot.unit(Quantity::Velocity, i + a))
-        .sum::<f64>();
+    let numbers = || at.clone().zip(predicted);
+    let along = numbers().all(|(at, v)| near(spot, Quantity::Velocity, at, share * v));
+    let off = numbers().filter(|(at, _)| spot.is_off(Quantity::Velocity, *at));
+    let slack: f64 = at
+        .clone()
+        .map(|at| FIT * spot.unit(Quantity::Velocity, at))
+        .sum();
     let highest = rows.v.as_ref()?.chunks_exact(3).all(|v| {
         let speed = speed(v);
         speed.is_nan() || speed <= cap + slack
     });
-    (directions > 1 && along && highest && share < 1.0).then(|| {
-        format!(
-            "the speed of particle {} is capped at {} m/s",
-            spot.worst,
-            short(cap)
-        )
-    })
+    let is = off.count() > 1 && along && highest && share < 1.0;
+    let (i, cap) = (spot.worst, digits(cap, 4));
+    is.then(|| format!("the speed of particle {i} is capped at {cap} m/s"))
 }

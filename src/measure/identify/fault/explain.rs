@@ -2,10 +2,10 @@
 
 use super::super::candidate::Candidate;
 use super::super::replay::FIT;
-use super::super::transition::Transition;
+use super::super::transition::{Transition, is_finite};
 use super::guesses::{Guess, Way};
 use super::spot::{Spot, vector};
-use super::{edits, fit, guesses, is_finite, within};
+use super::{edits, guesses, within};
 use crate::measure::identify::{Fault, Quantity};
 
 /// A guess with a defect this small is good: data of the scheme itself can have as much.
@@ -52,7 +52,7 @@ impl Spot<'_> {
         if let Some(best) = best.as_ref().filter(|best| lasts(best)) {
             return self.by(best);
         }
-        let fitted = fit::guesses(self);
+        let fitted = guesses::numbers(self);
         let fitted = self
             .best(&fitted)
             .filter(|tried| lasts(tried))

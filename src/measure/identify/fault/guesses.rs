@@ -1,12 +1,16 @@
-//! What may have gone wrong in a step: changes without free numbers, each tried as it stands.
+//! What may have gone wrong in a step: changes without free numbers, each tried as it stands, and numbers that
+//! are fitted to it.
 
+use super::super::MOST_SUBSTEPS;
 use super::super::candidate::Candidate;
+use super::super::channels::{self, Channel};
+use super::super::fit::{Base, Model};
 use super::super::mistakes::{MISTAKES, Mistake, Wrong};
+use super::super::numbers::Number::{self, Cubic, Damping, Gravity, RestLength, Stiffness, Wind};
 use super::spot::Spot;
-use super::words::{rows_lost, spring_name};
-use crate::integrators::fixed;
+use crate::integrators;
 use crate::physics::ParticleSystem;
-use crate::scene::{Scene, Spring};
+use crate::physics::effects::EffectRow;
 
 /// A change that may explain a fault.
 pub(super) struct Guess {
@@ -24,8 +28,6 @@ pub(super) enum Way {
 
 /// Rows that may be lost in one place.
 const ROWS_LOST: u64 = 16;
-/// Substeps that are tried.
-const SUBSTEPS: u32 = 16;
 
 /// All guesses; of several that explain equally well, the first is reported.
 pub(super) fn all(spot: &Spot) -> Vec<Guess> {
@@ -44,18 +46,19 @@ fn scheme(says: impl Into<String>, candidate: Candidate) -> Guess {
     }
 }
 
-/// Each effect missing, with the wrong sign, twice.
+/// What may become of a force.
+const WRONG: [(f64, &str); 3] = [
+    (0.0, "is missing"),
+    (-1.0, "has the wrong sign"),
+    (2.0, "acts twice"),
+];
+
+/// Each effect, wrong.
 fn effects(spot: &Spot) -> Vec<Guess> {
     let mut guesses = Vec::new();
     for (row, _) in spot.question.system.effects() {
-        for (factor, what) in [
-            (0.0, "is missing"),
-            (-1.0, "has the wrong sign"),
-            (2.0, "acts twice"),
-        ] {
-            let of = |other: &crate::physics::effects::EffectRow| {
-                if other.id == row.id { factor } else { 1.0 }
-            };
+        for (factor, what) in WRONG {
+            let of = |other: &EffectRow| if other.id == row.id { factor } else { 1.0 };
             let wrong = ParticleSystem::scaled(spot.question.scene, &of);
             let says = format!("the effect `{}` {what}", row.id);
             guesses.push(scheme(says, spot.followed.under(&wrong)));
@@ -64,64 +67,65 @@ fn effects(spot: &Spot) -> Vec<Guess> {
     guesses
 }
 
-/// The places of the springs that pull at the worst particle.
-pub(super) fn springs_at(spot: &Spot) -> Vec<usize> {
-    let springs = spot.question.scene.springs.iter().enumerate();
-    springs
-        .filter(|(_, spring)| spring.ends.contains(&spot.worst))
-        .map(|(id, _)| id)
-        .collect()
-}
-
-/// The scheme in a scene changed so.
-pub(super) fn in_scene(spot: &Spot, change: impl FnOnce(&mut Scene)) -> Candidate {
-    let mut wrong = spot.question.scene.clone();
-    change(&mut wrong);
-    spot.followed.under(&ParticleSystem::new(&wrong))
-}
-
-type Change = (&'static str, fn(&mut Spring));
-
-const SPRING: [Change; 3] = [
-    ("is missing", |s| {
-        s.stiffness = 0.0;
-        s.cubic = 0.0;
-        s.damping = 0.0;
-    }),
-    ("has the wrong sign", |s| {
-        s.stiffness = -s.stiffness;
-        s.cubic = -s.cubic;
-        s.damping = -s.damping;
-    }),
-    ("acts twice", |s| {
-        s.stiffness *= 2.0;
-        s.cubic *= 2.0;
-        s.damping *= 2.0;
-    }),
-];
-
-const DAMPER: [Change; 3] = [
-    ("lacks its damper", |s| s.damping = 0.0),
-    ("has a damper of the wrong sign", |s| s.damping = -s.damping),
-    ("has its rest length ignored", |s| s.rest_length = 0.0),
-];
-
 /// Each spring at the worst particle, alone.
 fn springs(spot: &Spot) -> Vec<Guess> {
+    const SPRING: &[Number] = &[Stiffness, Cubic, Damping];
+    let scene = spot.question.scene;
+    let whole = WRONG.map(|(factor, what)| (SPRING, factor, what));
+    let parts: [(&[Number], f64, &str); 3] = [
+        (&[Damping], 0.0, "lacks its damper"),
+        (&[Damping], -1.0, "has a damper of the wrong sign"),
+        (&[RestLength], 0.0, "has its rest length ignored"),
+    ];
     let mut guesses = Vec::new();
-    for id in springs_at(spot) {
-        let spring = &spot.question.scene.springs[id];
-        for (what, change) in SPRING.iter().chain(&DAMPER) {
-            let mut changed = spring.clone();
-            change(&mut changed);
-            if changed != *spring {
-                let wrong = in_scene(spot, |scene| scene.springs[id] = changed);
-                let says = format!("{} {what}", spring_name(id, spring));
+    for id in channels::springs_at(scene, &[spot.worst]) {
+        for (numbers, factor, what) in whole.iter().chain(&parts) {
+            let there = numbers.iter().map(|number| Channel::One(*number, id));
+            let there = there.filter(|channel| channel.is_in(scene));
+            let factors: Vec<(Channel, f64)> = there.map(|channel| (channel, *factor)).collect();
+            let says = format!("{} {what}", channels::spring(scene, id));
+            if !factors.is_empty()
+                && let Some(wrong) = own(spot).varied(scene, &factors)
+            {
                 guesses.push(scheme(says, wrong));
             }
         }
     }
     guesses
+}
+
+/// For each number that may be wrong here, the value that comes nearest.
+pub(super) fn numbers(spot: &Spot) -> Vec<Guess> {
+    let (scene, replay) = (spot.question.scene, spot.replay);
+    let at = vec![(spot.at, spot.units.clone())];
+    let arrive = |candidate: &Candidate| {
+        let state = spot.arrive(spot.followed, candidate, spot.span())?;
+        Some(vec![state])
+    };
+    let Some(model) = Model::new(scene, replay, own(spot), at, Box::new(arrive)) else {
+        return Vec::new();
+    };
+    let springs = channels::springs_at(scene, &[spot.worst]);
+    let mut channels: Vec<Channel> = channels::of_springs(springs).collect();
+    channels.push(Channel::One(Gravity, 0));
+    channels.extend(channels::of_particles(&[spot.worst]));
+    channels.extend(scene.wind.as_ref().map(|_| Channel::One(Wind, 0)));
+    channels.push(Channel::Timestep);
+    let fitted = channels.into_iter().filter_map(|channel| {
+        let fit = model.fit(&[&model.slope(channel)?])?;
+        let (_, factor) = *fit.factors.first()?;
+        let says = channel.value(scene, replay.rows.timestep, factor)?;
+        Some(scheme(says, fit.candidate))
+    });
+    fitted.collect()
+}
+
+/// The scheme that is followed.
+fn own(spot: &Spot) -> Base {
+    Base {
+        scheme: spot.followed.clone(),
+        mistake: None,
+    }
 }
 
 /// Rows lost or written twice: more or fewer steps than the row says.
@@ -135,6 +139,21 @@ fn rows(spot: &Spot) -> Vec<Guess> {
             way: Way::Steps(steps),
         })
         .collect()
+}
+
+/// The row is the state after `steps` steps, not `span`.
+fn rows_lost(steps: u64, span: u64) -> String {
+    if steps == 0 {
+        return "the row repeats the one before it: a step was skipped, or a row written twice"
+            .to_owned();
+    }
+    let lost = steps.abs_diff(span);
+    let rows = if lost == 1 { "a row" } else { "rows" };
+    if steps > span {
+        format!("{rows} lost before this one, which lies {steps} steps on, not {span}")
+    } else {
+        format!("{rows} written too often: this one lies {steps} steps on, not {span}")
+    }
 }
 
 /// The mistakes of the registry, made here.
@@ -153,29 +172,20 @@ fn mistakes(spot: &Spot) -> Vec<Guess> {
 /// Another method, other substeps, or a wrong form of some method.
 fn schemes(spot: &Spot) -> Vec<Guess> {
     let (system, followed) = (spot.question.system, spot.followed);
-    let mut guesses: Vec<Guess> = fixed()
-        .iter()
-        .filter(|method| method.id != followed.id)
-        .map(|method| {
-            let says = format!("the step is one of {}", method.id);
-            scheme(says, Candidate::method(system, method, followed.substeps))
-        })
-        .collect();
-    let own = fixed().iter().find(|method| method.id == followed.id);
-    if let Some(method) = own {
-        for substeps in (1..=SUBSTEPS).filter(|n| *n != followed.substeps) {
-            let says = match substeps {
-                1 => "the step is taken whole, not in substeps".to_owned(),
-                n => format!("the step is taken in {n} substeps"),
-            };
-            guesses.push(scheme(says, Candidate::method(system, method, substeps)));
-        }
-    }
-    for mistake in MISTAKES {
-        if let Some(candidate) = mistake.as_step(system) {
-            let says = format!("the step is `{}`: {}", mistake.id, mistake.says);
-            guesses.push(scheme(says, candidate));
-        }
-    }
-    guesses
+    let others = Candidate::plain(system, followed.substeps).filter(|c| c.id != followed.id);
+    let others = others.map(|other| scheme(format!("the step is one of {}", other.id), other));
+    let plain = integrators::find(&followed.id).is_some();
+    let substeps = (1..=MOST_SUBSTEPS).filter(|n| plain && *n != followed.substeps);
+    let substeps = substeps.map(|n| {
+        let says = match n {
+            1 => "the step is taken whole, not in substeps".to_owned(),
+            n => format!("the step is taken in {n} substeps"),
+        };
+        scheme(says, followed.clone().in_substeps(n))
+    });
+    let wrong = MISTAKES.iter().filter_map(|mistake| {
+        let says = format!("the step is `{}`: {}", mistake.id, mistake.says);
+        Some(scheme(says, mistake.as_step(system)?))
+    });
+    others.chain(substeps).chain(wrong).collect()
 }

@@ -5,10 +5,11 @@ use super::super::Question;
 use super::super::candidate::Candidate;
 use super::super::replay::{FIT, Replay};
 use super::super::transition::Transition;
+use super::super::words::digits;
 use super::NUDGES;
-use super::words;
 use crate::measure::identify::{Fault, Quantity};
 use crate::physics::State;
+use std::ops::Range;
 
 /// Two errors within this fraction of each other are equally large.
 const TIE: f64 = 1e-3;
@@ -68,17 +69,17 @@ impl<'a> Spot<'a> {
 
     /// Forces act on velocities, so these are looked at first.
     fn find_worst(&mut self) {
-        let particles = self.replay.rows.dim / 3;
-        let is_off = |i: usize, quantity| (0..3).any(|axis| self.is_off(quantity, 3 * i + axis));
-        let moving: Vec<usize> = (0..particles)
-            .filter(|&i| is_off(i, Quantity::Velocity))
-            .collect();
-        let quantity = if moving.is_empty() {
-            Quantity::Position
-        } else {
-            Quantity::Velocity
+        let with = |quantity| {
+            let particles = 0..self.replay.rows.dim / 3;
+            let off = particles.filter(|i| self.has_off(quantity, *i));
+            off.collect::<Vec<usize>>()
         };
-        let distance = |i: usize| {
+        let (moving, moved) = (with(Quantity::Velocity), with(Quantity::Position));
+        let (quantity, with) = match moving.is_empty() {
+            true => (Quantity::Position, &moved),
+            false => (Quantity::Velocity, &moving),
+        };
+        let distance = |i: &usize| {
             let axes = (0..3).map(|axis| self.difference(quantity, 3 * i + axis));
             let squares: f64 = axes.map(|d| d * d).sum();
             if squares.is_nan() {
@@ -87,25 +88,28 @@ impl<'a> Spot<'a> {
                 squares.sqrt()
             }
         };
-        let of_quantity: Vec<usize> = (0..particles).filter(|&i| is_off(i, quantity)).collect();
-        let most = of_quantity.iter().map(|&i| distance(i)).fold(0.0, f64::max);
-        let worst = of_quantity
-            .iter()
-            .copied()
-            .find(|&i| distance(i) >= (1.0 - TIE) * most);
-        let off = (0..particles)
-            .filter(|&i| is_off(i, Quantity::Velocity) || is_off(i, Quantity::Position));
-        self.off = off.collect();
-        self.worst = worst.unwrap_or(0);
+        let most = with.iter().map(distance).fold(0.0, f64::max);
+        let worst = with.iter().find(|i| distance(i) >= (1.0 - TIE) * most);
+        self.worst = worst.copied().unwrap_or(0);
         self.quantity = quantity;
+        self.off = [moving, moved].concat();
+        self.off.sort_unstable();
+        self.off.dedup();
+    }
+
+    /// The numbers of the predicted state.
+    pub(super) fn predicted(&self, quantity: Quantity) -> &[f64] {
+        match quantity {
+            Quantity::Position => &self.predicted.x,
+            Quantity::Velocity => &self.predicted.v,
+        }
     }
 
     /// The recorded number minus the predicted one; 0 of velocities that are not recorded.
     pub(super) fn difference(&self, quantity: Quantity, i: usize) -> f64 {
         match quantity {
-            Quantity::Position => self.found(quantity, i) - self.predicted.x[i],
             Quantity::Velocity if self.replay.rows.v.is_none() => 0.0,
-            Quantity::Velocity => self.found(quantity, i) - self.predicted.v[i],
+            _ => self.found(quantity, i) - self.predicted(quantity)[i],
         }
     }
 
@@ -121,6 +125,11 @@ impl<'a> Spot<'a> {
     pub(super) fn is_off(&self, quantity: Quantity, i: usize) -> bool {
         let difference = self.difference(quantity, i).abs();
         difference.is_nan() || difference > FIT * self.unit(quantity, i)
+    }
+
+    /// Whether some number of a particle is off.
+    pub(super) fn has_off(&self, quantity: Quantity, particle: usize) -> bool {
+        (0..3).any(|axis| self.is_off(quantity, 3 * particle + axis))
     }
 
     /// The number recorded at the end of the transition.
@@ -159,21 +168,31 @@ impl<'a> Spot<'a> {
         steps: u64,
     ) -> Option<State> {
         let rows = self.replay.rows;
-        let settings = &self.replay.settings;
-        let start = self.step();
         let mut state = self.replay.state(self.at.from, None);
         let mut before = self.at.before.map(|k| (k, self.replay.state(k, None)));
         if rows.v.is_none() {
             let (k, earlier) = before.as_mut()?;
-            let mut replayer = leg.replayer(settings);
+            let mut replayer = leg.replayer(&self.replay.settings);
             let way = self.replay.leg(*k, self.at.from);
             way.find(&mut replayer, earlier, &mut state).ok()?;
         }
-        let one_back = before.filter(|(k, _)| rows.steps[*k] + 1 == start);
+        let one_back = before.filter(|(k, _)| rows.steps[*k] + 1 == self.step());
         let one_back = one_back.map(|(_, state)| state);
-        let mut replayer = candidate.replayer(settings);
-        let h = rows.timestep;
-        let stepped = replayer.advance(start, steps, h, one_back.as_ref(), &mut state);
+        self.advance(candidate, 0..steps, one_back.as_ref(), state)
+    }
+
+    /// A state after these steps of the transition by `candidate`; None where it cannot take them.
+    pub(super) fn advance(
+        &self,
+        candidate: &Candidate,
+        steps: Range<u64>,
+        before: Option<&State>,
+        mut state: State,
+    ) -> Option<State> {
+        let (start, h) = (self.step() + steps.start, self.replay.rows.timestep);
+        let mut replayer = candidate.replayer(&self.replay.settings);
+        let count = steps.end - steps.start;
+        let stepped = replayer.advance(start, count, h, before, &mut state);
         stepped.ok().filter(|()| state.is_finite()).map(|()| state)
     }
 
@@ -199,15 +218,30 @@ impl<'a> Spot<'a> {
                 let until = self.replay.rows.steps[end.to].saturating_sub(1);
                 format!("from this step to step {until}")
             }
-            _ => words::from_here_on(self.span()),
+            _ if self.span() > 1 => format!("from these {} steps on", self.span()),
+            _ => "from this step on".to_owned(),
         }
     }
 
     /// When it happens, as the beginning of a sentence.
     pub(super) fn how_often(&self) -> String {
+        let here = match self.span() {
+            0 | 1 => "in this step".to_owned(),
+            span => format!("within these {span} steps"),
+        };
         let first = self.departures.first().copied().unwrap_or(0);
-        let after = self.transitions.len().saturating_sub(first + 1);
-        words::how_often(self.span(), self.again(), after)
+        match (
+            self.again(),
+            self.transitions.len().saturating_sub(first + 1),
+        ) {
+            (0, 0) => here,
+            (0, _) => format!("{here} only"),
+            (again, after) => {
+                format!(
+                    "{here}, and {again} of the {after} transitions after it leave the scheme too"
+                )
+            }
+        }
     }
 
     /// The fault of a scheme that is wrong in every step.
@@ -221,13 +255,15 @@ impl<'a> Spot<'a> {
     /// The fault with this step and explanation; the number of particles that are off is added.
     pub(super) fn fault(&self, step: u64, says: String) -> Fault {
         let at = 3 * self.worst;
-        let row = match self.quantity {
-            Quantity::Position => &self.predicted.x,
-            Quantity::Velocity => &self.predicted.v,
-        };
+        let row = self.predicted(self.quantity);
         let found =
             |axis: usize| Some(self.found(self.quantity, at + axis)).filter(|c| c.is_finite());
         let particles = self.replay.rows.dim / 3;
+        let count = match self.off.len() {
+            0 | 1 => String::new(),
+            off if off == particles => format!("; all {particles} particles leave the scheme"),
+            off => format!("; {off} of {particles} particles leave the scheme"),
+        };
         Fault {
             step,
             t_s: step as f64 * self.replay.rows.timestep,
@@ -235,7 +271,7 @@ impl<'a> Spot<'a> {
             quantity: self.quantity,
             expected: [0, 1, 2].map(|axis| row.get(at + axis).copied().unwrap_or(0.0)),
             found: [0, 1, 2].map(found),
-            explanation: words::with_count(says, self.off.len(), particles),
+            explanation: says + &count,
         }
     }
 }
@@ -246,7 +282,7 @@ pub(super) fn vector(spot: &Spot, quantity: Quantity, factor: f64) -> String {
         let at = 3 * spot.worst + axis;
         let difference = spot.difference(quantity, at);
         if difference.abs() > spot.unit(quantity, at) {
-            words::short(factor * difference)
+            digits(factor * difference, 4)
         } else {
             "0".to_owned()
         }

@@ -1,6 +1,5 @@
 //! Rows several steps apart: which of the steps between them went wrong.
 
-use super::super::candidate::Candidate;
 use super::super::replay::FIT;
 use super::guesses::{Guess, Way};
 use super::spot::Spot;
@@ -17,21 +16,21 @@ pub(super) fn explain(spot: &Spot, guesses: &[Guess]) -> Option<String> {
     }
     let cost = span * span * spot.replay.rows.dim as u64;
     let affordable = (BUDGET / cost.max(1)) as usize;
-    let prefix = Prefix::new(spot)?;
+    let own = own(spot)?;
     let schemes = guesses.iter().filter_map(|guess| match &guess.way {
         Way::Scheme(candidate) => Some((guess, candidate)),
         Way::Steps(_) => None,
     });
     for (guess, candidate) in schemes.take(affordable) {
-        for j in 0..span {
-            for (only, when) in [(true, "in step"), (false, "from step")] {
-                let end = prefix.altered(spot, candidate, j, if only { 1 } else { span - j });
+        for (j, start) in (0..).zip(&own[..own.len() - 1]) {
+            let before = (j as usize).checked_sub(1).map(|k| &own[k]);
+            for (until, when, rest) in [(j + 1, "in step", "only"), (span, "from step", "on")] {
+                let wrong = spot.advance(candidate, j..until, before, start.clone());
+                let end = wrong.and_then(|at| spot.advance(spot.followed, until..span, None, at));
                 if spot.distance(end.as_ref()) <= FIT {
-                    let step = spot.step() + j;
+                    let (step, says) = (spot.step() + j, &guess.says);
                     let within = format!("within these {span} steps");
-                    let rest = if only { "only" } else { "on" };
-                    let says = format!("{within}, {when} {step} {rest}: {}", guess.says);
-                    return Some(says);
+                    return Some(format!("{within}, {when} {step} {rest}: {says}"));
                 }
             }
         }
@@ -39,39 +38,13 @@ pub(super) fn explain(spot: &Spot, guesses: &[Guess]) -> Option<String> {
     None
 }
 
-/// The scheme's own states at each step of the span.
-struct Prefix(Vec<State>);
-
-impl Prefix {
-    fn new(spot: &Spot) -> Option<Self> {
-        let h = spot.replay.rows.timestep;
-        let mut replayer = spot.followed.replayer(&spot.replay.settings);
-        let mut state = spot.replay.state(spot.at.from, None);
-        let mut states = vec![state.clone()];
-        for j in 0..spot.span() {
-            let before = states.len().checked_sub(2).and_then(|k| states.get(k));
-            let step = spot.step() + j;
-            replayer.advance(step, 1, h, before, &mut state).ok()?;
-            states.push(state.clone());
-        }
-        Some(Self(states))
+/// The scheme's own states, from the start of the span to its end.
+fn own(spot: &Spot) -> Option<Vec<State>> {
+    let mut states = vec![spot.replay.state(spot.at.from, None)];
+    for j in 0..spot.span() {
+        let before = states.len().checked_sub(2).map(|k| &states[k]);
+        let next = spot.advance(spot.followed, j..j + 1, before, states.last()?.clone());
+        states.push(next?);
     }
-
-    /// The end of the span with `steps` steps from the `j`th taken by another candidate.
-    fn altered(&self, spot: &Spot, other: &Candidate, j: u64, steps: u64) -> Option<State> {
-        let h = spot.replay.rows.timestep;
-        let settings = &spot.replay.settings;
-        let at = usize::try_from(j).ok()?;
-        let mut state = self.0.get(at)?.clone();
-        let before = at.checked_sub(1).and_then(|k| self.0.get(k));
-        let start = spot.step() + j;
-        let mut replayer = other.replayer(settings);
-        replayer.advance(start, steps, h, before, &mut state).ok()?;
-        let mut replayer = spot.followed.replayer(settings);
-        let rest = spot.span() - j - steps;
-        replayer
-            .advance(start + steps, rest, h, None, &mut state)
-            .ok()?;
-        state.is_finite().then_some(state)
-    }
+    Some(states)
 }

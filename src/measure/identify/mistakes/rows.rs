@@ -1,37 +1,45 @@
 //! The registry of mistakes.
 
-use super::{Map, Mistake, Wrong, maps, physics, springs};
-use crate::physics::ParticleSystem;
+use super::{Mistake, Wrong, physics, springs};
+use crate::integrators::{Coefficients, DampingTreatment, ImplicitScheme, Stage, StepError};
+use crate::measure::identify::altered::OneStep;
+use crate::measure::identify::step::{Place, Step, plus};
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
 
-/// A wrong step of one method.
-const fn step(id: &'static str, meant: &'static str, map: Map, says: &'static str) -> Mistake {
-    let wrong = Wrong::Step {
-        meant,
-        map,
-        remembers: false,
-    };
+/// A row, and the parts of the scene that it changes.
+const fn row(
+    id: &'static str,
+    wrong: Wrong,
+    deviates: &'static [(&'static str, f64)],
+    says: &'static str,
+) -> Mistake {
     Mistake {
         id,
         says,
         wrong,
-        deviates: &[],
+        deviates,
     }
 }
 
-/// One that needs the state before the last.
-const fn late(id: &'static str, meant: &'static str, map: Map, says: &'static str) -> Mistake {
+/// A wrong step of one method.
+const fn step(id: &'static str, meant: &'static str, step: Step, says: &'static str) -> Mistake {
     let wrong = Wrong::Step {
         meant,
-        map,
-        remembers: true,
+        step,
+        around: None,
     };
-    Mistake {
-        id,
-        says,
-        wrong,
-        deviates: &[],
-    }
+    row(id, wrong, &[], says)
+}
+
+/// A wrong formula of one force, by where it leads.
+const fn first(x: &'static [f64], v: &'static [f64]) -> Step {
+    Step::formula(None, [x, v])
+}
+
+/// A wrong formula of two forces, by where the second is taken and where it leads.
+const fn second(at: Place, end: Place) -> Step {
+    Step::formula(Some(at), end)
 }
 
 /// Numbers of the scene that are wrong by a factor, in any method.
@@ -40,29 +48,17 @@ const fn scaled(
     deviates: &'static [(&'static str, f64)],
     says: &'static str,
 ) -> Mistake {
-    let wrong = Wrong::Scaled;
-    Mistake {
-        id,
-        says,
-        wrong,
-        deviates,
-    }
+    row(id, Wrong::Scaled, deviates, says)
 }
 
-/// Wrong forces or masses in any method, and the part of the scene that they change.
+/// Wrong forces or masses in any method.
 const fn physics(
     id: &'static str,
     build: fn(&Scene) -> Option<ParticleSystem>,
     deviates: &'static [(&'static str, f64)],
     says: &'static str,
 ) -> Mistake {
-    let wrong = Wrong::Physics(build);
-    Mistake {
-        id,
-        says,
-        wrong,
-        deviates,
-    }
+    row(id, Wrong::Physics(build), deviates, says)
 }
 
 /// Every mistake. No two are the same map in general, nor is one a method of the registry.
@@ -70,120 +66,136 @@ pub static MISTAKES: &[Mistake] = &[
     step(
         "midpoint_end_velocity",
         "midpoint",
-        maps::midpoint_end_velocity,
+        second([&[0.5], &[1.0, 0.5]], [&[1.0, 0.0, 1.0], &[1.0, 0.0, 1.0]]),
         "the position moves with the velocity at the end of the step: move it with the velocity at \
          the midpoint",
     ),
     step(
         "midpoint_half_last_stage",
         "midpoint",
-        |f, h, _, s| maps::tableau(maps::MIDPOINT_HALF_LAST_STAGE, f, h, s),
+        Step::tableau(&[&[], &[0.5]], &[0.0, 0.5], &[0.0, 0.5]),
         "the last stage advances by half a step: take the slope at the midpoint for the whole step, \
          x0 + h v_mid and v0 + h a_mid",
     ),
     step(
         "midpoint_from_the_middle",
         "midpoint",
-        |f, h, _, s| maps::tableau(maps::MIDPOINT_FROM_THE_MIDDLE, f, h, s),
+        Step::tableau(&[&[], &[0.5]], &[0.5, 1.0], &[0.0, 0.5]),
         "the whole step starts from the midpoint state: go back to the state at the start of the \
          step before adding h times the midpoint's slope",
     ),
-    late(
+    step(
         "explicit_euler_accumulating",
         "explicit_euler",
-        maps::explicit_euler_accumulating,
+        first(&[1.0], ACCUMULATED),
         "forces add up from step to step: set the force array to zero before each evaluation",
     ),
-    late(
+    step(
         "explicit_euler_stale_force",
         "explicit_euler",
-        maps::explicit_euler_stale_force,
+        first(&[1.0], STALE),
         "the velocity is kicked with the force of the previous step: evaluate the forces at the \
          current state before the kick",
     ),
-    late(
+    step(
         "symplectic_euler_accumulating",
         "symplectic_euler",
-        maps::symplectic_euler_accumulating,
+        first(ACCUMULATED, ACCUMULATED),
         "forces add up from step to step: set the force array to zero before each evaluation",
     ),
-    late(
+    step(
         "symplectic_euler_stale_force",
         "symplectic_euler",
-        maps::symplectic_euler_stale_force,
+        first(STALE, STALE),
         "the velocity is kicked with the force of the previous step: evaluate the forces at the \
          current positions before the kick",
     ),
     step(
         "heun_not_halved",
         "heun",
-        |f, h, _, s| maps::tableau(maps::HEUN_NOT_HALVED, f, h, s),
+        Step::tableau(&[&[], &[1.0]], &[1.0, 1.0], &[0.0, 1.0]),
         "the two slopes are added, not averaged: multiply their sum by h/2",
     ),
     step(
         "ralston_swapped_weights",
         "ralston",
-        |f, h, _, s| maps::tableau(maps::RALSTON_SWAPPED_WEIGHTS, f, h, s),
+        Step::tableau(&[&[], &[2.0 / 3.0]], &[0.75, 0.25], &[0.0, 2.0 / 3.0]),
         "the two weights are exchanged: the first slope counts 1/4, the one at 2/3 h counts 3/4",
     ),
     step(
         "rk4_equal_weights",
         "rk4",
-        |f, h, _, s| maps::tableau(maps::RK4_EQUAL_WEIGHTS, f, h, s),
+        Step::tableau(
+            &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
+            &[0.25, 0.25, 0.25, 0.25],
+            &[0.0, 0.5, 0.5, 1.0],
+        ),
         "all four slopes count the same: weigh them 1, 2, 2, 1 and divide by 6",
     ),
     step(
         "rk4_half_last_stage",
         "rk4",
-        |f, h, _, s| maps::tableau(maps::RK4_HALF_LAST_STAGE, f, h, s),
+        Step::tableau(
+            &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 0.5]],
+            RK4_WEIGHTS,
+            &[0.0, 0.5, 0.5, 0.5],
+        ),
         "the fourth slope is taken half a step ahead: take it at the end of the step, \
          x0 + h v3 and v0 + h a3",
     ),
     step(
         "rk4_stage_on_stage",
         "rk4",
-        |f, h, _, s| maps::tableau(maps::RK4_STAGE_ON_STAGE, f, h, s),
+        Step::tableau(
+            &[&[], &[0.5], &[0.5, 0.5], &[0.5, 0.5, 1.0]],
+            RK4_WEIGHTS,
+            &[0.0, 0.5, 0.5, 1.0],
+        ),
         "each stage starts from the stage before it: start every stage from the state at the start \
          of the step",
     ),
     step(
         "velocity_verlet_stale_force",
         "velocity_verlet",
-        maps::verlet_stale_force,
+        first(&[1.0, 0.5], &[1.0, 1.0]),
         "the second half kick reuses the force from before the drift: evaluate the forces again at \
          the new positions",
     ),
     step(
         "velocity_verlet_new_force_only",
         "velocity_verlet",
-        maps::verlet_new_force_only,
+        second([&[1.0, 0.5], &[1.0]], [&[1.0, 0.5], &[1.0, 0.0, 1.0]]),
         "the velocity changes by the new force alone: use the mean of the force before and the \
          force after the drift",
     ),
     step(
         "velocity_verlet_missing_half",
         "velocity_verlet",
-        maps::verlet_missing_half,
+        second([&[1.0, 1.0], &[1.0, 0.5]], [&[1.0, 1.0], &[1.0, 0.5, 0.5]]),
         "the position moves by h v + h² a: the second term is h² a / 2",
     ),
     step(
         "yoshida4_swapped_coefficients",
         "yoshida4",
-        maps::yoshida4_swapped_coefficients,
+        Step::splitting(YOSHIDA4_SWAPPED, DampingTreatment::Sweeps),
         "the coefficients stand in the wrong order: the negative one, 1 - 2 w1 = -1.70, belongs in \
          the middle",
     ),
-    step(
+    row(
         "implicit_euler_old_velocity",
-        "implicit_euler",
-        maps::implicit_euler_old_velocity,
+        Wrong::Step {
+            meant: "implicit_euler",
+            step: Step::Coefficients(Coefficients::Implicit(ImplicitScheme::Euler)),
+            around: Some(drifted_before),
+        },
+        &[],
         "the position moves with the velocity from before the solve: move it with the new one, \
          x0 + h v1",
     ),
     step(
         "implicit_euler_one_pass",
         "implicit_euler",
-        maps::implicit_euler_one_pass,
+        second([&[1.0], &[1.0, 1.0]], [&[1.0, 0.0, 1.0], &[1.0, 0.0, 1.0]]),
         "the implicit equation is not solved: the force is evaluated once, at the state explicit \
          Euler predicts; iterate, or solve with Newton's method",
     ),
@@ -308,17 +320,55 @@ pub static MISTAKES: &[Mistake] = &[
         "forces, weight included, are taken for accelerations: divide their sum by the particle's \
          mass",
     ),
-    Mistake {
-        id: "step_halved",
-        says: "each step advances the state by h/2 only: use the whole timestep, or write a row \
-               every second step",
-        wrong: Wrong::Length(0.5),
-        deviates: &[("timestep", 0.5)],
-    },
-    Mistake {
-        id: "step_doubled",
-        says: "each step advances the state by 2 h: use the timestep the rows are apart",
-        wrong: Wrong::Length(2.0),
-        deviates: &[("timestep", 2.0)],
-    },
+    row(
+        "step_halved",
+        Wrong::Length(0.5),
+        &[("timestep", 0.5)],
+        "each step advances the state by h/2 only: use the whole timestep, or write a row \
+         every second step",
+    ),
+    row(
+        "step_doubled",
+        Wrong::Length(2.0),
+        &[("timestep", 2.0)],
+        "each step advances the state by 2 h: use the timestep the rows are apart",
+    ),
 ];
+
+/// Where forces add up from step to step, v1 = v0 + h (a0 + all accelerations before): their sum is what the last
+/// step added to v, over h.
+const ACCUMULATED: &[f64] = &[2.0, 1.0, 0.0, 0.0, -1.0];
+
+/// v1 = v0 + h a, with the acceleration one step before.
+const STALE: &[f64] = &[1.0, 0.0, 0.0, 1.0];
+
+const RK4_WEIGHTS: &[f64] = &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
+
+/// Position Verlet over 1 - 2 w1, w1 and w1 of the step.
+const YOSHIDA4_SWAPPED: &[Stage] = {
+    const W1: f64 = 1.351_207_191_959_657_8;
+    const W0: f64 = 1.0 - 2.0 * W1;
+    &[
+        Stage::Drift(0.5 * W0),
+        Stage::Kick(W0),
+        Stage::Drift(0.5 * (W0 + W1)),
+        Stage::Kick(W1),
+        Stage::Drift(W1),
+        Stage::Kick(W1),
+        Stage::Drift(0.5 * W1),
+    ]
+};
+
+/// The step's velocity, and the position that the velocity before it leads to.
+fn drifted_before(
+    step: &OneStep,
+    system: &dyn System,
+    h: f64,
+    _: u32,
+    state: &mut State,
+) -> Result<(), StepError> {
+    let x = plus(&state.x, h, &state.v);
+    step(system, h, state)?;
+    state.x = x;
+    Ok(())
+}

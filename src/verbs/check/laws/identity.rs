@@ -1,7 +1,7 @@
 //! Runs that step as their method says, and come out the same twice.
 
 use super::{Ran, Row, Subject};
-use crate::measure::identify::{Explained, Identified, Undecided};
+use crate::measure::identify::{Explained, Identity, Undecided};
 use crate::measure::{Check, CheckStatus};
 use crate::solvers::SolverKind;
 use crate::trajectory::{Recorder, Trajectory};
@@ -56,7 +56,7 @@ fn scheme(subject: &Subject) -> Option<Check> {
     } else {
         CheckStatus::Fail
     };
-    let said = || found.says.clone();
+    let said = || found.says.as_ref().map(ToString::to_string);
     let cause = outcome.explained.as_ref().and_then(cause).or_else(said);
     Some(Check {
         measured: Some(found.defect),
@@ -66,7 +66,7 @@ fn scheme(subject: &Subject) -> Option<Check> {
     })
 }
 
-fn scheme_label(found: &Identified) -> String {
+fn scheme_label(found: &Identity) -> String {
     match found.substeps {
         1 => found.method.clone(),
         n => format!("{} in {n} substeps", found.method),

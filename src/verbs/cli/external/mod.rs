@@ -3,6 +3,7 @@
 mod process;
 
 use super::flags::Time;
+use super::interrupt;
 use crate::integrators;
 use crate::scene::limits::external;
 use crate::solvers::external::{
@@ -18,6 +19,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 use std::time::Duration;
+use tempfile::TempDir;
 
 /// The flag's value: the program's name in reports, and its command.
 #[derive(Debug, Clone)]
@@ -92,9 +94,8 @@ struct CommandProgram {
 impl Program for CommandProgram {
     fn record(&self, task: &Task) -> Result<Recording, Failure> {
         // The folder is removed with its contents when it goes out of scope.
-        let folder = tempfile::Builder::new()
-            .prefix("springcheck-")
-            .tempdir()
+        let make = || tempfile::Builder::new().prefix("springcheck-").tempdir();
+        let folder = interrupt::remembered(make, TempDir::path)
             .map_err(Failure::io("make a temporary folder"))?;
         let json = folder.path().join("scene.json");
         let output = folder.path().join("trajectory.npz");
@@ -109,10 +110,11 @@ impl Program for CommandProgram {
             Placeholder::Duration => OsString::from(format!("{:?}", task.scene.duration)),
             Placeholder::Output => output.clone().into_os_string(),
         });
-        let ended = process::run(&words, self.timeout, MAX_BYTES)?;
+        let in_file = self.command.uses(Placeholder::Output);
+        let ended = process::run(&words, self.timeout, MAX_BYTES, !in_file)?;
         let expected = Expected::new(task.scene, task.timestep);
-        let rows = if self.command.uses(Placeholder::Output) {
-            let bytes = read(&output)?;
+        let rows = if in_file {
+            let bytes = ended.within("its {output}", move || read(&output))?;
             trajectory::read(&bytes, "{output}", Some(Layout::Npz), &expected)?
         } else if ended.stdout.is_empty() {
             return Err(Failure::Silent);

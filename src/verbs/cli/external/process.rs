@@ -1,6 +1,7 @@
 //! Starts a program, reads its output, and stops it when it takes too long.
 
 use crate::solvers::external::Failure;
+use crate::verbs::cli::interrupt;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Read, Write};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -13,6 +14,9 @@ pub struct Finished {
     pub stdout: Vec<u8>,
     /// The wall time from its start to its end, s.
     pub seconds: f64,
+    deadline: Deadline,
+    /// Its process group.
+    group: u32,
 }
 
 /// An event that one of the two reader threads reports.
@@ -23,28 +27,49 @@ enum Event {
     Stderr,
 }
 
+/// What a program wrote before it ended is read at once. A stream that is open for longer is held by something that
+/// the program left in the background.
+const GRACE: Duration = Duration::from_millis(300);
+/// The longest time from one look at the program to the next.
+const PAUSE: Duration = Duration::from_millis(20);
+
 /// Runs the words as program and arguments, in the working directory, without a shell and without
-/// input. Its stderr is passed on as it comes; its stdout is read up to `limit` bytes.
+/// input. Its stderr is passed on as it comes; its stdout is read up to `limit` bytes. Unless that is `wanted`, what
+/// the program leaves in the background may keep it open.
 ///
 /// # Errors
 /// Fails unless the program ends with exit code 0 in time. After a failure none of its descendants is left running,
 /// as far as they can be found.
-pub fn run(words: &[OsString], timeout: Duration, limit: usize) -> Result<Finished, Failure> {
+pub fn run(
+    words: &[OsString],
+    timeout: Duration,
+    limit: usize,
+    wanted: bool,
+) -> Result<Finished, Failure> {
     let (program, arguments) = words.split_first().ok_or(Failure::Silent)?;
     let start = Instant::now();
-    let mut child = Command::new(program)
+    let mut command = Command::new(program);
+    command
         .args(arguments)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .map_err(|cause| not_started(program, cause))?;
+        .stderr(Stdio::piped());
+    let mut child = interrupt::start(&mut command).map_err(|cause| not_started(program, cause))?;
     let deadline = Deadline { start, timeout };
-    let watched = watch(&mut child, &deadline, limit);
-    let seconds = start.elapsed().as_secs_f64();
-    let (stdout, status) = watched.inspect_err(|_| kill(&mut child))?;
-    judged(status)?;
-    Ok(Finished { stdout, seconds })
+    let watched = watch(&mut child, &deadline, limit, wanted).inspect_err(|_| {
+        interrupt::kill(child.id());
+        // An error means that it has ended already.
+        let _ = child.kill();
+        let _ = child.wait();
+    });
+    interrupt::ended(child.id());
+    let (stdout, seconds) = watched?;
+    Ok(Finished {
+        stdout,
+        seconds,
+        deadline,
+        group: child.id(),
+    })
 }
 
 fn not_started(program: &OsString, cause: std::io::Error) -> Failure {
@@ -55,18 +80,49 @@ fn not_started(program: &OsString, cause: std::io::Error) -> Failure {
     }
 }
 
-/// Waits until both streams are closed and the program has ended.
+/// Waits until the program has ended and both streams are closed, or held in the background only. Returns stdout and
+/// the seconds until the program's end.
 fn watch(
     child: &mut Child,
     deadline: &Deadline,
     limit: usize,
-) -> Result<(Vec<u8>, ExitStatus), Failure> {
+    wanted: bool,
+) -> Result<(Vec<u8>, f64), Failure> {
     let events = listen(child, limit);
     let mut stdout = None;
     let mut errors_open = true;
-    while stdout.is_none() || errors_open {
-        let left = deadline.left(child)?;
-        match events.recv_timeout(left) {
+    let mut ended: Option<(ExitStatus, Instant)> = None;
+    // A program that has closed its streams usually ends at once.
+    let mut pause = Duration::from_micros(50);
+    loop {
+        if ended.is_none() {
+            let status = child.try_wait().map_err(Failure::io("wait for it"))?;
+            ended = status.map(|status| (status, Instant::now()));
+        }
+        let closed = stdout.is_some() && !errors_open;
+        if let Some((status, at)) = ended {
+            let complete = stdout.is_some() || !wanted || !status.success();
+            if closed || complete && at.elapsed() > GRACE {
+                judged(status)?;
+                let last = if closed { Instant::now() } else { at };
+                let seconds = last.duration_since(deadline.start).as_secs_f64();
+                return Ok((stdout.unwrap_or_default(), seconds));
+            }
+        }
+        let after = deadline.timeout;
+        let left = deadline.left().ok_or(match ended {
+            Some(_) => Failure::Held {
+                what: "its stdout",
+                after,
+            },
+            None => Failure::TimedOut { after },
+        })?;
+        if closed {
+            std::thread::sleep(pause.min(left));
+            pause = (2 * pause).min(PAUSE);
+            continue;
+        }
+        match events.recv_timeout(PAUSE.min(left)) {
             Ok(Event::Stdout(bytes)) => {
                 let bytes = bytes.map_err(Failure::io("read its stdout"))?;
                 if bytes.len() > limit {
@@ -75,20 +131,13 @@ fn watch(
                 stdout = Some(bytes);
             }
             Ok(Event::Stderr) => errors_open = false,
-            // The time is up; `left` returns the error.
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => break,
+            // Neither thread reports anything any more.
+            Err(RecvTimeoutError::Disconnected) => {
+                stdout.get_or_insert_default();
+                errors_open = false;
+            }
         }
-    }
-    // A program that has closed its streams usually ends at once.
-    let mut pause = Duration::from_micros(50);
-    loop {
-        let status = child.try_wait();
-        if let Some(status) = status.map_err(Failure::io("wait for it"))? {
-            return Ok((stdout.unwrap_or_default(), status));
-        }
-        std::thread::sleep(pause.min(deadline.left(child)?));
-        pause = (2 * pause).min(Duration::from_millis(20));
     }
 }
 
@@ -128,29 +177,40 @@ fn pass_on(mut stderr: impl Read, sender: &Sender<Event>) {
     let _ = sender.send(Event::Stderr);
 }
 
+#[derive(Debug)]
 struct Deadline {
     start: Instant,
     timeout: Duration,
 }
 
 impl Deadline {
-    /// The time left, more than 0.
+    /// The time left; None where none is.
+    fn left(&self) -> Option<Duration> {
+        let left = self.timeout.checked_sub(self.start.elapsed());
+        left.filter(|left| !left.is_zero())
+    }
+}
+
+impl Finished {
+    /// What the work returns, in the time that the program has left, and at least a second. The work is left alone
+    /// where it does not end.
     ///
     /// # Errors
-    /// Fails when no time is left. If the program itself has failed and only a stream was kept open, its failure is the
-    /// error.
-    fn left(&self, child: &mut Child) -> Result<Duration, Failure> {
-        match self.timeout.checked_sub(self.start.elapsed()) {
-            Some(left) if !left.is_zero() => Ok(left),
-            _ => {
-                if let Ok(Some(status)) = child.try_wait() {
-                    judged(status)?;
-                }
-                Err(Failure::TimedOut {
-                    after: self.timeout,
-                })
-            }
-        }
+    /// Fails where the work does, or where it does not end. Then nothing of the program is left running either.
+    pub fn within<T: Send + 'static>(
+        &self,
+        what: &'static str,
+        work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+    ) -> Result<T, Failure> {
+        let (sender, done) = channel();
+        std::thread::spawn(move || sender.send(work()));
+        let left = self.deadline.left().unwrap_or_default();
+        let done = done.recv_timeout(left.max(Duration::from_secs(1)));
+        done.unwrap_or_else(|_| {
+            interrupt::kill(self.group);
+            let after = self.deadline.timeout;
+            Err(Failure::Held { what, after })
+        })
     }
 }
 
@@ -167,62 +227,6 @@ fn judged(status: ExitStatus) -> Result<(), Failure> {
     }
 }
 
-/// Kills the child and its descendants, and waits for the child.
-///
-/// The child has no process group of its own, since Ctrl-C on the terminal would then not reach it. So the
-/// descendants are looked up by `ps` and killed by `kill`, which POSIX both has. Without them,
-/// or on other systems, only the child is killed.
-fn kill(child: &mut Child) {
-    let found = descendants(child.id());
-    // An error means that the child has ended already.
-    let _ = child.kill();
-    let _ = child.wait();
-    if !found.is_empty() {
-        let _ = quiet("kill")
-            .arg("-9")
-            .args(found.iter().map(u32::to_string))
-            .status();
-    }
-}
-
-fn quiet(program: &str) -> Command {
-    let mut command = Command::new(program);
-    command.stdin(Stdio::null()).stderr(Stdio::null());
-    command
-}
-
-/// The children of a process, their children, and so on, as far as their parents are alive.
-fn descendants(root: u32) -> Vec<u32> {
-    if !cfg!(unix) {
-        return Vec::new();
-    }
-    let listed = quiet("ps")
-        .args(["-A", "-o", "pid=", "-o", "ppid="])
-        .output();
-    let listed = listed.map(|output| output.stdout).unwrap_or_default();
-    let text = String::from_utf8_lossy(&listed);
-    let pairs: Vec<(u32, u32)> = text.lines().filter_map(pair).collect();
-    let mut found = vec![root];
-    let mut at = 0;
-    while let Some(&parent) = found.get(at) {
-        let children = pairs.iter().filter(|(_, of)| *of == parent);
-        for (pid, _) in children {
-            if !found.contains(pid) {
-                found.push(*pid);
-            }
-        }
-        at += 1;
-    }
-    found.remove(0);
-    found
-}
-
-/// Parses a line of `ps`: process and parent.
-fn pair(line: &str) -> Option<(u32, u32)> {
-    let (pid, parent) = line.trim().split_once(char::is_whitespace)?;
-    Some((pid.parse().ok()?, parent.trim().parse().ok()?))
-}
-
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
@@ -231,7 +235,7 @@ mod tests {
     fn what_prints_without_end_is_stopped_at_the_limit() {
         let run = |words: &[&str], limit| {
             let words: Vec<OsString> = words.iter().map(OsString::from).collect();
-            run(&words, Duration::from_secs(60), limit)
+            run(&words, Duration::from_secs(60), limit, true)
         };
         let endless = run(&["sh", "-c", "while :; do echo more; done"], 10_000);
         assert!(matches!(endless, Err(Failure::TooMuch { limit: 10_000 })));

@@ -31,13 +31,14 @@ const LEGEND: &str = "\
 ";
 
 /// The parts that the terminal and the page have in common.
-pub fn view<'a>(report: &'a Report, cost: &Cost) -> View<'a> {
+pub fn view<'a>(report: &'a Report, cost: &Cost, columns: usize) -> View<'a> {
     View {
+        columns,
         header: &report.header,
         timesteps: Vec::new(),
         clauses: verdict::clauses(report, cost),
         facts: facts(report, cost),
-        lines: terminal::lines(report, cost),
+        lines: terminal::lines(report, cost, columns),
         notes: notes::notes(cost),
         last: Vec::new(),
     }

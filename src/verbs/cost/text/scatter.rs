@@ -3,15 +3,16 @@
 
 use super::{answer, is_timed};
 use crate::report::svg::{ChartAxis, Scale, range};
-use crate::report::terminal::{Tone, WIDTH, clip, mark, wrap};
+use crate::report::terminal::{Tone, clip, mark, wrap};
 use crate::report::words;
 use crate::verbs::Report;
 use crate::verbs::cost::diagram::Diagram;
 use crate::verbs::cost::{Cost, CostCurve};
 
-/// Width and height of the field, characters.
-const COLUMNS: usize = 80;
+/// Height of the field, characters.
 const LINES: usize = 22;
+/// Width of the labels right of the field, characters.
+const BESIDE: usize = 11;
 /// Width of the labels left of the field, characters.
 const LABEL: usize = 7;
 /// The fewest characters from one label below the axis to the next.
@@ -52,7 +53,9 @@ fn labelled(axis: ChartAxis, count: usize, apart: f64) -> impl Iterator<Item = i
 
 /// The characters of the diagram with their tones, the highest row first.
 struct Field {
-    rows: [[(char, Option<Tone>); COLUMNS]; LINES],
+    rows: Vec<Vec<(char, Option<Tone>)>>,
+    /// The width of a row, characters.
+    width: usize,
     /// The label beside each row.
     beside: [String; LINES],
     axes: [ChartAxis; 2],
@@ -66,7 +69,7 @@ impl Field {
     /// Draws a line across the field. A row keeps its first label.
     fn level(&mut self, error: f64, symbol: char, label: String) {
         if let Some(row) = self.row(error.log10()).filter(|_| error > 0.0) {
-            self.rows[row] = [(symbol, Some(Tone::Dim)); COLUMNS];
+            self.rows[row].fill((symbol, Some(Tone::Dim)));
             if self.beside[row].is_empty() {
                 self.beside[row] = label;
             }
@@ -75,7 +78,7 @@ impl Field {
 
     /// Draws a letter, unless another stands there.
     fn point(&mut self, [cost, error]: [f64; 2], engine: &Engine) {
-        if let Some(column) = place(self.axes[0], cost, COLUMNS)
+        if let Some(column) = place(self.axes[0], cost, self.width)
             && let Some(row) = self.row(error)
         {
             let place = &mut self.rows[row][column];
@@ -101,15 +104,15 @@ impl Field {
             });
             let text: String = runs.collect();
             let tick = if label.is_empty() { '│' } else { '┤' };
-            let beside = clip(beside, WIDTH - LABEL - 2 - COLUMNS);
+            let beside = clip(beside, BESIDE);
             let line = format!("{label:>LABEL$}{tick}{text} {}", mark(Tone::Dim, &beside));
             line.trim_end().to_owned()
         })
     }
 }
 
-/// The diagram with its legend; nothing where no setting has both an error and a cost.
-pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
+/// The diagram with its legend, in a terminal of this width; nothing where no setting has both an error and a cost.
+pub fn plot(report: &Report, cost: &Cost, columns: usize) -> Vec<String> {
     let mut points = cost.curves.iter().flat_map(|curve| &curve.points);
     let judged = points.any(|point| point.error_m.is_some());
     let timed = is_timed(cost);
@@ -121,8 +124,10 @@ pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
     let [Some(x), Some(y)] = [decades(all().map(|p| p[0])), decades(errors)] else {
         return Vec::new();
     };
+    let width = columns.saturating_sub(LABEL + 2 + BESIDE).max(2);
     let mut field = Field {
-        rows: [[(' ', None); COLUMNS]; LINES],
+        rows: vec![vec![(' ', None); width]; LINES],
+        width,
         beside: [const { String::new() }; LINES],
         axes: [x, y],
     };
@@ -142,8 +147,8 @@ pub fn plot(report: &Report, cost: &Cost) -> Vec<String> {
     let over = ["force evaluations", "wall time (median)"][usize::from(timed)];
     let mut lines = vec![String::new(), format!("{error} over {over}")];
     lines.extend(field.lines());
-    lines.extend(rule(x, timed));
-    lines.extend(legend(&engines, floor.is_some()));
+    lines.extend(rule(x, timed, width));
+    lines.extend(legend(&engines, floor.is_some(), columns));
     lines
 }
 
@@ -178,11 +183,11 @@ fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
 }
 
 /// The rule below the field and its labels.
-fn rule(x: ChartAxis, timed: bool) -> [String; 2] {
-    let mut rule = vec!['─'; COLUMNS];
+fn rule(x: ChartAxis, timed: bool, width: usize) -> [String; 2] {
+    let mut rule = vec!['─'; width];
     let mut labels = String::new();
-    for decade in labelled(x, COLUMNS, MIN_LABEL_GAP) {
-        let Some(column) = place(x, f64::from(decade), COLUMNS) else {
+    for decade in labelled(x, width, MIN_LABEL_GAP) {
+        let Some(column) = place(x, f64::from(decade), width) else {
             continue;
         };
         rule[column] = '┴';
@@ -194,7 +199,10 @@ fn rule(x: ChartAxis, timed: bool) -> [String; 2] {
         labels += &label;
     }
     let rule: String = rule.into_iter().collect();
-    [format!("{:>LABEL$}└{rule}", ""), clip(&labels, WIDTH)]
+    [
+        format!("{:>LABEL$}└{rule}", ""),
+        clip(&labels, LABEL + 1 + width + BESIDE),
+    ]
 }
 
 /// The label of a power of ten, in seconds or evaluations.
@@ -213,7 +221,7 @@ fn power(decade: i32, timed: bool) -> String {
     }
 }
 
-fn legend(engines: &[Engine], floor: bool) -> Vec<String> {
+fn legend(engines: &[Engine], floor: bool, columns: usize) -> Vec<String> {
     // An entry stays on one line: its spaces are made unbreakable for the wrapping.
     const JOINED: char = '\u{a0}';
     let entry = |engine: &Engine| {
@@ -221,9 +229,12 @@ fn legend(engines: &[Engine], floor: bool) -> Vec<String> {
         format!("{}{JOINED}{name}", engine.letter)
     };
     let entries: Vec<String> = engines.iter().map(entry).collect();
-    let names = wrap(&entries.join(&format!("{JOINED} ")), WIDTH, "  ").into_iter();
+    let names = wrap(&entries.join(&format!("{JOINED} ")), columns, "  ").into_iter();
     let names = names.map(|line| line.replace(JOINED, " ").trim_end().to_owned());
     let floor = if floor { " | ═ floor" } else { "" };
     let about = format!("where several meet, the first of them is shown | ┈ target{floor}");
-    names.chain([mark(Tone::Dim, &about)]).collect()
+    let about = wrap(&about, columns, "").into_iter();
+    names
+        .chain(about.map(|line| mark(Tone::Dim, &line)))
+        .collect()
 }

@@ -1,27 +1,27 @@
 //! The terminal's part of `cost`: the answers, the table of engines, and the diagram in characters.
 
 use super::{answer, brief, evaluations, scatter, table, tried};
-use crate::report::terminal::{Tone, WIDTH, mark, wrap};
+use crate::report::terminal::{Tone, mark, wrap};
 use crate::report::words::{self, NOTHING};
 use crate::verbs::Report;
 use crate::verbs::cost::{Cost, CostCurve, CostRank, CostTarget};
 
 /// The lines below the facts.
-pub fn lines(report: &Report, cost: &Cost) -> Vec<String> {
-    let mut lines = answers(cost);
+pub fn lines(report: &Report, cost: &Cost, columns: usize) -> Vec<String> {
+    let mut lines = answers(cost, columns);
     lines.push(String::new());
-    lines.extend(table(report, cost).in_terminal("; ", |left_out| legend(cost, left_out)));
-    lines.extend(scatter::plot(report, cost));
+    lines.extend(table(report, cost).in_terminal(columns, "; ", |left_out| legend(cost, left_out)));
+    lines.extend(scatter::plot(report, cost, columns));
     lines
 }
 
 /// One paragraph for each target.
-fn answers(cost: &Cost) -> Vec<String> {
+fn answers(cost: &Cost, columns: usize) -> Vec<String> {
     let mut lines = Vec::new();
     for (label, text) in answer::paragraphs(cost) {
         lines.push(String::new());
         let text = format!("{label}: {text}");
-        let mut paragraph = wrap(&text, WIDTH, "  ");
+        let mut paragraph = wrap(&text, columns, "  ");
         if let Some(rest) = paragraph.first().and_then(|line| line.strip_prefix(&label)) {
             let head = mark(Tone::Strong, &label) + rest;
             paragraph.splice(..1, [head]);

@@ -1,7 +1,7 @@
 //! Words for a trajectory's identity and its first deviating step.
 
 use crate::integrators;
-use crate::measure::identify::{Explained, Fault, Identified, Quantity, TRUTH, Undecided};
+use crate::measure::identify::{Explained, Fault, Identity, Quantity, TRUTH, Undecided};
 use crate::report::words::{self, listed};
 use crate::solvers::SolverKind;
 use crate::verbs::run::Outcome;
@@ -43,7 +43,7 @@ pub fn sentence(outcome: &Outcome) -> Option<String> {
 }
 
 /// `0.3 % of what a step moves`.
-fn share(found: &Identified) -> String {
+fn share(found: &Identity) -> String {
     let relative = found.relative.unwrap_or(f64::NAN);
     if relative < 1e-6 {
         return format!("{} of what a step moves", words::short_sci(relative));
@@ -81,7 +81,7 @@ fn explained(explained: &Explained) -> String {
 }
 
 /// `implicit_euler at h/4 = 0.000125 s`.
-fn scheme(found: &Identified, timestep: f64) -> String {
+fn scheme(found: &Identity, timestep: f64) -> String {
     let name = words::one_line(&found.method);
     let (n, known) = (found.substeps, integrators::find(&found.method).is_some());
     match (n, known) {
@@ -95,7 +95,7 @@ fn scheme(found: &Identified, timestep: f64) -> String {
     }
 }
 
-fn equivalent(found: &Identified) -> String {
+fn equivalent(found: &Identity) -> String {
     let names = found.equivalent.iter().take(MAX_NAMED);
     let mut names: Vec<String> = names.map(|name| words::one_line(name)).collect();
     let more = found.equivalent.len() - names.len();

@@ -35,7 +35,7 @@ const LEGEND: &str = "\
 ";
 
 /// The parts that the terminal and the page show.
-pub fn view<'a>(report: &'a Report, outcomes: &[Outcome]) -> View<'a> {
+pub fn view<'a>(report: &'a Report, outcomes: &[Outcome], columns: usize) -> View<'a> {
     let mut facts = vec![("truth", words::truth(&report.header.truth))];
     // A comparison would count only the evaluations made to judge it.
     if let Body::Run { .. } = report.body {
@@ -55,11 +55,12 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome]) -> View<'a> {
     remarks.sort_by_key(|(outcome, sentence)| rank(report, outcome, sentence));
     let labels = ["fault"].into_iter().chain(std::iter::repeat(""));
     View {
+        columns,
         header: &report.header,
         timesteps: outcomes.iter().map(|outcome| outcome.timestep).collect(),
         clauses: verdict::clauses(report),
         facts,
-        lines: table::lines(report),
+        lines: table::lines(report, columns),
         notes: Note::of(remarks.into_iter(), |outcomes| {
             subjects(report, outcomes, usize::MAX)
         }),

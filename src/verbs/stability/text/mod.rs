@@ -33,7 +33,7 @@ is stable everywhere, at no step, or is not predicted.
 ";
 
 /// The parts that the terminal and the page have in common.
-pub fn view<'a>(report: &'a Report, stability: &'a Stability) -> View<'a> {
+pub fn view<'a>(report: &'a Report, stability: &'a Stability, columns: usize) -> View<'a> {
     let all = stability.rows.len();
     let said = stability.rows.iter().flat_map(|row| {
         let remarks = row.remarks.iter().map(|remark| one_line(remark));
@@ -48,11 +48,12 @@ pub fn view<'a>(report: &'a Report, stability: &'a Stability) -> View<'a> {
         })
     }));
     View {
+        columns,
         header: &report.header,
         timesteps: Vec::new(),
         clauses: verdict::clauses(report, stability),
         facts: facts(stability),
-        lines: terminal::lines(report, stability),
+        lines: terminal::lines(report, stability, columns),
         notes: Note::of(said, |engines| match engines.len() {
             several if several == all && all > 2 => "all".to_owned(),
             _ => listed(engines),

@@ -2,20 +2,20 @@
 
 use super::{digits, largest_heading, largest_table, map_heading, table};
 use crate::measure::stability::Cell;
-use crate::report::terminal::{Tone, WIDTH, clip, mark, pad, width, wrap};
+use crate::report::terminal::{Tone, clip, mark, pad, width, wrap};
 use crate::report::words;
 use crate::verbs::Report;
 use crate::verbs::stability::{MapPanel, Stability, StabilityMap};
 
-/// The most values of a map in characters: each takes a column.
-const COLUMNS: usize = 80;
+/// The columns beside a map in characters, which has a column for each value.
+const BESIDE: usize = 20;
 /// The most timesteps: each takes a line.
 const LINES: usize = 40;
 
 /// The lines below the facts.
-pub fn lines(report: &Report, stability: &Stability) -> Vec<String> {
+pub fn lines(report: &Report, stability: &Stability, columns: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
-    lines.extend(table(report, stability).in_terminal(", ", |_| {
+    lines.extend(table(report, stability).in_terminal(columns, ", ", |_| {
         let mut rows = stability.rows.iter();
         let smooth = match rows.any(|row| row.smooth_below_s.is_some()) {
             true => " | smooth: decays without changing sign, predicted",
@@ -28,11 +28,11 @@ pub fn lines(report: &Report, stability: &Stability) -> Vec<String> {
     }));
     if let Some(largest) = &stability.largest {
         lines.push(String::new());
-        lines.extend(wrap(&largest_heading(largest), WIDTH, "  "));
-        lines.extend(largest_table(largest).in_terminal(", ", |_| String::new()));
+        lines.extend(wrap(&largest_heading(largest), columns, "  "));
+        lines.extend(largest_table(largest).in_terminal(columns, ", ", |_| String::new()));
     }
-    lines.extend(map(report, stability));
-    lines.extend(admissible(stability));
+    lines.extend(map(report, stability, columns));
+    lines.extend(admissible(stability, columns));
     lines
 }
 
@@ -48,12 +48,12 @@ fn cell(cell: Option<Cell>) -> (&'static str, Option<Tone>) {
 }
 
 /// The panel of the scene's own integrator, or the first, where it fits.
-fn map(report: &Report, stability: &Stability) -> Vec<String> {
+fn map(report: &Report, stability: &Stability, columns: usize) -> Vec<String> {
     let (Some(map), Some(heading)) = (&stability.map, map_heading(stability)) else {
         return Vec::new();
     };
     let own = |panel: &&MapPanel| report.header.is_own(&panel.engine);
-    let fits = map.values.len() <= COLUMNS && map.timesteps_s.len() <= LINES;
+    let fits = map.values.len() <= columns.saturating_sub(BESIDE) && map.timesteps_s.len() <= LINES;
     let panel = map.engines.iter().find(own).or(map.engines.first());
     let panel = panel.filter(|_| fits);
     let title = match panel.map(|panel| words::one_line(&panel.engine)) {
@@ -61,13 +61,17 @@ fn map(report: &Report, stability: &Stability) -> Vec<String> {
         None => format!("map      {heading}"),
     };
     let mut lines = vec![String::new()];
-    lines.extend(wrap(&title, WIDTH, "         "));
-    lines.extend(panel.into_iter().flat_map(|panel| drawn(map, panel)));
+    lines.extend(wrap(&title, columns, "         "));
+    lines.extend(
+        panel
+            .into_iter()
+            .flat_map(|panel| drawn(map, panel, columns)),
+    );
     lines
 }
 
 /// The panel in characters: a line for each timestep, the largest on top, and a column for each value.
-fn drawn(map: &StabilityMap, panel: &MapPanel) -> Vec<String> {
+fn drawn(map: &StabilityMap, panel: &MapPanel, columns: usize) -> Vec<String> {
     let mut lines = Vec::new();
     let labelled = |at: usize| at == 0 || at + 1 == map.timesteps_s.len();
     for (at, h) in map.timesteps_s.iter().enumerate().rev() {
@@ -83,7 +87,7 @@ fn drawn(map: &StabilityMap, panel: &MapPanel) -> Vec<String> {
         .map(|v| v.map_or(String::new(), |v| words::short(*v)));
     let vary = clip(&words::one_line(&map.vary), 40);
     let axis = format!("{vary} {} to {} {}", ends[0], ends[1], map.unit);
-    lines.push(clip(&format!("{:>16} {axis}", ""), WIDTH));
+    lines.push(clip(&format!("{:>16} {axis}", ""), columns));
     lines.push(mark(
         Tone::Dim,
         &format!("{:>16} · stable  - dissipating  # growing  x failed", ""),
@@ -91,7 +95,7 @@ fn drawn(map: &StabilityMap, panel: &MapPanel) -> Vec<String> {
     lines
 }
 
-fn admissible(stability: &Stability) -> Vec<String> {
+fn admissible(stability: &Stability, columns: usize) -> Vec<String> {
     let Some(admissible) = &stability.admissible else {
         return Vec::new();
     };
@@ -100,7 +104,7 @@ fn admissible(stability: &Stability) -> Vec<String> {
         "where one step at h = {} s from rest does not enlarge the spring's force, of all places:",
         words::short(admissible.timestep_s)
     );
-    lines.extend(wrap(&heading, WIDTH, "  "));
+    lines.extend(wrap(&heading, columns, "  "));
     let stiffnesses = admissible.panels.iter().map(|panel| panel.stiffness_n_m);
     let names: Vec<String> = stiffnesses
         .map(|k| format!("K = {} N/m", words::short(k)))
