@@ -236,3 +236,52 @@ fn expand_prints_what_reads_back_and_what_programs_get() {
     refuse_all(&["expand", "nowhere.yml"], &["there is no such file"]);
     refuse_all(&["expand", scene, "--format", "xml"], &["yaml", "json"]);
 }
+
+/// What stands between these marks in a document, each time.
+fn blocks<'d>(document: &'d str, mark: &str) -> Vec<&'d str> {
+    let begins = document.split(mark).skip(1);
+    let blocks: Vec<&str> = begins
+        .filter_map(|rest| rest.split("\n```").next())
+        .collect();
+    assert!(!blocks.is_empty(), "{mark}");
+    blocks
+}
+
+#[test]
+fn the_documents_commands_work_and_their_workflow_is_the_one_written() {
+    let text = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+        std::fs::read_to_string(path).expect(name)
+    };
+    let document = text("docs/ci.md");
+    let workflow = text("examples/gate-python/.github/workflows/springcheck.yml");
+    // Without the two lines that say what it is.
+    let from = workflow.find("name:").expect("a name");
+    let github = blocks(&document, "```yaml\n")[0];
+    assert_eq!(github, workflow[from..].trim_end());
+    for yaml in blocks(&document, "```yaml\n") {
+        let parsed: Result<Value, _> = serde_yaml::from_str(yaml);
+        assert!(parsed.is_ok(), "{yaml}");
+    }
+    if !has("python3", &["--version"]) {
+        return;
+    }
+    let root = tempfile::tempdir().expect("a folder");
+    assert_eq!(init(root.path(), &[]).0, 0);
+    std::fs::create_dir(root.path().join("scenes")).expect("a folder");
+    let scene = root.path().join("scenes/scene.yml");
+    std::fs::copy(root.path().join("scene.yml"), scene).expect("a copy");
+    for block in blocks(&document, "```sh\n") {
+        let (code, said, err) = shell(&format!("set -e\n{block}"), root.path());
+        assert_eq!(code, 0, "{block}: {said}{err}");
+    }
+    // The README's, after what installs the program.
+    let readme = text("README.md");
+    let (_, section) = readme.split_once("## Gate your own solver").expect("it");
+    let commands = blocks(section, "```\n")[0];
+    let (_, commands) = commands.split_once('\n').expect("lines");
+    let (code, said, err) = shell(&format!("set -e\n{commands}"), root.path());
+    assert_eq!(code, 0, "{commands}: {said}{err}");
+    let says = section.split('`').find(|said| said.starts_with("1 scene:"));
+    assert!(said.trim_end().ends_with(says.expect("the line")), "{said}");
+}

@@ -3,6 +3,7 @@
 //! It says of one value at a time what reading says. What involves several values (that ids exist, that the
 //! timestep fits the duration) only reading checks.
 
+use crate::report::words::short;
 use crate::scene::limits::{Bounds, EXPECTED, EXTERNAL, WORD_BYTES};
 use crate::scene::model::{Absent, Part, Row, SCENE, ValueKind};
 use crate::scene::{ALL, KeyKind, Names, OutcomeKey, REST, SKIP, Scene, Value};
@@ -47,17 +48,15 @@ fn key(part: &'static Part, row: &'static Row, names: &Names) -> Json {
     let mut schema = value(row, names);
     let mut says = row.summary.trim().to_owned();
     if let ValueKind::Number(bounds) | ValueKind::Numbers(_, bounds) = &row.kind {
-        says += &format!(
-            " From {:?} to {:?} ({}).",
-            bounds.low, bounds.high, bounds.unit
-        );
+        let [low, high] = [bounds.low, bounds.high].map(short);
+        says += &format!(" From {low} to {high} ({}).", bounds.unit);
     }
     schema["description"] = says.into();
     if let Some(default) = default(part, row) {
         schema["default"] = default;
     }
     if !is_required(row) {
-        if let Some(words) = schema["enum"].as_array_mut() {
+        if let Some(Json::Array(words)) = schema.get_mut("enum") {
             words.push(Json::Null);
         }
         if let Some(kind) = schema.get("type").cloned() {
