@@ -88,17 +88,20 @@ enum Verb {
     /// A scene with all defaults written out, or as the flat arrays that other programs get.
     #[command(after_help = examples!(
         "expand scenes/pa1/scene01.yml"
+        "expand scene.yml > whole.yml"
         "expand scene.yml --format json > flat.json"
     ))]
     Expand(expand::Args),
     /// A scene, a solver and a workflow to start from: your own solver, held to its scheme in CI.
     #[command(after_help = examples!(
-        "init"
+        "init ."
         "init mine"
+        "init solvers/mine"
     ))]
     Init(init::Args),
     /// The JSON Schema of scene files, for editors, or of reports, for programs that read them.
     #[command(after_help = examples!(
+        "schema scene"
         "schema scene > scene.schema.json"
         "schema report > report.schema.json"
     ))]
