@@ -172,10 +172,14 @@ impl<'a> Study<'a> {
     /// steps too coarse.
     ///
     /// Where no order is to be seen over the whole time, since errors are not small against the motion or rounding
-    /// covers them, a quarter of it is tried, and so on, each with half of the budget that is left.
+    /// covers them, a quarter of it is tried, and so on, each with half of the budget that is left. So it is where an
+    /// order misses: over a shorter time the same steps are finer, and slopes that had only seemed to settle change.
+    /// An order misses where it does so over the two longest times that show one, and is a whole number: others are
+    /// slopes on their way.
     pub fn measure(&self, stated: u32, build: MakeIntegrator) -> MeasuredOrder {
         let mut left = self.budget;
         let mut whole: Option<MeasuredOrder> = None;
+        let mut missed: Option<MeasuredOrder> = None;
         for (at, grids) in self.grids.iter().enumerate() {
             let share = if at + 1 < self.grids.len() {
                 left / 2
@@ -189,16 +193,22 @@ impl<'a> Study<'a> {
                 measured.observed.verdict,
                 Verdict::Inconclusive(Reason::TooFew | Reason::NotAsymptotic | Reason::AtFloor)
             );
-            if !unseen {
-                let shortened = at > 0;
-                return MeasuredOrder {
-                    shortened,
-                    ..measured
-                };
+            let shortened = at > 0;
+            let measured = MeasuredOrder {
+                shortened,
+                ..measured
+            };
+            match measured.observed.verdict {
+                Verdict::Misses if missed.is_none() => missed = Some(measured),
+                Verdict::Misses => break,
+                _ if unseen => {
+                    whole.get_or_insert(measured);
+                }
+                _ => return measured,
             }
-            whole.get_or_insert(measured);
         }
-        whole.unwrap_or_else(|| MeasuredOrder {
+        let missed = missed.map(|missed| missed.unless_on_its_way());
+        missed.or(whole).unwrap_or_else(|| MeasuredOrder {
             observed: observed(&[], stated),
             points: Vec::new(),
             left_out: Vec::new(),
@@ -269,6 +279,21 @@ impl<'a> Study<'a> {
                 }
             }
         }
+    }
+}
+
+impl MeasuredOrder {
+    /// The same, inconclusive where the order is no whole number.
+    fn unless_on_its_way(mut self) -> Self {
+        let off = self
+            .observed
+            .order
+            .map(|order| (order - order.round()).abs());
+        if off.is_some_and(|off| off > TOLERANCE) {
+            self.observed.order = None;
+            self.observed.verdict = Verdict::Inconclusive(Reason::NotAsymptotic);
+        }
+        self
     }
 }
 

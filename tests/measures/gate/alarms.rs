@@ -3,25 +3,26 @@
 use super::*;
 use crate::testkit::Random;
 use crate::testkit::scenes::{empty, fixed, free, spring};
+use springcheck::integrators::Method;
 use springcheck::measure::stability::{Effort, Limit, Linearised};
 use springcheck::physics::ParticleSystem;
-use springcheck::scene::{DampingModel, GravitationalPair, Wind};
+use springcheck::scene::{DampingModel, Wind};
 
 /// A scene of 2 to 6 particles, some fixed in half of them, springs of stiffness over two decades with or without
-/// dampers, gravity, drag, wind and attraction in some, and a step inside the limit of its own integrator.
+/// dampers, gravity, drag, wind and springs that stiffen in some, and a step inside the limit of its own integrator.
+/// Nothing attracts: where particles meet, such a force has no limit.
 fn random(seed: u64) -> Scene {
     let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
     for _ in 0..8 {
         random.next();
     }
     let mut chance = |part: f64| 0.5 * (random.next() + 1.0) < part;
-    let (anchored, damped, falls, dragged, windy, attracted, cubic) = (
+    let (anchored, damped, falls, dragged, windy, cubic) = (
         chance(0.5),
         chance(0.4),
         chance(0.6),
         chance(0.2),
         chance(0.2),
-        chance(0.15),
         chance(0.2),
     );
     let mut random = Random(seed.wrapping_mul(0xD134_2543_DE82_EF95) | 1);
@@ -60,7 +61,7 @@ fn random(seed: u64) -> Scene {
                     spring.damping = 0.3 * (random.next() + 1.0);
                 }
                 if cubic {
-                    spring.cubic = 20.0 * (random.next() + 1.0);
+                    spring.cubic = 0.2 * stiffness * (random.next() + 1.0);
                 }
                 scene.springs.push(spring);
             }
@@ -75,20 +76,20 @@ fn random(seed: u64) -> Scene {
             strength: random.next(),
         });
     }
-    if attracted {
-        scene.gravitational.push(GravitationalPair {
-            ends: [0, 1],
-            g: 0.3,
-        });
-    }
     scene.solver.gravity = if falls { -9.81 } else { 0.0 };
     let methods = integrators::fixed();
-    let method = &methods[seed as usize % methods.len()];
-    scene.solver.method = method.id.to_owned();
     let system = ParticleSystem::new(&scene);
     let start = ParticleSystem::initial_state(&scene);
     let linearised = Linearised::new(&system, &start, Effort::FULL);
-    let limit = match linearised.predict(method, 1e-3).limit {
+    let limit = |method: &Method| linearised.predict(method, 1e-3).limit;
+    // A method that is stable at no step has no step inside its limit.
+    let stable = methods.iter().cycle().skip(seed as usize % methods.len());
+    let stable = stable
+        .take(methods.len())
+        .find(|method| limit(method) != Limit::Never);
+    let method = stable.expect("implicit Euler is stable");
+    scene.solver.method = method.id.to_owned();
+    let limit = match limit(method) {
         Limit::At(limit) => limit,
         _ => 2.0 / linearised.omega_max().unwrap_or(1.0),
     };
@@ -98,22 +99,22 @@ fn random(seed: u64) -> Scene {
     scene
 }
 
+/// How many are tried; the thousand that were take 3 minutes: `SPRINGCHECK_SCENES=1000`.
+fn many() -> u64 {
+    let stated = std::env::var("SPRINGCHECK_SCENES")
+        .ok()
+        .and_then(|many| many.parse().ok());
+    let whole = std::env::var_os("SPRINGCHECK_WHOLE").is_some();
+    stated.unwrap_or(if whole { 200 } else { 40 })
+}
+
 #[test]
 fn random_scenes_raise_none() {
-    let whole = std::env::var_os("SPRINGCHECK_WHOLE").is_some();
-    let many = if whole { 1000 } else { 60 };
-    for seed in 0..many {
+    for seed in 0..many() {
         let scene = random(seed);
         let report = Gate::new(&scene).run(&Quiet).expect("nothing is written");
-        // A method that no step makes stable is beyond its limit at every step.
-        let alarms = failed(&report)
-            .into_iter()
-            .filter(|check| check.id != "limit");
-        let alarms: Vec<&Check> = alarms.collect();
-        assert!(
-            alarms.is_empty(),
-            "seed {seed}, {}: {alarms:#?}",
-            scene.solver.method
-        );
+        let alarms = failed(&report);
+        let method = &scene.solver.method;
+        assert!(alarms.is_empty(), "seed {seed}, {method}: {alarms:#?}");
     }
 }
