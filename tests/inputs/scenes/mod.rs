@@ -5,6 +5,7 @@ mod refused;
 mod schema;
 mod table;
 mod upset;
+mod written;
 
 use crate::testkit::scenes::{files, folders};
 use springcheck::scene::{self, Names, Scene, SceneError};
