@@ -3,7 +3,8 @@
 use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 use springcheck::verbs::cli::{interrupt, note::note};
 use springcheck::verbs::{
-    check, compare, completions, cost, explain, list, merge, run, show, stability,
+    check, compare, completions, cost, expand, explain, init, list, merge, run, schema, show,
+    stability,
 };
 use std::process::ExitCode;
 
@@ -84,6 +85,27 @@ enum Verb {
         "merge part1.json part2.json --format junit"
     ))]
     Merge(merge::Args),
+    /// A scene with all defaults written out, or as the flat arrays that other programs get.
+    #[command(after_help = examples!(
+        "expand scenes/pa1/scene01.yml"
+        "expand scene.yml > whole.yml"
+        "expand scene.yml --format json > flat.json"
+    ))]
+    Expand(expand::Args),
+    /// A scene, a solver and a workflow to start from: your own solver, held to its scheme in CI.
+    #[command(after_help = examples!(
+        "init ."
+        "init mine"
+        "init solvers/mine"
+    ))]
+    Init(init::Args),
+    /// The JSON Schema of scene files, for editors, or of reports, for programs that read them.
+    #[command(after_help = examples!(
+        "schema scene"
+        "schema scene > scene.schema.json"
+        "schema report > report.schema.json"
+    ))]
+    Schema(schema::Args),
     /// What an id means: a check, an integrator, an engine, an effect, a mistake.
     #[command(after_help = examples!(
         "explain balance"
@@ -140,6 +162,9 @@ fn main() -> ExitCode {
         Verb::Cost(args) => cost::cost(&args, cli.quiet),
         Verb::Show(args) => show::show(&args, cli.quiet),
         Verb::Merge(args) => merge::merge(&args),
+        Verb::Expand(args) => expand::expand(&args),
+        Verb::Init(args) => init::init(&args),
+        Verb::Schema(args) => schema::schema(&args),
         Verb::Explain(args) => explain::explain(&args),
         Verb::List(args) => list::list(&args),
         Verb::Completions(args) => completions::completions(&args, &mut Cli::command()),

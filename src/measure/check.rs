@@ -1,15 +1,20 @@
 //! A finding held against its bound.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A finding held against its bound. The default is a check that was not made.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Check {
+    /// The id of the check.
     pub id: String,
     /// Whom it is about.
     pub subject: String,
+    /// Whether the bound holds.
     pub status: CheckStatus,
+    /// The number that was found, in the unit of the bound; null where there is none.
     pub measured: Option<f64>,
+    /// The number that it is held against; null where there is none.
     pub bound: Option<f64>,
     /// Where the bound comes from.
     pub derivation: String,
@@ -26,7 +31,7 @@ pub struct Check {
     pub key: Option<String>,
 }
 
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CheckStatus {
     Pass,

@@ -4,13 +4,16 @@ use super::trend::{EnergyClass, FEWEST, trend};
 use crate::physics::effects::Effect;
 use crate::physics::{ParticleSystem, System, Work};
 use crate::trajectory::Trajectory;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The energy balance B = E + dissipated - injected.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Energy {
+    /// Kinetic and all potential energies at the start, J.
     pub initial_j: Option<f64>,
+    /// The same at the last finite instant, J.
     pub final_j: Option<f64>,
     /// max |B - B(0)| / S.
     pub relative_error_max: Option<f64>,
@@ -20,6 +23,7 @@ pub struct Energy {
     pub drift_per_s_ci: Option<[f64; 2]>,
     /// Half the peak-to-peak of the residual about the trend, in units of S.
     pub fluctuation: Option<f64>,
+    /// What the balance does.
     pub class: Option<EnergyClass>,
     /// The number of instants the class was taken from.
     #[serde(default)]
@@ -28,8 +32,9 @@ pub struct Energy {
     pub kinetic_final_j: Option<f64>,
     /// Potential energy at the end, by the id of the effect that holds it.
     pub potential_final_j: BTreeMap<String, f64>,
-    /// Energy that effects took out and put in over the run; 0 where the scene has neither.
+    /// Energy that effects took out over the run, J; 0 where nothing takes any.
     pub dissipated_j: Option<f64>,
+    /// Energy that effects put in over the run, J.
     pub injected_j: Option<f64>,
 }
 

@@ -2,16 +2,19 @@
 
 use crate::trajectory::Trajectory;
 use crate::truth::{States, farthest};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Largest distance of a particle from where it truly is (m) or from its true velocity (m/s), over
 /// the recorded instants up to the truth's horizon.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct ErrorSummary {
     /// At the last of these instants.
     #[serde(rename = "final")]
     pub last: f64,
+    /// The largest of all instants.
     pub max: f64,
+    /// The root of the mean square over all instants.
     pub rms: f64,
 }
 
@@ -66,10 +69,12 @@ fn summary(distances: &[f64]) -> Option<ErrorSummary> {
 }
 
 /// Largest distance over the particles, metres, over the instants both solvers recorded.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Deviation {
+    /// At the last instant that both recorded, m.
     #[serde(rename = "final")]
     pub last: f64,
+    /// The largest of all instants, m.
     pub max: f64,
     /// When it first passed the tolerance (1 % of the scene's size); null if never.
     pub first_exceeds_s: Option<f64>,

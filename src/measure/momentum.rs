@@ -4,14 +4,16 @@ use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use crate::trajectory::Trajectory;
 use crate::truth::farthest;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Largest departure from the initial value; null where the scene does not conserve it.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Momentum {
+    /// Of the total momentum, kg m/s; null where the scene does not keep it.
     #[serde(rename = "linear_error_max_kg_m_s")]
     pub linear_error_max: Option<f64>,
-    /// About the origin.
+    /// Of the total angular momentum about the origin, kg m²/s; null where the scene does not keep it.
     #[serde(rename = "angular_error_max_kg_m2_s")]
     pub angular_error_max: Option<f64>,
 }

@@ -2,6 +2,7 @@
 
 use crate::measure::Check;
 use crate::truth::TruthKind;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The mark of the integrator the scene names.
@@ -10,10 +11,13 @@ pub const OWN: char = '▸';
 pub const UNRANKED: char = '†';
 
 /// The scene, the truth and the checks of a report.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Header {
+    /// The scene in numbers.
     pub scene: SceneFacts,
+    /// The motion that errors are measured against.
     pub truth: TruthFacts,
+    /// Findings held against their bounds.
     pub checks: Vec<Check>,
     /// Commands to try next, the most useful first.
     #[serde(default)]
@@ -32,11 +36,15 @@ impl Header {
     }
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct SceneFacts {
+    /// As the scene states it.
     pub name: String,
+    /// As the command line named it.
     pub file: String,
+    /// How many.
     pub particles: usize,
+    /// How many.
     pub springs: usize,
     /// The effects that act in this scene.
     pub effects: Vec<EffectUse>,
@@ -53,8 +61,9 @@ pub struct SceneFacts {
 }
 
 /// One line of the effect ledger.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct EffectUse {
+    /// The effect's id.
     pub id: String,
     /// The number of particles, springs or pairs it acts on.
     pub members: usize,
@@ -64,8 +73,9 @@ pub struct EffectUse {
     pub wall_ns: Option<f64>,
 }
 
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct TruthFacts {
+    /// A closed form, a converged reference, or none.
     pub kind: TruthKind,
     /// The closed form, or the reference's methods and steps.
     pub method: Option<String>,

@@ -1,6 +1,8 @@
 //! The reports as JSON, written and read: the contract's keys, indented, with floats that round-trip.
 
 use crate::scene::words::acts;
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -10,9 +12,11 @@ use std::fmt::Debug;
 pub const SCHEMA_VERSION: u64 = 2;
 
 /// The program that made some reports.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Tool {
+    /// `springcheck`.
     pub name: String,
+    /// Its version.
     pub version: String,
     /// System and processor, such as `linux-x86_64`.
     pub platform: String,
@@ -29,10 +33,14 @@ impl Tool {
     }
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Envelope<'a, R> {
+    /// The version of this layout.
+    #[schemars(extend("const" = SCHEMA_VERSION))]
     schema_version: u64,
+    /// The program that made the reports.
     tool: &'a Tool,
+    /// One for each scene.
     reports: &'a [R],
 }
 
@@ -77,6 +85,15 @@ fn escaped(text: &str) -> String {
         }
     }
     escaped
+}
+
+/// The JSON Schema of what [`render`] writes: JSON Schema, draft 7, as editors know it. Keys that it does not know are
+/// allowed: later versions add some.
+pub fn schema<R: JsonSchema>() -> Schema {
+    let settings = SchemaSettings::draft07().for_serialize();
+    settings
+        .into_generator()
+        .into_root_schema_for::<Envelope<R>>()
 }
 
 /// Why a text is not the JSON of reports. Not to be confused with a trajectory's

@@ -14,6 +14,7 @@ pub mod words;
 
 pub use header::{EffectUse, Header, OWN, SceneFacts, TruthFacts, UNRANKED};
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use verdict::Clause;
 
@@ -37,10 +38,11 @@ pub struct View<'a> {
 }
 
 /// One sentence, and the engines it is about.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Note {
     /// The engines, such as `rapier` or `explicit_euler at h = 0.15`.
     pub subject: String,
+    /// What there is to say of them.
     pub sentence: String,
 }
 

@@ -4,11 +4,11 @@
 use std::fmt;
 
 /// The line of `expect` about every integrator.
-pub(super) const ALL: &str = "all";
+pub(crate) const ALL: &str = "all";
 /// The line about every integrator without a line of its own.
-pub(super) const REST: &str = "rest";
+pub(crate) const REST: &str = "rest";
 /// The line that names checks which are not made.
-pub(super) const SKIP: &str = "skip";
+pub(crate) const SKIP: &str = "skip";
 
 /// The ids, keys and words of other modules that a scene may name.
 #[derive(Debug, Clone, Default)]

@@ -88,8 +88,33 @@ pub const DURATION: Bounds = Bounds::from(1e-30, 1e12, "s");
 /// A bound of an expectation.
 pub const BOUND: Bounds = Bounds::signed(f64::MAX, "in the key's unit");
 
+/// What a text may be, said twice: for reading, with advice, and for the schema.
+#[derive(Debug)]
+pub struct Form {
+    /// Accepts a text or refuses it.
+    pub(super) judge: fn(&str) -> Result<(), Refusal>,
+    /// The texts that it accepts, as a regular expression of ECMA-262.
+    pub pattern: &'static str,
+}
+
+/// A scene's name.
+pub const NAME: Form = Form {
+    judge: name,
+    pattern: r"^(?=.*\S)[^\u0000-\u001f\u007f-\u009f]{1,200}$",
+};
+/// A scene's description.
+pub const DESCRIPTION: Form = Form {
+    judge: description,
+    pattern: r"^[^\u0000-\u0008\u000b-\u001f\u007f-\u009f]*$",
+};
+/// The name of another program.
+pub const EXTERNAL: Form = Form {
+    judge: external,
+    pattern: r"^[\p{Alphabetic}\p{N}][\p{Alphabetic}\p{N}_.+-]{0,31}$",
+};
+
 /// Checks a scene's name.
-pub(super) fn name<'a>(name: &'a str, _: &Names) -> Result<&'a str, Refusal> {
+fn name(name: &str) -> Result<(), Refusal> {
     if name.trim().is_empty() {
         let message = "expected a name, found none";
         return Refusal::because(message, "without the key it is the file's");
@@ -101,15 +126,15 @@ pub(super) fn name<'a>(name: &'a str, _: &Names) -> Result<&'a str, Refusal> {
     if name.contains(char::is_control) {
         return Refusal::because("expected one line without control characters", "");
     }
-    Ok(name)
+    Ok(())
 }
 
 /// Checks that reports may print the text: an escape sequence would reach the terminal.
-pub(super) fn description<'a>(text: &'a str, _: &Names) -> Result<&'a str, Refusal> {
+fn description(text: &str) -> Result<(), Refusal> {
     if text.contains(|c: char| c.is_control() && !matches!(c, '\n' | '\t')) {
         return Refusal::because("expected text without control characters", "");
     }
-    Ok(text)
+    Ok(())
 }
 
 /// The longest name of another program, in characters; longer ones would push numbers out of tables.

@@ -19,14 +19,17 @@ mod table;
 mod text;
 mod values;
 pub(crate) mod words;
+mod write;
 
 pub use complete::check_times;
 pub use error::{Refusal, SceneError};
+pub(crate) use expectation::{ALL, REST, SKIP};
 pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
     Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, SolverSpec, Spring, Wind, steps,
 };
 pub use table::Value;
+pub use write::yaml;
 
 use place::Problem;
 use read::Reading;

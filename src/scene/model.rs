@@ -10,9 +10,8 @@
 //! `Default` is the value of an absent key. Where the key is required, it is something harmless, such as
 //! a force of 0.
 
-use super::error::Refusal;
-use super::expectation::{Expectation, Names, Scope, Skipped};
-use super::limits::{self, Bounds};
+use super::expectation::{Expectation, Scope, Skipped};
+use super::limits::{self, Bounds, Form};
 use super::table::{Field, Value, declare, members, words};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
@@ -98,10 +97,12 @@ pub enum ValueKind {
     Flag,
     /// One of these words.
     Word(&'static [&'static str]),
-    /// Text that this function accepts, and replaces by what it means.
-    Text(for<'a> fn(&'a str, &Names) -> Result<&'a str, Refusal>),
-    /// A list of names that this function accepts.
-    Names(fn(&str) -> Result<(), Refusal>),
+    /// The id of an integrator.
+    Method,
+    /// Text of this form.
+    Text(Form),
+    /// A list of names of this form.
+    Names(Form),
     /// A mapping or a list of them, with rows of its own.
     Part(&'static Part),
     /// Expectations, by engine and key.
@@ -134,10 +135,10 @@ declare! {
     ]
 
     /// One line; the file's stem if absent, `scene` if that has none.
-    name: String = "scene".into(), "name" => ValueKind::Text(limits::name), Usual, None;
+    name: String = "scene".into(), "name" => ValueKind::Text(limits::NAME), Usual, None;
     /// Any text.
     description: Option<String> = None,
-        "description" => ValueKind::Text(limits::description), Usual, None;
+        "description" => ValueKind::Text(limits::DESCRIPTION), Usual, None;
     /// Method, step and gravity.
     solver: SolverSpec = SolverSpec::default(), "solver" => ValueKind::Part(&SOLVER),
         Required("add `solver: {type: symplectic_euler, timestep: 0.0005}`"), None;
@@ -162,7 +163,7 @@ declare! {
     wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
     /// Names of other programs that the file expects something of; the command line says what they are.
     externals: Vec<String> = Vec::new(),
-        "externals" => ValueKind::Names(limits::external), Usual, None;
+        "externals" => ValueKind::Names(limits::EXTERNAL), Usual, None;
     /// Expectations of engines, in the order of the file. They change no run.
     expect: Vec<Expectation> = Vec::new(), "expect" => ValueKind::Expect, Usual, None;
 }
@@ -173,7 +174,7 @@ declare! {
     SOLVER: SolverSpec, one solver, "a mapping with `type` and `timestep`", reserved [];
 
     /// An integrator's id.
-    method: String = "symplectic_euler".into(), "type" => ValueKind::Text(limits::method),
+    method: String = "symplectic_euler".into(), "type" => ValueKind::Method,
         Required("name an integrator, as symplectic_euler"), None;
     /// Seconds, positive.
     timestep: f64 = 1e-3, "timestep" => ValueKind::Number(limits::TIMESTEP),

@@ -8,7 +8,7 @@
 use super::error::{Fault, Refusal};
 use super::expect::Engines;
 use super::expectation::Names;
-use super::limits::{EXPECTED, known};
+use super::limits::{EXPECTED, known, method};
 use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
@@ -176,17 +176,20 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
                 self.set(0, Value::Flag(flag));
                 Ok(())
             }
-            ValueKind::Word(_) | ValueKind::Text(_) => from.deserialize_any(text(|text| {
-                let mut text = text;
-                match self.row.kind {
-                    ValueKind::Word(words) => known(text, words, "choice")?,
-                    ValueKind::Text(judge) => text = judge(text, self.reading.names)?,
-                    _ => {}
-                }
-                self.set(0, Value::Text(text));
-                Ok(())
-            })),
-            ValueKind::Names(judge) => {
+            ValueKind::Word(_) | ValueKind::Method | ValueKind::Text(_) => {
+                from.deserialize_any(text(|text| {
+                    let mut text = text;
+                    match self.row.kind {
+                        ValueKind::Word(words) => known(text, words, "choice")?,
+                        ValueKind::Method => text = method(text, self.reading.names)?,
+                        ValueKind::Text(ref form) => (form.judge)(text)?,
+                        _ => {}
+                    }
+                    self.set(0, Value::Text(text));
+                    Ok(())
+                }))
+            }
+            ValueKind::Names(ref form) => {
                 let mut count = 0;
                 from.deserialize_any(Texts(|name: &str| {
                     count += 1;
@@ -194,7 +197,7 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
                         let message = format!("expected at most {EXPECTED} names");
                         return Refusal::because(message, "");
                     }
-                    judge(name)?;
+                    (form.judge)(name)?;
                     self.set(0, Value::Text(name));
                     Ok(())
                 }))

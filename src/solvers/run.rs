@@ -5,12 +5,13 @@ use super::{Counts, Engine};
 use crate::integrators::StepError;
 use crate::physics::{ParticleSystem, State, System};
 use crate::trajectory::Observer;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The status of an outcome, as reports state it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     Completed,

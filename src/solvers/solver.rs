@@ -9,12 +9,13 @@ use super::{Engine, Unsupported, memory};
 use crate::integrators::{self, Coefficients, Integrator, Method, Settings};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The kind of a solver, as reports state it. An adaptive pair is an integrator.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SolverKind {
     Integrator,

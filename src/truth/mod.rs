@@ -8,9 +8,10 @@ pub mod converged;
 
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TruthKind {
     ClosedForm,

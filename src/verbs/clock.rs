@@ -1,11 +1,14 @@
 //! Statistics of wall times.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Wall times of equal runs, s.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct WallTime {
+    /// The shortest, s.
     pub min: f64,
+    /// The median, s.
     pub median: f64,
     /// Median absolute deviation; null for a single run.
     pub mad: Option<f64>,

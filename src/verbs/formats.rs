@@ -5,6 +5,7 @@ use crate::report::json::{self, Tool};
 use crate::report::svg::{Chart, Figure};
 use crate::report::{Note, View, github, junit, terminal, verdict};
 use crate::scene;
+use schemars::{JsonSchema, Schema};
 use serde::Serialize;
 
 /// One format of reports.
@@ -69,7 +70,8 @@ pub const FORMATS: &[Format] = &[
 ];
 
 /// A report in JSON, with what the texts say beside the numbers. It reads back as the report alone.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Report")]
 struct InWords<'a> {
     #[serde(flatten)]
     report: &'a Report,
@@ -89,6 +91,11 @@ fn in_words(reports: &[Report]) -> Vec<InWords<'_>> {
         }
     }
     reports.iter().map(one).collect()
+}
+
+/// The JSON Schema of the format `json`.
+pub fn schema() -> Schema {
+    json::schema::<InWords>()
 }
 
 /// The format with this id.

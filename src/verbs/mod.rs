@@ -9,12 +9,15 @@ pub mod clock;
 pub mod compare;
 pub mod completions;
 pub mod cost;
+pub mod expand;
 pub mod explain;
 mod facts;
 pub mod formats;
+pub mod init;
 pub mod list;
 pub mod merge;
 pub mod run;
+pub mod schema;
 pub mod series;
 pub mod session;
 pub mod show;
@@ -28,6 +31,7 @@ use crate::report::Header;
 use crate::scene::Names;
 use cost::{Cost, CostPanels};
 use run::{Outcome, RunSeries};
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use stability::Stability;
 use std::sync::LazyLock;
@@ -44,7 +48,7 @@ pub fn names() -> &'static Names {
 
 /// Everything one verb found about one scene. It is complete when it is made, and equal after it was written
 /// as JSON and read again.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
     #[serde(flatten)]
     pub header: Header,
@@ -52,21 +56,25 @@ pub struct Report {
     pub body: Body,
     /// The series that only figures need. The JSON says whether there are any; they lie in a file beside it.
     #[serde(default)]
+    #[schemars(with = "bool")]
     pub series: SeriesState,
 }
 
 /// The result of one verb. The JSON's key `verb` says which it is.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "verb", rename_all = "snake_case")]
 pub enum Body {
     Run {
+        /// One for each engine and timestep.
         outcomes: Vec<Outcome>,
     },
     /// As `run`, without times.
     Check {
+        /// One for each engine.
         outcomes: Vec<Outcome>,
     },
     Compare {
+        /// One: that of the trajectory.
         outcomes: Vec<Outcome>,
         /// The first step that deviates from the scheme; null where none does.
         fault: Option<Fault>,
@@ -74,11 +82,13 @@ pub enum Body {
     Stability {
         /// Always empty: some readers look for outcomes in every report.
         outcomes: [(); 0],
+        /// How large a step may be.
         stability: Stability,
     },
     Cost {
         /// As in `Stability`.
         outcomes: [(); 0],
+        /// What accuracy costs.
         cost: Cost,
     },
 }

@@ -9,9 +9,12 @@ mod cost;
 mod examples;
 #[cfg(unix)] // the programs it starts are POSIX's
 mod external;
+#[cfg(unix)] // the solvers are started as a POSIX shell would
+mod gate;
 #[cfg(unix)] // signals are POSIX's
 mod interrupted;
 mod run;
+mod schema;
 mod show;
 mod stability;
 #[path = "../testkit/mod.rs"]

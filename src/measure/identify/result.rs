@@ -1,10 +1,11 @@
 //! The result of an identification, as data.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// The scheme a trajectory follows, exactly or nearly, by one-step replay.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Identity {
     /// Id of a method, of a composed scheme, or of a common mistake.
     pub method: String,
@@ -45,7 +46,7 @@ pub struct Identity {
 }
 
 /// The reason why a trajectory's scheme is not decided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Undecided {
     /// The equivalent ones are the same map where this trajectory goes: no data could tell.
@@ -57,7 +58,7 @@ pub enum Undecided {
 }
 
 /// What makes a trajectory differ from a scheme that it was meant to follow.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Explained {
     /// The scheme that the deviations belong to; `truth` where every step is exact to rounding, so that none can be
     /// told; null where nothing explains the trajectory.
@@ -72,7 +73,7 @@ pub struct Explained {
 }
 
 /// One thing that acts otherwise than the scene says.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Deviation {
     /// `gravity`, `springs.stiffness`, `springs.damping`, `springs.rest_length`, `springs.cubic`, `drag`, `wind`,
     /// `gravitational`, `mass`, `velocity`, `timestep`, `axis`, or what a known mistake changes.
@@ -87,7 +88,7 @@ pub struct Deviation {
 }
 
 /// The first step of a trajectory that does not follow its scheme.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Fault {
     /// Step n leads from t_n to t_n+1, zero-based; of rows several steps apart, the first of the
     /// steps between them.
@@ -107,7 +108,7 @@ pub struct Fault {
 }
 
 /// The quantity that a fault shows in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Quantity {
     #[serde(rename = "position_m")]
     Position,

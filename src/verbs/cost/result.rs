@@ -5,10 +5,11 @@
 
 use crate::solvers::{SolverKind, Status};
 use crate::verbs::clock::WallTime;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The `cost` key of the report.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Cost {
     /// How long every run is, s.
     pub duration_s: f64,
@@ -16,13 +17,14 @@ pub struct Cost {
     pub horizon_s: Option<f64>,
     /// Ten times the truth's own error bar, m: no smaller error can be told from it. Null without truth.
     pub floor_m: Option<f64>,
+    /// Who reaches an error, and at what price.
     pub targets: Vec<CostTarget>,
     /// One for each engine, in the order of the plan; adaptive pairs after the methods.
     pub curves: Vec<CostCurve>,
 }
 
 /// Which engines reach an error, and at what cost.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct CostTarget {
     /// Largest distance of a particle from its true position, over the horizon, m.
     pub error_m: f64,
@@ -39,17 +41,19 @@ pub struct CostTarget {
 }
 
 /// A setting that reaches a target.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CostReached {
+    /// The engine's id.
     pub engine: String,
     /// Seconds; the mean step of an adaptive pair.
     pub timestep: f64,
     /// The tolerance of an adaptive pair; null for fixed steps.
     pub tolerance: Option<f64>,
+    /// The error at this setting, m.
     pub error_m: f64,
-    /// Null where the setting was not timed.
+    /// The median wall time, s; null where the setting was not timed.
     pub wall_median_s: Option<f64>,
-    /// Null where the engine does not count them.
+    /// How many; null where the engine does not count them.
     pub force_evaluations: Option<u64>,
     /// It is the coarsest setting tried: a coarser one may do, so the price is at most this.
     #[serde(default)]
@@ -57,8 +61,9 @@ pub struct CostReached {
 }
 
 /// One engine's place for one target.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct CostRank {
+    /// The engine's id.
     pub engine: String,
     /// The coarsest setting from which on every finer one reaches the target; null if there is none.
     pub reached: Option<CostReached>,
@@ -74,9 +79,11 @@ pub struct CostRank {
 }
 
 /// One engine's line in the work-precision diagram.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct CostCurve {
+    /// The engine's id.
     pub engine: String,
+    /// What kind of solver it is.
     pub kind: SolverKind,
     /// The stated order on this scene (the order with damping where there is some); null for rapier.
     pub order: Option<u32>,
@@ -103,7 +110,7 @@ impl CostCurve {
 }
 
 /// One engine at one setting.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct CostPoint {
     /// Seconds; for an adaptive pair the duration over the steps taken.
     pub timestep: f64,
@@ -111,6 +118,7 @@ pub struct CostPoint {
     pub tolerance: Option<f64>,
     /// Steps accepted.
     pub steps: u64,
+    /// How the run ended.
     pub status: Status,
     /// Why the run has no error: it diverged, failed, or is unsupported; else null.
     pub reason: Option<String>,
@@ -126,7 +134,9 @@ pub struct CostPoint {
     pub wall_s: Option<WallTime>,
     /// Full evaluations and passes over damping alone; null where the engine does not count them.
     pub force_evaluations: Option<u64>,
+    /// Linear systems solved; null where the engine does not count them.
     pub linear_solves: Option<u64>,
+    /// Iterations of Newton's method; null where the engine does not count them.
     pub newton_iterations: Option<u64>,
 }
 

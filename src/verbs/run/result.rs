@@ -5,18 +5,22 @@ use crate::measure::identify::{Explained, Identity};
 use crate::measure::{Deviation, Energy, ErrorSummary, Momentum};
 use crate::solvers::{SolverKind, Status};
 use crate::verbs::clock::WallTime;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The outcome of one engine at one timestep.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Outcome {
+    /// The id of an integrator, of an engine, or the name of a program.
     pub engine: String,
+    /// What kind of solver it is.
     pub kind: SolverKind,
     /// Seconds between recorded steps of this engine.
     pub timestep: f64,
     /// The step that the scheme takes, s: rapier's dt / iterations, else the timestep.
     pub substep: f64,
+    /// How the run ended.
     pub status: Status,
     /// The time at which the run ended early, s; null if it did not.
     pub stopped_at_s: Option<f64>,
@@ -24,12 +28,15 @@ pub struct Outcome {
     pub reason: Option<String>,
     /// The error against the truth; null where there is none.
     pub position_error_m: Option<ErrorSummary>,
+    /// The same for velocities.
     pub velocity_error_m_s: Option<ErrorSummary>,
     /// The deviation from each reference engine that ran at this timestep.
     pub deviation_m: BTreeMap<String, Deviation>,
     /// Null when nothing was recorded (unsupported) or no velocities are known.
     pub energy: Option<Energy>,
+    /// Null where the scene keeps neither, or nothing was recorded.
     pub momentum: Option<Momentum>,
+    /// What the run took.
     pub work: WorkSummary,
     /// The scheme it follows by replay; null where there is nothing to replay.
     pub identified: Option<Identity>,
@@ -39,14 +46,16 @@ pub struct Outcome {
     pub remarks: Vec<String>,
 }
 
-/// The computational work of one run: counts and wall time. It is not the work done by forces, which is
-/// [`physics::Work`](crate::physics::Work).
-#[derive(Debug, Clone, Serialize, Deserialize)]
+/// The computational work of one run: counts and wall time. Not the work that forces do, `physics::Work`.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct WorkSummary {
+    /// Timesteps taken.
     pub steps: u64,
     /// Evaluations of all forces; null where the engine does not report them (rapier's joints).
     pub force_evaluations: Option<u64>,
+    /// Linear systems solved; null where the engine does not report them.
     pub linear_solves: Option<u64>,
+    /// Wall time of a run, s; null where it was not timed.
     pub wall_s: Option<WallTime>,
 }
 

@@ -2,10 +2,11 @@
 
 use crate::measure::stability::{Cell, TightestLimit};
 use crate::solvers::SolverKind;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How large a step may be, on this scene.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Stability {
     /// The largest frequency of the scene linearised about its start; null where nothing oscillates.
     pub omega_max_rad_s: Option<f64>,
@@ -21,6 +22,7 @@ pub struct Stability {
     pub linear: bool,
     /// Modes left out of the prediction, in words.
     pub excluded: Vec<String>,
+    /// One for each engine.
     pub rows: Vec<StabilityRow>,
     /// Timestep against a quantity of the scene; null without one.
     pub map: Option<StabilityMap>,
@@ -31,9 +33,11 @@ pub struct Stability {
 }
 
 /// One engine's limit.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct StabilityRow {
+    /// The engine's id.
     pub engine: String,
+    /// What kind of solver it is.
     pub kind: SolverKind,
     /// Whether the engine refuses the scene: `reason` says why, and nothing was searched.
     pub unsupported: bool,
@@ -56,6 +60,7 @@ pub struct StabilityRow {
     /// Where nothing oscillates: the largest step, s, at which every mode decays without changing
     /// sign, predicted and measured; null where something oscillates in truth.
     pub smooth_below_s: Option<f64>,
+    /// The same, measured by running, s.
     pub measured_smooth_below_s: Option<f64>,
     /// The tightest predicted limit along the trajectory.
     pub tightest: Option<TightestLimit>,
@@ -90,12 +95,13 @@ impl StabilityRow {
 }
 
 /// The largest value of one quantity of the scene at which a step is within the predicted limit.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Largest {
     /// The key, such as `springs.stiffness`.
     pub vary: String,
     /// The unit of the values.
     pub unit: String,
+    /// The step that has to be stable, s.
     pub timestep_s: f64,
     /// The smallest and the largest value tried.
     pub tried: [f64; 2],
@@ -104,9 +110,11 @@ pub struct Largest {
 }
 
 /// One engine's largest value.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct LargestRow {
+    /// The engine's id.
     pub engine: String,
+    /// What the search found.
     pub found: LargestFound,
     /// The largest value that is stable; null unless one was found.
     pub value: Option<f64>,
@@ -115,7 +123,7 @@ pub struct LargestRow {
 }
 
 /// What the search for a largest value found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LargestFound {
     /// Up to this one values are stable.
@@ -129,7 +137,7 @@ pub enum LargestFound {
 }
 
 /// The outcomes of runs at several timesteps, as one quantity of the scene varies.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct StabilityMap {
     /// The key that varies, such as `springs.stiffness` or `particles[1].mass`.
     pub vary: String,
@@ -146,8 +154,9 @@ pub struct StabilityMap {
 }
 
 /// One engine's part of a map.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct MapPanel {
+    /// The engine's id.
     pub engine: String,
     /// Indexed by value, then by timestep; null where the engine refuses the scene.
     pub cells: Vec<Vec<Option<Cell>>>,
@@ -158,23 +167,29 @@ pub struct MapPanel {
 
 /// The admissible region of two free particles on one spring: the places at rest from where one step does
 /// not enlarge the spring's force.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Admissible {
     /// The method. Its first two steps are taken, since the first moves nothing.
     pub engine: String,
+    /// The step, s.
     pub timestep_s: f64,
+    /// The masses of the two particles, kg.
     pub masses_kg: [f64; 2],
+    /// The spring's rest length, m.
     pub rest_length_m: f64,
     /// Positions along the line, m, ascending; no difference between the two axes is 0 or the rest
     /// length, where nothing moves.
     pub x1_m: Vec<f64>,
+    /// The same of the second particle, m.
     pub x2_m: Vec<f64>,
+    /// One for each stiffness.
     pub panels: Vec<AdmissiblePanel>,
 }
 
 /// The region at one stiffness.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct AdmissiblePanel {
+    /// The spring's stiffness, N/m.
     pub stiffness_n_m: f64,
     /// The admitted fraction of all places, 0 to 1.
     pub share: f64,

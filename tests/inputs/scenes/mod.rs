@@ -2,6 +2,7 @@
 
 mod accepted;
 mod refused;
+mod schema;
 mod table;
 mod upset;
 

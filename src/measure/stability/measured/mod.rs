@@ -15,11 +15,12 @@ use crate::solvers::{Run, Unsupported};
 use experiment::Experiment;
 use perturbation::Perturbation;
 use probe::{Budget, ProbeOutcome, Runs, Watch, probe};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use watched::ExcessEnergy;
 
 /// The behaviour of a run at one step: one cell of a stability map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Cell {
     /// None of the others: it keeps its energy, or loses what dampers take.

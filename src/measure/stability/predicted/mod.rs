@@ -18,13 +18,16 @@ use crate::physics::{Dampers, State, System};
 use crate::scene::{DampingModel, Scene};
 pub(super) use parts::shortest;
 pub use prediction::Prediction;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use spectrum::{Coverage, Spectrum};
 
 /// The point of the trajectory where the predicted limit is smallest.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct TightestLimit {
+    /// The smallest limit, s.
     pub limit_s: f64,
+    /// The time at which it holds, s.
     pub t_s: f64,
 }
 

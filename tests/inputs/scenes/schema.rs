@@ -1,0 +1,390 @@
+//! The schema of scene files and the file that `expand` prints: both follow from the table, so both are held against the
+//! reader. Whether a value fits a schema is what another program says, `jsonschema`.
+
+use super::shipped;
+use crate::testkit::scenes::parsed;
+use jsonschema::Validator;
+use serde_json::{Value, json};
+use springcheck::scene::limits::Bounds;
+use springcheck::scene::model::{Absent, PARTS, Part, Row, ValueKind};
+use springcheck::scene::{self, Scene};
+use springcheck::verbs::{names, schema};
+
+fn schema() -> Value {
+    serde_json::from_str(&schema::scene_text()).expect("JSON")
+}
+
+fn validator() -> Validator {
+    let schema = schema();
+    jsonschema::draft7::meta::validate(&schema).expect("a schema");
+    jsonschema::draft7::new(&schema).expect("a schema")
+}
+
+/// The scene of a JSON value, which is YAML too where its text is ASCII: YAML ends a line at more characters.
+fn read(value: &Value) -> Result<Scene, scene::SceneError> {
+    let mut text = String::new();
+    for c in value.to_string().chars() {
+        match c {
+            c if c.is_ascii() => text.push(c),
+            c => text += &format!("\\u{:04x}", u32::from(c)),
+        }
+    }
+    scene::parse(text.as_bytes(), "test.yml", names())
+}
+
+/// A scene with a member of every part, and with text and expectations.
+fn full() -> Value {
+    json!({
+        "name": "all",
+        "solver": {"type": "rk4", "timestep": 0.1},
+        "particles": [{"pos": [0, 0, 0], "mass": 1}, {"pos": [1, 0, 0], "mass": 2}],
+        "springs": [{"particle_ids": [0, 1], "stiffness": 20}],
+        "gravitational": [{"particle_ids": [0, 1], "G": 1}],
+        "wind": {"direction": [1, 0, 0], "strength": 1},
+        "plot": {"particle_id": 0, "dof": 2},
+        "externals": ["mine"],
+        "expect": {"mine": {"status": "completed"}},
+    })
+}
+
+/// The mapping of a part in a scene.
+fn member<'s>(scene: &'s mut Value, part: &Part) -> &'s mut Value {
+    match part.key {
+        "file" => scene,
+        key if part.list => &mut scene[key][0],
+        key => &mut scene[key],
+    }
+}
+
+fn all_rows() -> impl Iterator<Item = (&'static Part, &'static Row)> {
+    let rows = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
+    PARTS.into_iter().flat_map(rows)
+}
+
+/// Values inside and outside of what a key takes. Those inside differ from one another where several values have to
+/// fit together: lists of numbers ascend, ids are 0 and 1.
+fn inside_and_outside(row: &Row) -> (Vec<Value>, Vec<Value>) {
+    let beyond = |Bounds { low, high, .. }: &Bounds| {
+        // A tenth more is outside, whatever the rounding.
+        let below = if *low == 0.0 {
+            -1e-300
+        } else {
+            low - 0.1 * low.abs()
+        };
+        vec![json!(below), json!(high * 1.1)]
+    };
+    let (mut inside, mut outside) = match &row.kind {
+        ValueKind::Number(bounds) => {
+            let times = ["timestep", "duration"].contains(&row.key);
+            let least = if times { 0.5 } else { bounds.low };
+            let most = if times { 5.0 } else { bounds.high };
+            (vec![json!(least), json!(most)], beyond(bounds))
+        }
+        ValueKind::Numbers(count, bounds) => {
+            let of = |x: &Value| json!(vec![x.clone(); *count]);
+            let ascending: Vec<f64> = (0..*count)
+                .map(|i| bounds.high * (i + 1) as f64 / *count as f64)
+                .collect();
+            let mut outside: Vec<Value> = beyond(bounds).iter().map(of).collect();
+            outside.push(json!(vec![1.0; count + 1]));
+            outside.push(json!(vec![1.0; count - 1]));
+            (vec![json!(ascending)], outside)
+        }
+        ValueKind::Id => (vec![json!(0), json!(1)], vec![json!(-1), json!(0.5)]),
+        ValueKind::Ids => (
+            vec![json!([0, 1])],
+            vec![json!([0]), json!([0, 1, 1]), json!([0, -1])],
+        ),
+        ValueKind::Coordinate => (vec![json!(0), json!(2)], vec![json!(3), json!(-1)]),
+        ValueKind::Flag => (vec![json!(false)], vec![json!(0), json!("true")]),
+        ValueKind::Word(words) => (
+            words.iter().map(|word| json!(word)).collect(),
+            vec![json!("other"), json!(1)],
+        ),
+        ValueKind::Method => {
+            let known = names().methods.iter().map(|id| json!(id));
+            let aliases = names().aliases.iter().map(|(short, _)| json!(short));
+            (known.chain(aliases).collect(), vec![json!("rk5"), json!(4)])
+        }
+        ValueKind::Text(_) => (
+            vec![json!("a"), json!("é".repeat(200)), json!("a b")],
+            vec![json!("a\u{1b}b"), json!("a\u{85}b"), json!(1)],
+        ),
+        ValueKind::Names(_) => (
+            vec![
+                json!(["mine"]),
+                json!(["mine", "é2", "1.0-a+b_c", "x".repeat(32)]),
+            ],
+            vec![
+                json!([""]),
+                json!(["-a"]),
+                json!(["a b"]),
+                json!(["x".repeat(33)]),
+                json!("a"),
+                json!(["a", "a"]),
+            ],
+        ),
+        // A list that is required is not empty.
+        ValueKind::Part(part) if part.list && matches!(row.absent, Absent::Required(_)) => {
+            (vec![], vec![json!([])])
+        }
+        ValueKind::Part(part) if part.list => (vec![json!([])], vec![]),
+        ValueKind::Part(_) | ValueKind::Expect => (vec![], vec![]),
+    };
+    outside.push(json!("text that is nothing here".to_owned() + "\u{7}"));
+    outside.push(json!({"unknown": 1}));
+    // A key without a value is as good as absent. Whether a particle needs its mass, other keys say.
+    match row.absent {
+        _ if row.key == "mass" => {}
+        Absent::Required(_) => outside.push(Value::Null),
+        Absent::Usual | Absent::Derived => inside.push(Value::Null),
+    }
+    (inside, outside)
+}
+
+#[test]
+fn the_schema_takes_every_shipped_scene() {
+    let validator = validator();
+    for (path, bytes) in shipped() {
+        let scene: Value = serde_yaml::from_slice(&bytes).expect("YAML");
+        let errors: Vec<String> = validator
+            .iter_errors(&scene)
+            .map(|e| e.to_string())
+            .collect();
+        assert!(errors.is_empty(), "{}: {errors:?}", path.display());
+    }
+}
+
+#[test]
+fn the_schema_and_the_reader_agree_on_every_key() {
+    let validator = validator();
+    let agree = |scene: &Value, good: bool, title: &str| {
+        let read = read(scene).map(|_| ());
+        assert_eq!(read.is_ok(), good, "{title}: {read:?}");
+        assert_eq!(validator.is_valid(scene), good, "{title}: the schema");
+    };
+    agree(&full(), true, "all");
+    for (part, row) in all_rows() {
+        let (inside, outside) = inside_and_outside(row);
+        let with = |value: &Value| {
+            let mut scene = full();
+            member(&mut scene, part)[row.key] = value.clone();
+            // The timestep has to fit the duration.
+            if row.key == "duration" {
+                scene["solver"]["timestep"] = json!(0.5);
+            }
+            scene
+        };
+        let path = part.path(None, row.key);
+        for (values, good) in [(inside, true), (outside, false)] {
+            for value in values {
+                // Without its `externals`, the file may not speak of `mine`.
+                let mut scene = with(&value);
+                if row.key == "externals" {
+                    scene["expect"] = Value::Null;
+                }
+                agree(&scene, good, &format!("{path}: {value}"));
+            }
+        }
+        let mut without = full();
+        let members = member(&mut without, part)
+            .as_object_mut()
+            .expect("a mapping");
+        members.remove(row.key);
+        if row.key == "externals" {
+            members.remove("expect");
+        }
+        // Particles that attract each other need their mass: two keys, which no schema holds together.
+        if path != "particles.mass" {
+            let optional = !matches!(row.absent, Absent::Required(_));
+            agree(&without, optional, &format!("without {path}"));
+        }
+    }
+    for part in PARTS {
+        for key in ["unknown", "Mass", "bending", "velocity"] {
+            let mut scene = full();
+            member(&mut scene, part)[key] = json!(1);
+            agree(&scene, false, &format!("{}: {key}", part.key));
+        }
+    }
+}
+
+#[test]
+fn the_schema_and_the_reader_agree_on_expectations() {
+    let validator = validator();
+    for (expect, good) in [
+        (json!({"rk4": {"status": "completed"}}), true),
+        (
+            json!({"all": {"energy.class": ["bounded", "drifting"]}}),
+            true,
+        ),
+        (
+            json!({"rest": {"position_error_m.max": {"below": 0.01}}}),
+            true,
+        ),
+        (
+            json!({"rapier": {"deviation_m.rapier-forces.max": {"above": 0, "below": 1}}}),
+            true,
+        ),
+        (json!({"mine": {"reason": {"contains": "exit code"}}}), true),
+        (json!({"mine": {"identified.decisive": true}}), true),
+        (
+            json!({"linearized_implicit": {"identified.method": "linearized_implicit"}}),
+            true,
+        ),
+        (json!({"skip": {"order": "forces jump here"}}), true),
+        (json!({"skip": {"order": ""}}), false),
+        (json!({"skip": {"ordre": "why"}}), false),
+        (json!({"rk4": {}}), false),
+        (json!({"rk4": null}), false),
+        (json!({"rk4": {"status": "complete"}}), false),
+        (json!({"rk4": {"status": []}}), false),
+        (json!({"rk4": {"status": {"below": 1}}}), false),
+        (json!({"rk4": {"stratus": "completed"}}), false),
+        (json!({"rk4": {"position_error_m.max": 0.01}}), false),
+        (json!({"rk4": {"position_error_m.max": {}}}), false),
+        (
+            json!({"rk4": {"position_error_m.max": {"contains": "1"}}}),
+            false,
+        ),
+        (json!({"rk4": {"reason": "exit"}}), false),
+        (json!({"rk4": {"work.wall_s": {"below": 1}}}), false),
+        (json!({"a b": {"status": "completed"}}), false),
+        (json!([{"rk4": {"status": "completed"}}]), false),
+    ] {
+        let mut scene = full();
+        scene["expect"] = expect.clone();
+        let read = read(&scene).map(|_| ());
+        assert_eq!(read.is_ok(), good, "{expect}: {read:?}");
+        assert_eq!(validator.is_valid(&scene), good, "{expect}: the schema");
+    }
+    // Every key that an outcome has for expectations.
+    for key in &names().keys {
+        for wanted in [
+            json!("completed"),
+            json!({"below": 1.5}),
+            json!({"contains": "a"}),
+        ] {
+            let mut scene = full();
+            scene["expect"] = json!({"rk4": {key.path.as_str(): wanted}});
+            assert_eq!(
+                validator.is_valid(&scene),
+                read(&scene).is_ok(),
+                "{}: {wanted}",
+                key.path
+            );
+        }
+    }
+}
+
+/// A description is what an editor shows: every key has one, and a number's has its unit.
+#[test]
+fn every_key_says_what_it_is() {
+    let schema = schema();
+    for (part, row) in all_rows() {
+        let properties = match part.key {
+            "file" => &schema["properties"],
+            key if part.list => &schema["properties"][key]["items"]["properties"],
+            key => &schema["properties"][key]["properties"],
+        };
+        let says = properties[row.key]["description"]
+            .as_str()
+            .unwrap_or_default();
+        let path = part.path(None, row.key);
+        assert!(
+            says.starts_with(row.summary.trim()) && says.len() > 5,
+            "{path}: {says}"
+        );
+        if let ValueKind::Number(bounds) | ValueKind::Numbers(_, bounds) = &row.kind {
+            assert!(
+                says.ends_with(&format!("({}).", bounds.unit)),
+                "{path}: {says}"
+            );
+        }
+    }
+}
+
+/// What an absent key means, a schema's `default` says: written into a file, it changes nothing.
+#[test]
+fn defaults_are_those_of_the_reader() {
+    let schema = schema();
+    let original = read(&full()).expect("a scene");
+    let mut some = 0;
+    for (part, row) in all_rows() {
+        let properties = match part.key {
+            "file" => &schema["properties"],
+            key if part.list => &schema["properties"][key]["items"]["properties"],
+            key => &schema["properties"][key]["properties"],
+        };
+        if let Some(default) = properties[row.key].get("default") {
+            let mut scene = full();
+            assert!(
+                member(&mut scene, part)[row.key].is_null(),
+                "the key is absent"
+            );
+            member(&mut scene, part)[row.key] = default.clone();
+            assert_eq!(read(&scene).expect("a scene"), original, "{}", row.key);
+            some += 1;
+        }
+    }
+    // duration, up, damping_model; gravity; vel, fixed, radius, drag; cubic, damping.
+    assert_eq!(some, 10);
+}
+
+#[test]
+fn a_scene_written_out_is_the_same_scene() {
+    let same = |scene: &Scene| {
+        let text = scene::yaml(scene);
+        let again = scene::parse(text.as_bytes(), &scene.file, names());
+        let again = again.unwrap_or_else(|error| panic!("{error}\n{text}"));
+        assert_eq!(again, *scene, "{text}");
+        // Nothing is left to fill in.
+        assert_eq!(scene::yaml(&again), text);
+    };
+    for (path, bytes) in shipped() {
+        let file = path.display().to_string();
+        same(&scene::parse(&bytes, &file, names()).expect("a scene"));
+    }
+    same(&read(&full()).expect("a scene"));
+    // Words that YAML would take for something else, line ends of its own, numbers at both ends of a double's range,
+    // and a direction whose length rounds.
+    let mut odd = full();
+    odd["name"] = json!("yes");
+    odd["description"] = json!("a: b # c\n\tsecond \u{2028}line\u{2029} \u{feff} \"'\\ [x, {y}] é");
+    odd["particles"][0]["pos"] = json!([1e-300, -1e12, 0.1 + 0.2]);
+    odd["springs"][0]["stiffness"] = json!(1e18);
+    odd["wind"]["direction"] = json!([2, 3, 7]);
+    odd["externals"] = json!(["mine", "1e3", "true", "null"]);
+    odd["expect"] = json!({
+        "1e3": {"identified.decisive": true, "reason": {"contains": "]: ,"}},
+        "true": {"identified.decisive": ["true", "false"]},
+        "null": {"energy.final_j": {"above": -1e300, "below": 5e-324}},
+        "skip": {"order": "- no"},
+    });
+    same(&read(&odd).expect("a scene"));
+}
+
+/// The file says what the scene left unsaid, as `docs/contract.md` has it.
+#[test]
+fn what_is_written_out_has_every_default() {
+    let scene = parsed(
+        "solver: {type: rk4, timestep: 1e-5}\nduration: 0.5\n\
+         particles: [{pos: [0, 0, 2], fixed: true}, {pos: [0, 0, 1], mass: 2}]\n\
+         springs: [{particle_ids: [0, 1], stiffness: 20}]\nexpect: {rk4: {status: completed}}\n",
+    );
+    assert_eq!(
+        scene::yaml(&scene),
+        "name: test\n\
+         solver: {type: rk4, timestep: 1.0e-5, gravity: -9.81}\n\
+         duration: 0.5\n\
+         up: z\n\
+         damping_model: axial\n\
+         particles:\n\
+         \x20 - {pos: [0.0, 0.0, 2.0], vel: [0.0, 0.0, 0.0], fixed: true, mass: 1.0, radius: 0.1, drag: 0.0}\n\
+         \x20 - {pos: [0.0, 0.0, 1.0], vel: [0.0, 0.0, 0.0], fixed: false, mass: 2.0, radius: 0.1, drag: 0.0}\n\
+         springs:\n\
+         \x20 - {particle_ids: [0, 1], stiffness: 20.0, cubic: 0.0, damping: 0.0, rest_length: 1.0}\n\
+         expect:\n\
+         \x20 rk4: {status: completed}\n"
+    );
+}
