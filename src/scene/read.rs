@@ -8,7 +8,7 @@
 use super::error::{Fault, Refusal};
 use super::expect::Engines;
 use super::expectation::Names;
-use super::limits::{known, method};
+use super::limits::{EXPECTED, known, method};
 use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
@@ -189,11 +189,19 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
                     Ok(())
                 }))
             }
-            ValueKind::Names(ref form) => from.deserialize_any(Texts(|name: &str| {
-                (form.judge)(name)?;
-                self.set(0, Value::Text(name));
-                Ok(())
-            })),
+            ValueKind::Names(ref form) => {
+                let mut count = 0;
+                from.deserialize_any(Texts(|name: &str| {
+                    count += 1;
+                    if count > EXPECTED {
+                        let message = format!("expected at most {EXPECTED} names");
+                        return Refusal::because(message, "");
+                    }
+                    (form.judge)(name)?;
+                    self.set(0, Value::Text(name));
+                    Ok(())
+                }))
+            }
             ValueKind::Part(part) if part.list => from.deserialize_any(List(part, self)),
             ValueKind::Part(part) => from.deserialize_any(self.member(part)),
             ValueKind::Expect => from.deserialize_any(Engines {

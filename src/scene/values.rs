@@ -252,7 +252,7 @@ impl<'de, F: FnMut(usize, Number) -> Result<(), Refusal>> Visitor<'de> for Numbe
     }
 }
 
-/// Reads a list of texts, at most [`EXPECTED`](super::limits::EXPECTED).
+/// Reads a list of texts.
 pub(super) struct Texts<F>(pub(super) F);
 
 impl<'de, F: FnMut(&str) -> Result<(), Refusal>> Visitor<'de> for Texts<F> {
@@ -263,16 +263,7 @@ impl<'de, F: FnMut(&str) -> Result<(), Refusal>> Visitor<'de> for Texts<F> {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(mut self, mut list: A) -> Result<(), A::Error> {
-        let mut count = 0;
-        let mut one = |name: &str| {
-            count += 1;
-            if count > super::limits::EXPECTED {
-                let message = format!("expected at most {} names", super::limits::EXPECTED);
-                return Refusal::because(message, "");
-            }
-            (self.0)(name)
-        };
-        while list.next_element_seed(Any(text(&mut one)))?.is_some() {}
+        while list.next_element_seed(Any(text(&mut self.0)))?.is_some() {}
         Ok(())
     }
 }

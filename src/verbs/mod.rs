@@ -26,15 +26,25 @@ pub mod stability;
 #[cfg(test)]
 mod tests;
 
-pub use run::names;
-
 use crate::measure::identify::Fault;
 use crate::report::Header;
+use crate::scene::Names;
 use cost::{Cost, CostPanels};
 use run::{Outcome, RunSeries};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use stability::Stability;
+use std::sync::LazyLock;
+
+/// All names that a scene file may refer to: methods, engines, keys and checks. For
+/// [`scene::parse`](crate::scene::parse) and [`scene::read`](crate::scene::read).
+pub fn names() -> &'static Names {
+    static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
+        checks: check::ids(),
+        ..run::names().clone()
+    });
+    &NAMES
+}
 
 /// Everything one verb found about one scene. It is complete when it is made, and equal after it was written
 /// as JSON and read again.

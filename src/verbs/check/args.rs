@@ -7,6 +7,7 @@ use crate::report::json::Tool;
 use crate::scene::{Names, Scene};
 use crate::solvers::Solver;
 use crate::trajectory::{self, Expected, limits};
+use crate::verbs::Report;
 use crate::verbs::cli::external::{self, External};
 use crate::verbs::cli::flags::{self, Time};
 use crate::verbs::cli::interrupt;
@@ -15,7 +16,6 @@ use crate::verbs::cli::output;
 use crate::verbs::cli::place::put;
 use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::compare::{Recorded, method};
-use crate::verbs::{Report, formats};
 use anyhow::{Context, bail};
 use std::fs::File;
 use std::io::{Read, Write};
@@ -114,8 +114,9 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         );
     }
     for named in &args.write {
-        formats::format(&named.name)
-            .with_context(|| format!("--write {}: no such format", named.name))?;
+        if !output::is_format(&named.name) {
+            bail!("--write {}: no such format", named.name);
+        }
     }
     let files = select::scenes(&args.paths, args.partition)?;
     if files.is_empty() {

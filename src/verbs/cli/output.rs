@@ -113,6 +113,11 @@ impl Output {
     }
 }
 
+/// Whether there is a format of this id.
+pub fn is_format(id: &str) -> bool {
+    formats::format(id).is_some()
+}
+
 /// Reports made by `tool`, in the format of this id.
 pub fn rendered(format: &str, tool: &Tool, reports: &[Report]) -> anyhow::Result<String> {
     let format = formats::format(format).context("a format without a row")?;

@@ -115,18 +115,15 @@ fn an_effect_whose_force_is_not_its_energys_fails_by_its_name() {
         gate.plan.system = ParticleSystem::with(&scene, &build);
         let report = gate.run(&Quiet).expect("nothing is written");
         let named = |check: &&Check| check.id == "forces" && check.subject == row.id;
-        assert!(failed(&report).iter().any(named_ref(&named)), "{}", row.id);
+        assert!(failed(&report).iter().any(named), "{}", row.id);
     }
-}
-
-fn named_ref<'a>(named: &'a impl Fn(&&Check) -> bool) -> impl Fn(&&Check) -> bool + 'a {
-    move |check| named(check)
 }
 
 /// Any number of the scene that is a hundredth off in one of the two worlds is seen by the twin proof.
 #[test]
 fn a_mirror_that_differs_fails() {
-    let changes: [(&str, fn(&mut Scene)); 6] = [
+    type Change = fn(&mut Scene);
+    let changes: [(&str, Change); 6] = [
         ("stiffness", |s| s.springs[0].stiffness *= 1.01),
         ("damping", |s| s.springs[0].damping *= 1.01),
         ("rest_length", |s| s.springs[0].rest_length *= 1.01),
@@ -142,7 +139,7 @@ fn a_mirror_that_differs_fails() {
         gate.twin = &other;
         let report = gate.run(&Quiet).expect("nothing is written");
         let twin = |check: &&Check| check.id.starts_with("twin-");
-        assert!(failed(&report).iter().any(|check| twin(&check)), "{what}");
+        assert!(failed(&report).iter().any(twin), "{what}");
     }
     assert!(failed(&Gate::new(&scene).run(&Quiet).expect("nothing is written")).is_empty());
 }

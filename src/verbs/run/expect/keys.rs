@@ -6,15 +6,14 @@ use crate::scene::{KeyKind, Names, OutcomeKey};
 use crate::solvers::rapier;
 use std::sync::LazyLock;
 
-/// All names that a scene file may refer to: methods, engines and keys. For [`scene::parse`](crate::scene::parse)
-/// and [`scene::read`](crate::scene::read).
+/// The methods, engines and keys that a scene file may refer to. [`verbs::names`](crate::verbs::names) has all names.
 pub fn names() -> &'static Names {
     static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
         methods: integrators::ids(integrators::fixed()),
         aliases: integrators::ALIASES,
         engines: rapier::IDS.to_vec(),
         externals: Vec::new(),
-        checks: crate::verbs::check::ids(),
+        checks: Vec::new(),
         keys: keys(),
     });
     &NAMES
