@@ -91,13 +91,14 @@ pub(super) fn engine(id: &str, names: &Names, listed: &[String]) -> Result<(), R
 }
 
 fn no_engine(id: &str, names: &Names, listed: &[String]) -> Refusal {
-    let mut known = [ALL, REST, SKIP].to_vec();
+    // `skip` is a key here, but no engine.
+    let mut known = [SKIP, ALL, REST].to_vec();
     known.extend(names.methods.iter().chain(&names.engines));
     known.extend(listed.iter().chain(&names.externals).map(String::as_str));
     let help = did_you_mean(id, &known).unwrap_or_else(|| {
         format!(
             "the engines here are {}; list another program as `externals: [{}]`",
-            known.join(", "),
+            known[1..].join(", "),
             shorten(id)
         )
     });
