@@ -201,7 +201,7 @@ impl<'a> Study<'a> {
             match measured.observed.verdict {
                 Verdict::Misses if missed.is_none() => missed = Some(measured),
                 Verdict::Misses => break,
-                _ if unseen => {
+                Verdict::Inconclusive(_) if unseen || missed.is_some() => {
                     whole.get_or_insert(measured);
                 }
                 _ => return measured,
