@@ -273,6 +273,16 @@ impl Default for Settings {
     }
 }
 
+/// The methods that most programs have; they run by default beside a scene's own.
+pub const USUAL: [&str; 6] = [
+    "explicit_euler",
+    "symplectic_euler",
+    "midpoint",
+    "velocity_verlet",
+    "rk4",
+    "implicit_euler",
+];
+
 /// Every method, in the order reports list them: first those of [`fixed`] steps, then [`pairs`].
 pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
     let rows = [

@@ -291,7 +291,8 @@ fn stroke(report: &Report, outcome: &Outcome) -> Stroke {
     let engines = alike.map(|o| &o.engine);
     let before: BTreeSet<&String> = engines.take_while(|e| **e != outcome.engine).collect();
     let own = report.header.is_own(&outcome.engine);
-    look(outcome.kind, before.len(), own)
+    let place = palette::place(outcome.kind, &outcome.engine, before.len());
+    look(outcome.kind, place, own)
 }
 
 /// Whether a run may leave the picture: it is unfinished or gains energy.

@@ -50,23 +50,13 @@ pub enum Orders {
     Always,
 }
 
-/// The integrators that run by default beside the scene's own.
-const DEFAULT_METHODS: &[&str] = &[
-    "explicit_euler",
-    "symplectic_euler",
-    "midpoint",
-    "velocity_verlet",
-    "rk4",
-    "implicit_euler",
-];
-
 /// The reference engines that run by default.
 const DEFAULT_ENGINES: &[&str] = &["rapier", "rapier-forces"];
 
 impl Choice {
     /// The scene's own integrator, the default ones, and the default engines, at the scene's timestep.
     pub fn default_for(scene: &Scene) -> Self {
-        let usual = DEFAULT_METHODS
+        let usual = integrators::USUAL
             .iter()
             .filter_map(|id| integrators::find(id));
         let mut solvers = solvers::own_first(&scene.solver.method, usual.map(Solver::method));

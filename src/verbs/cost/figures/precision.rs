@@ -1,7 +1,7 @@
 //! Work-precision diagrams: error over cost, both axes logarithmic. Each engine is a line with a point for
 //! each setting.
 
-use crate::report::svg::palette::{COLOURS, SHAPES, look};
+use crate::report::svg::palette::{COLOURS, SHAPES, look, place};
 use crate::report::svg::{
     self, Chart, ChartAxis, FAINT, LegendEntry, Look, Mark, Panel, Stroke, Symbol, SymbolShape,
     WHITE, engine, heading, palette, range, shortened,
@@ -215,7 +215,8 @@ fn legend(diagram: Diagram, lines: &[EngineLine]) -> Vec<LegendEntry> {
 fn marked(report: &Report, curves: &[CostCurve]) -> Vec<(Stroke, SymbolShape)> {
     let look = |(at, curve): (usize, &CostCurve)| {
         let before = curves.iter().take(at);
-        let place = before.filter(|other| other.kind == curve.kind).count();
+        let among = before.filter(|other| other.kind == curve.kind).count();
+        let place = place(curve.kind, &curve.engine, among);
         let own = report.header.is_own(&curve.engine);
         let mut stroke = look(curve.kind, place, own);
         if curve.kind == SolverKind::Integrator {

@@ -12,7 +12,9 @@ use crate::verbs::cost::{Cost, CostCurve};
 /// Height of the field, characters.
 const LINES: usize = 22;
 /// Width of the labels right of the field, characters.
-const BESIDE: usize = 11;
+const BESIDE: usize = 20;
+/// The most engines that are drawn; more cannot be told apart.
+const MOST: usize = 8;
 /// Width of the labels left of the field, characters.
 const LABEL: usize = 7;
 /// The fewest characters from one label below the axis to the next.
@@ -73,6 +75,17 @@ impl Field {
             if self.beside[row].is_empty() {
                 self.beside[row] = label;
             }
+        }
+    }
+
+    /// Names a curve beside the row of its smallest error, or the nearest free one.
+    fn name(&mut self, engine: &Engine) {
+        let errors = engine.points.iter().map(|[_, error]| *error);
+        let end = errors.reduce(f64::min).and_then(|error| self.row(error));
+        let free = |row: &usize| self.beside[*row].is_empty();
+        let near = |row: &usize| end.map_or(usize::MAX, |end| end.abs_diff(*row));
+        if let Some(row) = (0..LINES).filter(free).min_by_key(near) {
+            self.beside[row] = format!("{} {}", engine.letter, engine.name);
         }
     }
 
@@ -142,21 +155,60 @@ pub fn plot(report: &Report, cost: &Cost, columns: usize) -> Vec<String> {
         for point in &engine.points {
             field.point(*point, engine);
         }
+        field.name(engine);
     }
     let error = ["energy error", "error (m)"][usize::from(judged)];
     let over = ["force evaluations", "wall time (median)"][usize::from(timed)];
     let mut lines = vec![String::new(), format!("{error} over {over}")];
     lines.extend(field.lines());
     lines.extend(rule(x, timed, width));
-    lines.extend(legend(&engines, floor.is_some(), columns));
+    let measured = |curve: &&CostCurve| curve.points.iter().any(|p| p.error_m.is_some());
+    let measured = cost.curves.iter().filter(measured).count();
+    let left_out = measured.saturating_sub(engines.len());
+    lines.extend(legend(left_out, floor.is_some(), columns));
     lines
 }
 
-/// Every engine with points to show: the scene's own first, then as listed. Integrators have small letters,
-/// reference engines capitals.
+/// The engines to show, those that matter most: the scene's own, the first of each target's ranking in turn, a
+/// reference engine, then the others. They stand as listed, the scene's own first.
+fn shown<'a>(report: &Report, cost: &'a Cost) -> Vec<&'a str> {
+    let own = cost
+        .curves
+        .iter()
+        .filter(|curve| report.header.is_own(&curve.engine));
+    let reference = cost
+        .curves
+        .iter()
+        .filter(|curve| !curve.is_ranked())
+        .take(1);
+    let ranks = cost.targets.iter().map(|target| target.ranking.len()).max();
+    let nth = |place: usize| {
+        cost.targets
+            .iter()
+            .filter_map(move |target| target.ranking.get(place))
+    };
+    let ranked = (0..ranks.unwrap_or(0))
+        .flat_map(nth)
+        .map(|rank| rank.engine.as_str());
+    let first = own.chain(reference).map(|curve| curve.engine.as_str());
+    let all = cost.curves.iter().map(|curve| curve.engine.as_str());
+    let mut shown: Vec<&str> = Vec::new();
+    for engine in first.chain(ranked).chain(all) {
+        if shown.len() < MOST && !shown.contains(&engine) {
+            shown.push(engine);
+        }
+    }
+    shown
+}
+
+/// The engines that are [`shown`] and have points. Integrators have small letters, reference engines capitals.
 fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
     let own = |curve: &CostCurve| report.header.is_own(&curve.engine);
-    let mut curves: Vec<&CostCurve> = cost.curves.iter().collect();
+    let shown = shown(report, cost);
+    let curves = cost.curves.iter();
+    let mut curves: Vec<&CostCurve> = curves
+        .filter(|curve| shown.contains(&curve.engine.as_str()))
+        .collect();
     curves.sort_by_key(|curve| !own(curve));
     let (mut small, mut capital) = ('a'..='z', 'A'..='Z');
     let engines = curves.into_iter().filter_map(|curve| {
@@ -172,7 +224,6 @@ fn engines(report: &Report, cost: &Cost, diagram: Diagram) -> Vec<Engine> {
             false => (capital.next(), Some(Tone::Warn)),
         };
         Some(Engine {
-            // More than 26 of a kind are all `0`.
             letter: letter.unwrap_or('0'),
             name: words::one_line(&curve.engine),
             tone,
@@ -221,20 +272,16 @@ fn power(decade: i32, timed: bool) -> String {
     }
 }
 
-fn legend(engines: &[Engine], floor: bool, columns: usize) -> Vec<String> {
-    // An entry stays on one line: its spaces are made unbreakable for the wrapping.
-    const JOINED: char = '\u{a0}';
-    let entry = |engine: &Engine| {
-        let name = clip(&engine.name, 34).replace(' ', &JOINED.to_string());
-        format!("{}{JOINED}{name}", engine.letter)
-    };
-    let entries: Vec<String> = engines.iter().map(entry).collect();
-    let names = wrap(&entries.join(&format!("{JOINED} ")), columns, "  ").into_iter();
-    let names = names.map(|line| line.replace(JOINED, " ").trim_end().to_owned());
+fn legend(left_out: usize, floor: bool, columns: usize) -> Vec<String> {
     let floor = if floor { " | ═ floor" } else { "" };
-    let about = format!("where several meet, the first of them is shown | ┈ target{floor}");
+    let more = match left_out {
+        0 => String::new(),
+        n => format!(
+            " | {} in the report",
+            words::plural(n as u64, "more engine")
+        ),
+    };
+    let about = format!("where several meet, the first of them is shown | ┈ target{floor}{more}");
     let about = wrap(&about, columns, "").into_iter();
-    names
-        .chain(about.map(|line| mark(Tone::Dim, &line)))
-        .collect()
+    about.map(|line| mark(Tone::Dim, &line)).collect()
 }

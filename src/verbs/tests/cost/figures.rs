@@ -37,8 +37,8 @@ fn points_lie_where_their_numbers_are() {
     let values: Vec<[f64; 2]> = completed
         .map(|p| [p.force_evaluations.unwrap() as f64, p.error_m.unwrap()])
         .collect();
-    // The fourth colour; its label has one circle more.
-    let points = circles(&figure(&report, "cost_evaluations.svg"), "#cc79a7");
+    // The colour of rk4, the fifth of the usual methods; its label has one circle more.
+    let points = circles(&figure(&report, "cost_evaluations.svg"), "#e69f00");
     assert_eq!(points.len(), values.len() + 1);
     for axis in 0..2 {
         let log = |at: usize| values[at][axis].log10();
@@ -61,7 +61,7 @@ fn fronts_are_filled_and_divergence_is_crossed() {
     let cost = report.cost_mut();
     cost.curves[3].pareto = vec![2, 5];
     let svg = figure(&report, "cost_time.svg");
-    let points = circles(&svg, "#cc79a7");
+    let points = circles(&svg, "#e69f00");
     // Point 0 diverged, so that index 2 is the second circle. The last is the label's.
     let filled: Vec<usize> = (0..points.len()).filter(|at| points[*at].1).collect();
     assert_eq!(filled, [1, 4, points.len() - 1]);
@@ -73,7 +73,7 @@ fn fronts_are_filled_and_divergence_is_crossed() {
         paths.count()
     };
     // explicit_euler diverged at three steps, rk4 at one; a cross is two strokes.
-    assert_eq!([strokes("#d55e00"), strokes("#cc79a7")], [6, 2]);
+    assert_eq!([strokes("#0072b2"), strokes("#e69f00")], [6, 2]);
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn rapier_is_dashed_and_left_out_where_it_does_not_count() {
 fn wide_spreads_have_whiskers() {
     let mut report = priced();
     let whiskers = |report: &Report, file: &str| {
-        let look = r##"fill="none" stroke="#cc79a7" stroke-width="1" "##;
+        let look = r##"fill="none" stroke="#e69f00" stroke-width="1" "##;
         figure(report, file).matches(look).count()
     };
     assert_eq!(whiskers(&report, "cost_time.svg"), 0);
