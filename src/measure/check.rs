@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Check {
     /// The id of the check.
     pub id: String,
-    /// Whom it is about.
+    /// The engine, the effect or the part of the scene that it is about.
     pub subject: String,
     /// Whether the bound holds.
     pub status: CheckStatus,

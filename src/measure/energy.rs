@@ -94,6 +94,34 @@ impl Energy {
     }
 }
 
+/// The energies of one state, J.
+pub(crate) struct Sum {
+    /// Kinetic and potential.
+    pub energy: f64,
+    /// E + dissipated - injected.
+    pub balance: f64,
+    /// The largest term of these sums, which rounding is relative to.
+    pub largest: f64,
+}
+
+impl Sum {
+    pub(crate) fn new(system: &ParticleSystem, t: f64, x: &[f64], v: &[f64], work: Work) -> Self {
+        let mut energy = system.kinetic(v);
+        let mut largest = energy.max(work.dissipated.abs()).max(work.injected.abs());
+        for (_, effect) in system.effects() {
+            let u = effect.potential(t, x);
+            energy += u;
+            largest = largest.max(u.abs());
+        }
+        let balance = energy + work.dissipated - work.injected;
+        Self {
+            energy,
+            balance,
+            largest,
+        }
+    }
+}
+
 /// Energies at the recorded instants of one run, joules; all finite.
 #[derive(Debug, Clone)]
 pub struct EnergySeries {
@@ -119,15 +147,12 @@ impl EnergySeries {
             return None;
         }
         let sample = |k: usize| {
-            let (t, x, work) = (run.time(k), run.x(k), run.work(k));
-            let mut energy = system.kinetic(run.v(k));
-            let mut largest = energy.max(work.dissipated.abs()).max(work.injected.abs());
-            for (_, effect) in system.effects() {
-                let u = effect.potential(t, x);
-                energy += u;
-                largest = largest.max(u.abs());
-            }
-            let balance = energy + work.dissipated - work.injected;
+            let sum = Sum::new(system, run.time(k), run.x(k), run.v(k), run.work(k));
+            let Sum {
+                energy,
+                balance,
+                largest,
+            } = sum;
             let finite = balance.is_finite() && energy.is_finite() && largest.is_finite();
             finite.then_some((k, energy, balance, largest))
         };

@@ -12,6 +12,7 @@ mod trend;
 pub mod twin;
 
 pub use check::{Check, CheckStatus};
+pub(crate) use energy::Sum;
 pub use energy::{Behaviour, Energy, EnergySeries, judge};
 pub use error::{Deviation, ErrorSummary, Errors, TOLERANCE, TrueStates, deviation, errors, reach};
 pub(crate) use momentum::totals;

@@ -1,6 +1,6 @@
 //! The gate from the command line: what it selects, prints, accepts, and exits with.
 
-use crate::testkit::program::{answer, array, output, springcheck, word};
+use crate::testkit::program::{answer, array, find, output, springcheck, word};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -302,19 +302,8 @@ fn a_comparison_is_held_to_what_is_asked() {
         word(&folder.path().join("out")),
     ]);
     assert_eq!(code, 0, "{out}");
-    let mut files = Vec::new();
-    let mut folders = vec![folder.path().join("out")];
-    while let Some(at) = folders.pop() {
-        for entry in fs::read_dir(at).expect("a folder").flatten() {
-            let path = entry.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|e| e == "csv") {
-                files.push(path);
-            }
-        }
-    }
-    let file = word(&files[0]).to_owned();
+    let file = find(&folder.path().join("out"), "symplectic_euler@0.01.csv");
+    let file = word(&file).to_owned();
     // z = h w = 0.0707: symplectic Euler's energy swings by about z / 2 = 3.5 %.
     for (flags, wanted) in [
         (&["--expect", "symplectic_euler"][..], 0),

@@ -149,6 +149,22 @@ pub fn files(folder: &Path) -> BTreeSet<String> {
     names.collect()
 }
 
+/// The file of this name somewhere below a folder.
+pub fn find(folder: &Path, name: &str) -> PathBuf {
+    let mut open = vec![folder.to_owned()];
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.file_name().is_some_and(|own| own == name) {
+                return path;
+            }
+        }
+    }
+    panic!("no {name}");
+}
+
 /// Every file holds text without numbers that are none, and every figure is well-formed.
 pub fn well_formed(folder: &Path) {
     let texts = files(folder).into_iter();

@@ -45,6 +45,15 @@ pub struct Identity {
     pub followed: usize,
 }
 
+impl Identity {
+    /// Whether rounding explains it as this method at its own step, by name or among equals.
+    pub fn is(&self, method: &str) -> bool {
+        let named = self.method == method && self.substeps == 1;
+        let listed = self.equivalent.iter().any(|id| id == method);
+        (named || listed) && self.undecided != Some(Undecided::Near)
+    }
+}
+
 /// The reason why a trajectory's scheme is not decided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

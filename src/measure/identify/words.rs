@@ -1,6 +1,6 @@
 //! Numbers as people say them.
 
-/// So many digits, less trailing zeros.
+/// A number with this many digits, without trailing zeros.
 pub(super) fn digits(value: f64, count: usize) -> String {
     let rounded = format!("{value:.*e}", count.saturating_sub(1));
     // No minus before a zero.

@@ -6,7 +6,7 @@ use crate::report::github;
 use crate::report::json::Tool;
 use crate::scene::{Names, Scene};
 use crate::solvers::Solver;
-use crate::trajectory::{self, Expected, limits};
+use crate::trajectory::{self, Expected};
 use crate::verbs::Report;
 use crate::verbs::cli::external::{self, External};
 use crate::verbs::cli::flags::{self, Time};
@@ -15,10 +15,9 @@ use crate::verbs::cli::note::note;
 use crate::verbs::cli::output;
 use crate::verbs::cli::place::put;
 use crate::verbs::cli::terminal::{self, Terminal};
-use crate::verbs::compare::{Recorded, method};
+use crate::verbs::compare::{Recorded, method, read};
 use anyhow::{Context, bail};
-use std::fs::File;
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -128,7 +127,7 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         .iter()
         .map(|path| Ok((path, flags::scene_of(path, &names)?)));
     let scenes: Vec<(&PathBuf, Scene)> = scenes.collect::<anyhow::Result<_>>()?;
-    claimed(args)?;
+    let claims = claimed(args)?;
     let trajectories = trajectories(args, &scenes)?;
     let baseline = args.baseline.as_deref().map(baseline).transpose()?;
     let accepted = match args.accept.as_deref() {
@@ -142,7 +141,7 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let mut reports = Vec::new();
     for (at, (path, scene)) in scenes.iter().enumerate() {
         interrupt::unfinished(&files[at..]);
-        let mut report = one(args, quiet, scene, path, &trajectories)?;
+        let mut report = one(args, quiet, scene, path, &trajectories, &claims)?;
         if let Some(baseline) = &baseline {
             report.header.checks.extend(baseline.check(&report));
         }
@@ -246,14 +245,6 @@ fn trajectories(args: &Args, scenes: &[(&PathBuf, Scene)]) -> anyhow::Result<Vec
     args.trajectory.iter().map(solver).collect()
 }
 
-fn read(path: &Path) -> std::io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    File::open(path)?
-        .take(limits::FILE_BYTES as u64 + 1)
-        .read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
-
 fn baseline(path: &Path) -> anyhow::Result<Baseline> {
     let name = || path.display().to_string();
     let text = std::fs::read(path).with_context(|| format!("cannot read {}", name()))?;
@@ -266,6 +257,7 @@ fn one(
     scene: &Scene,
     path: &Path,
     trajectories: &[Solver],
+    claims: &[Claim],
 ) -> anyhow::Result<Report> {
     let mut choice = Gate::choice(scene);
     choice.solvers.extend(external::chosen(
@@ -275,7 +267,7 @@ fn one(
     ));
     choice.solvers.extend(trajectories.iter().cloned());
     let mut gate = Gate::of(scene, &choice);
-    gate.claims = claimed(args)?;
+    gate.claims = claims.to_vec();
     gate.require_all = args.require_all;
     let terminal = Terminal::new(quiet);
     let estimates = gate.plan.estimate();

@@ -102,12 +102,7 @@ impl<'a> Gate<'a> {
     /// Fails only where a session's file could not be written.
     pub fn run(&self, session: &dyn Session) -> Result<Report, SaveError> {
         let (mut report, records) = self.plan.recorded(session)?;
-        let ran = Ran {
-            gate: self,
-            report: &report,
-            records: &records,
-            linearised: run::linearised(&self.plan),
-        };
+        let ran = Ran::new(self, &report, &records, run::linearised(&self.plan));
         let judged: Vec<fn(&Ran) -> Vec<Check>> =
             CHECKS.iter().filter_map(|row| row.judge).collect();
         let mut checks: Vec<Check> = judged.iter().flat_map(|judge| judge(&ran)).collect();

@@ -2,7 +2,7 @@
 //! scheme that it follows.
 
 use crate::integrators::{self, Method};
-use crate::measure::identify::{Identity, Undecided};
+use crate::measure::identify::Undecided;
 use crate::measure::{Check, CheckStatus};
 use crate::scene::Scene;
 use crate::scene::words::nearest;
@@ -146,12 +146,7 @@ fn wanted(args: &Args, report: &Report) -> Vec<Check> {
     let error = outcome.position_error_m.as_ref().map(|error| error.max);
     let scheme = args.expect.map(|method| {
         let found = outcome.identified.as_ref();
-        let is = |found: &Identity| {
-            let named = found.method == method.id && found.substeps == 1;
-            let listed = found.equivalent.iter().any(|id| id == method.id);
-            (named || listed) && found.undecided != Some(Undecided::Near)
-        };
-        let holds = found.is_some_and(is);
+        let holds = found.is_some_and(|found| found.is(method.id));
         let name = found.map_or("no known scheme", |found| found.method.as_str());
         let message = format!("it is to follow {}, and follows {name}", method.id);
         asked("--expect", holds, None, None, message)
@@ -210,7 +205,7 @@ fn expected(scene: &Scene, timestep: f64, plane: Option<Plane>) -> anyhow::Resul
 }
 
 /// Reads the file, up to one byte more than the parser accepts.
-fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+pub(in crate::verbs) fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let limit = limits::FILE_BYTES as u64 + 1;
     File::open(path)?.take(limit).read_to_end(&mut bytes)?;

@@ -1,7 +1,7 @@
 //! `compare`: trajectories come back as what they are, and what is wrong with them is found.
 
 use crate::testkit::program::{
-    altered, json_of, keys, outcomes, output, refuse_all, set, tidy, with_fields, word,
+    altered, find, json_of, keys, outcomes, output, refuse_all, set, tidy, with_fields, word,
 };
 use crate::testkit::scenes::parsed;
 use serde_json::Value;
@@ -366,22 +366,6 @@ fn what_a_file_follows_early_need_not_be_what_it_follows() {
         "gravity_forgotten(symplectic_euler)"
     );
     assert_eq!(report["fault"]["step"], 100);
-}
-
-/// The file of this name somewhere below a folder.
-fn find(folder: &Path, name: &str) -> PathBuf {
-    let mut open = vec![folder.to_owned()];
-    while let Some(folder) = open.pop() {
-        for entry in std::fs::read_dir(folder).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            if path.is_dir() {
-                open.push(path);
-            } else if path.file_name().is_some_and(|own| own == name) {
-                return path;
-            }
-        }
-    }
-    panic!("no {name}");
 }
 
 /// A pendulum in the plane of y and z, as a program in two dimensions writes it, and without its last line

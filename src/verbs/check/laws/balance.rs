@@ -1,9 +1,9 @@
 //! The balance of energy closes with the step, as fast as the method's order says.
 
 use super::{Ran, Row, Subject};
-use crate::integrators::{self, Method};
+use crate::integrators::{self, Method, Settings};
 use crate::measure::order::{Observed, Point, RATIOS, TOLERANCE, Verdict, observed};
-use crate::measure::{Check, CheckStatus};
+use crate::measure::{Check, CheckStatus, Sum};
 use crate::physics::{State, System};
 use crate::solvers::{Setting, Solver, SolverKind};
 use rayon::prelude::*;
@@ -117,17 +117,8 @@ fn error(ran: &Ran, solver: &Solver, timestep: f64, steps: u64) -> Option<(f64, 
     let setting = Setting::Steps { timestep, steps };
     let mut run = solver.start(scene, system, &setting).ok()?;
     let energies = |state: &State| {
-        let kinetic = system.kinetic(&state.v);
-        let mut largest = kinetic
-            .max(state.work.dissipated.abs())
-            .max(state.work.injected.abs());
-        let mut sum = kinetic + state.work.dissipated - state.work.injected;
-        for (_, effect) in system.effects() {
-            let potential = effect.potential(state.t, &state.x);
-            largest = largest.max(potential.abs());
-            sum += potential;
-        }
-        (sum, largest)
+        let sum = Sum::new(system, state.t, &state.x, &state.v, state.work);
+        (sum.balance, sum.largest)
     };
     let (start, mut largest) = energies(run.state());
     let mut off = 0.0_f64;
@@ -137,7 +128,7 @@ fn error(ran: &Ran, solver: &Solver, timestep: f64, steps: u64) -> Option<(f64, 
         off = off.max((now - start).abs());
         largest = largest.max(terms);
     }
-    let tolerance = scene.solver.tolerance.unwrap_or(1e-12);
+    let tolerance = Settings::stated(scene.solver.tolerance).tolerance;
     let solves = solver
         .as_method()
         .is_none_or(|m| matches!(m.coefficients, integrators::Coefficients::Implicit(_)));

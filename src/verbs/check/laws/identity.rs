@@ -36,8 +36,7 @@ fn scheme(subject: &Subject) -> Option<Check> {
     };
     let near = found.undecided == Some(Undecided::Near);
     let named = found.method == method.id && found.substeps == 1;
-    let listed = found.equivalent.iter().any(|id| id == method.id);
-    let holds = (named || listed) && !near;
+    let holds = found.is(method.id);
     let steps = scheme_label(found);
     let message = match (holds, near) {
         (true, _) if named => format!("steps as {}", method.id),

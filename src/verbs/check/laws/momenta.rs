@@ -120,7 +120,7 @@ pub(super) const ANGULAR: Row = Row {
                 let radii = run.x(k).chunks_exact(3).map(norm);
                 reach = radii.fold(reach, f64::max);
                 let half: f64 = 3.0 * run.rows().precision.half_unit(reach);
-                let turned = half * ran.size(subject, run, k);
+                let turned = half * ran.sizes(subject, run)[k];
                 let bound = bounds[k] * reach + turned;
                 Instant {
                     t: run.time(k),
@@ -168,9 +168,14 @@ fn constant(ran: &Ran) -> Option<[f64; 3]> {
 /// What rounding may have done to the momentum by each instant, kg m/s.
 fn bounds(ran: &Ran, subject: &Subject, run: &Trajectory) -> Vec<f64> {
     let rounding = ran.rounding(subject, run);
-    let sizes = ran.sizes(subject, run);
-    let bound = |(k, size): (usize, f64)| {
-        run.step(k) as f64 * rounding * size + ran.recorded(run, 0) + ran.recorded(run, k)
+    let mut most = 0.0_f64;
+    let bound = |(k, size): (usize, &f64)| {
+        most = most.max(*size);
+        run.step(k) as f64 * rounding * most + ran.recorded(run, 0) + ran.recorded(run, k)
     };
-    sizes.into_iter().enumerate().map(bound).collect()
+    ran.sizes(subject, run)
+        .iter()
+        .enumerate()
+        .map(bound)
+        .collect()
 }

@@ -1,6 +1,6 @@
 //! What laws judge: the runs of a plan, and what is known of each.
 
-use crate::integrators::{Coefficients, Method};
+use crate::integrators::{Coefficients, Method, Settings};
 use crate::measure::stability::{Limit, Linearised, Prediction};
 use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
@@ -9,6 +9,7 @@ use crate::trajectory::{Precision, Trajectory};
 use crate::verbs::Report;
 use crate::verbs::check::Gate;
 use crate::verbs::run::{Case, Outcome, Plan, Record};
+use std::sync::OnceLock;
 
 /// A plan that ran.
 pub(in crate::verbs::check) struct Ran<'a> {
@@ -17,11 +18,15 @@ pub(in crate::verbs::check) struct Ran<'a> {
     pub records: &'a [Record],
     /// The scene linearised about its start; None where that takes longer than the runs.
     pub linearised: Option<Linearised>,
+    /// See [`sizes`](Self::sizes), by case.
+    sizes: Vec<OnceLock<Vec<f64>>>,
 }
 
 /// One run that left a trajectory or the reason why not.
 #[derive(Clone, Copy)]
 pub(in crate::verbs::check) struct Subject<'a> {
+    /// The place of its case in the plan.
+    at: usize,
     pub case: &'a Case,
     pub record: &'a Record,
     pub outcome: &'a Outcome,
@@ -30,6 +35,21 @@ pub(in crate::verbs::check) struct Subject<'a> {
 }
 
 impl<'a> Ran<'a> {
+    pub fn new(
+        gate: &'a Gate<'a>,
+        report: &'a Report,
+        records: &'a [Record],
+        linearised: Option<Linearised>,
+    ) -> Self {
+        Self {
+            gate,
+            report,
+            records,
+            linearised,
+            sizes: records.iter().map(|_| OnceLock::new()).collect(),
+        }
+    }
+
     pub fn plan(&self) -> &'a Plan<'a> {
         &self.gate.plan
     }
@@ -45,12 +65,14 @@ impl<'a> Ran<'a> {
     pub fn subjects(&self) -> impl Iterator<Item = Subject<'a>> + '_ {
         let cases = self.gate.plan.cases.iter().zip(self.records);
         let all = cases.zip(self.report.outcomes());
-        all.map(|((case, record), outcome)| Subject {
-            case,
-            record,
-            outcome,
-            method: self.gate.method(case),
-        })
+        all.enumerate()
+            .map(|(at, ((case, record), outcome))| Subject {
+                at,
+                case,
+                record,
+                outcome,
+                method: self.gate.method(case),
+            })
     }
 
     /// Those that ran to their end and have velocities, with their trajectory and method.
@@ -94,33 +116,27 @@ impl<'a> Ran<'a> {
         };
         let solves = |method: &Method| matches!(method.coefficients, Coefficients::Implicit(_));
         let solved = subject.method.is_some_and(solves);
-        let tolerance = self.scene().solver.tolerance.unwrap_or(1e-12);
+        let tolerance = Settings::stated(self.scene().solver.tolerance).tolerance;
         // A dozen operations a step, and a dozen forces on a particle.
         16.0 * bit + if solved { tolerance } else { 0.0 }
     }
 
-    /// The sum of m (|v| + h |a|) at an instant, kg m/s: what rounding in a step is relative to.
-    pub fn size(&self, subject: &Subject, run: &Trajectory, k: usize) -> f64 {
-        let (x, v) = (run.x(k), run.v(k));
-        let mut a = vec![0.0; x.len()];
-        self.system().acceleration(run.time(k), x, v, &mut a);
-        let h = subject.case.label.timestep;
-        let each = self.scene().particles.iter().enumerate();
-        each.map(|(i, p)| {
-            let (v, a) = (norm(&v[3 * i..3 * i + 3]), norm(&a[3 * i..3 * i + 3]));
-            if p.fixed { 0.0 } else { p.mass * (v + h * a) }
-        })
-        .sum()
-    }
-
-    /// The running maximum of [`size`](Self::size) over the instants of a run.
-    pub fn sizes(&self, subject: &Subject, run: &Trajectory) -> Vec<f64> {
-        let mut most = 0.0_f64;
-        let sizes = (0..run.len()).map(|k| {
-            most = most.max(self.size(subject, run, k));
-            most
-        });
-        sizes.collect()
+    /// The sum of m (|v| + h |a|) at each instant of a run, kg m/s: what rounding in a step is relative to. Several
+    /// laws use it, and it is computed once.
+    pub fn sizes(&self, subject: &Subject, run: &Trajectory) -> &[f64] {
+        let size = |k: usize| {
+            let (x, v) = (run.x(k), run.v(k));
+            let mut a = vec![0.0; x.len()];
+            self.system().acceleration(run.time(k), x, v, &mut a);
+            let h = subject.case.label.timestep;
+            let each = self.scene().particles.iter().enumerate();
+            each.map(|(i, p)| {
+                let (v, a) = (norm(&v[3 * i..3 * i + 3]), norm(&a[3 * i..3 * i + 3]));
+                if p.fixed { 0.0 } else { p.mass * (v + h * a) }
+            })
+            .sum()
+        };
+        self.sizes[subject.at].get_or_init(|| (0..run.len()).map(size).collect())
     }
 
     /// The sum of m times what a recorded velocity is rounded by, kg m/s.
