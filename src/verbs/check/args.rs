@@ -5,10 +5,10 @@ use super::targets::Targets;
 use super::{Baseline, Claim, Gate, Verdict, text, verdict};
 use crate::report::github;
 use crate::report::json::Tool;
-use crate::scene::words::aside;
 use crate::scene::{Names, Scene};
 use crate::solvers::Solver;
 use crate::trajectory::{self, Plane};
+use crate::verbs::Report;
 use crate::verbs::cli::external::{self, External, Terms};
 use crate::verbs::cli::flags::{self, Time};
 use crate::verbs::cli::interrupt;
@@ -17,7 +17,6 @@ use crate::verbs::cli::output;
 use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::compare::{Recorded, read};
 use crate::verbs::run::Choice;
-use crate::verbs::{Report, formats};
 use anyhow::{Context, bail};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -127,11 +126,7 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         );
     }
     for Named { name, .. } in &args.write {
-        if formats::format(name).is_none() {
-            let known: Vec<&str> = formats::FORMATS.iter().map(|format| format.id).collect();
-            let (aside, known) = (aside(name, &known), known.join(", "));
-            bail!("--write: unknown format `{name}`{aside}; known: {known}");
-        }
+        output::known(name).context("--write")?;
     }
     let all = flags::scenes(&args.paths)?;
     let files = match args.partition {

@@ -3,9 +3,9 @@
 use super::place::Place;
 use crate::report::json::Tool;
 use crate::report::terminal::{self, width};
-use crate::scene::words::{acts, in_line, visible};
+use crate::scene::words::{acts, aside, in_line, visible};
 use crate::verbs::{Report, formats};
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clap::builder::PossibleValuesParser;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -110,6 +110,16 @@ impl Output {
             (false, _) => self.print(&Tool::this(), std::slice::from_ref(report)),
         }
     }
+}
+
+/// Refuses an id that is no format's.
+pub fn known(id: &str) -> anyhow::Result<()> {
+    let known: Vec<&str> = formats::FORMATS.iter().map(|format| format.id).collect();
+    if !known.contains(&id) {
+        let (aside, known) = (aside(id, &known), known.join(", "));
+        bail!("unknown format `{id}`{aside}; known: {known}");
+    }
+    Ok(())
 }
 
 /// Reports made by `tool`, in the format of this id.

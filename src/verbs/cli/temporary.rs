@@ -124,12 +124,17 @@ pub fn sweep(folder: &Path) {
         let Some(kind) = entry.file_type().ok().filter(|_| ours) else {
             continue;
         };
-        let abandoned =
-            |file: std::io::Result<File>| file.is_ok_and(|file| file.try_lock().is_ok());
-        if kind.is_dir() && abandoned(File::open(&path)) {
-            let _ = std::fs::remove_dir_all(path);
-        } else if kind.is_file() && abandoned(File::options().write(true).open(&path)) {
-            let _ = std::fs::remove_file(path);
+        let opened = match kind.is_dir() {
+            true => File::open(&path),
+            false if kind.is_file() => File::options().write(true).open(&path),
+            false => continue,
+        };
+        // Held until it is removed: who made it a moment ago then knows that it is gone.
+        if let Some(_held) = opened.ok().filter(|file| file.try_lock().is_ok()) {
+            let _ = match kind.is_dir() {
+                true => std::fs::remove_dir_all(&path),
+                false => std::fs::remove_file(&path),
+            };
         }
     }
 }

@@ -96,7 +96,13 @@ impl Made {
     fn content(&mut self, path: &Path, text: &str) -> std::io::Result<Temporary> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let above: Vec<&Path> = folder.ancestors().collect();
-        for folder in above.into_iter().rev().filter(|above| !above.exists()) {
+        let named = |above: &&Path| !above.as_os_str().is_empty();
+        for folder in above
+            .into_iter()
+            .filter(named)
+            .rev()
+            .filter(|above| !above.exists())
+        {
             fs::create_dir(folder)?;
             self.folders.push(folder.to_owned());
         }
