@@ -17,7 +17,7 @@ pub fn energy_scale(scene: &Scene, system: &ParticleSystem, peak: Option<f64>) -
         .particles
         .iter()
         .filter(|p| !p.fixed)
-        .map(|p| p.mass * scene.solver.gravity.abs())
+        .map(|p| p.mass * gravity(scene))
         .sum();
     let rest = weight * scene.size();
     // A truth that stands still leaves only rounding, too.
@@ -36,12 +36,18 @@ pub fn divergence_limit(scene: &Scene, scale: Option<f64>) -> Option<f64> {
     (limit > 0.0 && limit.is_finite()).then_some(limit)
 }
 
+/// The size of gravity, m/s²; exact along an axis.
+pub(crate) fn gravity(scene: &Scene) -> f64 {
+    let [x, y, z] = scene.gravity();
+    x.hypot(y).hypot(z)
+}
+
 /// The energy gravity and wind give the free particles in a fall of t seconds, over t², J/s².
 pub(super) fn free_fall(scene: &Scene) -> f64 {
     let wind = scene.wind.as_ref().map_or(0.0, |wind| wind.strength.abs());
     let free = scene.particles.iter().filter(|p| !p.fixed);
     let fall = free.map(|p| {
-        let a = scene.solver.gravity.abs() + wind / p.mass;
+        let a = gravity(scene) + wind / p.mass;
         0.5 * p.mass * a * a
     });
     fall.sum()

@@ -28,7 +28,7 @@ pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, W
 pub use model::{
     Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, SolverSpec, Spring, Wind, steps,
 };
-pub use table::Value;
+pub use table::{Value, Vectors};
 pub use write::yaml;
 
 use place::Problem;

@@ -7,12 +7,14 @@
 //! /// What it is, and its unit.
 //! field: type = default, "key" => kind and bounds, meaning of an absent key, its flat array;
 //! ```
+//! A key that takes a number or vectors has two rows, the number's first; the one that is not given is 0 or empty.
+//!
 //! `Default` is the value of an absent key. Where the key is required, it is something harmless, such as
 //! a force of 0.
 
 use super::expectation::{Expectation, Scope, Skipped};
 use super::limits::{self, Bounds, Form};
-use super::table::{Field, Value, declare, members, words};
+use super::table::{Field, Value, Vectors, declare, members, words};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use serde::Serialize;
@@ -87,6 +89,8 @@ pub enum ValueKind {
     Number(Bounds),
     /// A list of this many numbers.
     Numbers(usize, Bounds),
+    /// A list of three numbers, or a list of such lists.
+    Vectors(Bounds),
     /// The id of a particle.
     Id,
     /// A list of two particle ids.
@@ -144,7 +148,7 @@ declare! {
         Required("add `solver: {type: symplectic_euler, timestep: 0.0005}`"), None;
     /// Seconds, at least one timestep.
     duration: f64 = 5.0, "duration" => ValueKind::Number(limits::DURATION), Usual, None;
-    /// The axis gravity acts along.
+    /// The axis that a number under `gravity` is along; vectors have axes of their own.
     up: Axis = Axis::Z, "up" => ValueKind::Word(Axis::WORDS), Usual, Some("gravity");
     /// The part of the ends' relative velocity that dampers resist.
     damping_model: DampingModel = DampingModel::Axial,
@@ -181,7 +185,10 @@ declare! {
         Required("give the step in seconds, as 0.0005"), None;
     /// Signed acceleration along `up`, m/s².
     gravity: f64 = -9.81,
-        "gravity" => ValueKind::Number(Bounds::signed(1e12, "m/s²")), Usual, Some("gravity");
+        "gravity" => ValueKind::Number(limits::GRAVITY), Usual, Some("gravity");
+    /// Or accelerations that add up, m/s², whatever `up` is.
+    gravities: Vectors = Vectors::default(),
+        "gravity" => ValueKind::Vectors(limits::GRAVITY), Usual, Some("gravity");
     /// Relative residual at which an implicit solve ends; the method's default if absent.
     tolerance: Option<f64> = None,
         "tolerance" => ValueKind::Number(Bounds::from(1e-300, 1.0, "relative")), Usual, None;
@@ -314,6 +321,18 @@ impl Scene {
     /// Number of steps that cover the duration: N = ceil(duration / h - 1e-9), at least 1.
     pub fn steps(&self, timestep: f64) -> u64 {
         steps(self.duration, timestep)
+    }
+
+    /// The acceleration of gravity, m/s²: the number along `up` and the vectors, of which a file has either.
+    pub fn gravity(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        sum[self.up.index()] = self.solver.gravity;
+        for vector in &self.solver.gravities.0 {
+            for (sum, part) in sum.iter_mut().zip(vector) {
+                *sum += part;
+            }
+        }
+        sum
     }
 
     /// The scene's size L in metres: the diagonal of the box around all initial positions plus the

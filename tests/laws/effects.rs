@@ -4,7 +4,7 @@
 use crate::testkit::{Random, everything, force, sample};
 use springcheck::physics::effects::{self, Effect, EffectRow};
 use springcheck::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power};
-use springcheck::scene::{DampingModel, Scene};
+use springcheck::scene::{DampingModel, Scene, Vectors};
 
 fn close(what: &str, found: f64, wanted: f64, scale: f64, tolerance: f64) -> Result<(), String> {
     if (found - wanted).abs() <= tolerance * scale {
@@ -412,6 +412,8 @@ fn only_what_the_scene_calls_for_is_built() {
     };
     assert_eq!(ids(&scene).len(), effects::REGISTRY.len());
     scene.solver.gravity = 0.0;
+    // Vectors that add up to nothing are no gravity.
+    scene.solver.gravities = Vectors(vec![[0.0, 2.0, 0.0], [0.0, -2.0, 0.0]]);
     scene.wind = None;
     scene.gravitational.clear();
     for particle in &mut scene.particles {

@@ -6,7 +6,7 @@ use super::numbers::{NUMBERS, Number};
 use super::result::Deviation;
 use super::words::{digits, seconds, times};
 use crate::scene::model::SPRINGS;
-use crate::scene::{Axis, Scene};
+use crate::scene::{Axis, Scene, Vectors};
 
 /// "spring 3 (particles 1 and 2)".
 pub(super) fn spring(scene: &Scene, id: usize) -> String {
@@ -123,14 +123,12 @@ impl Channel {
             All(number) | Alike(number) => number.is_in(scene),
             One(number, at) => number.value(scene, at) != 0.0,
             Along(number, axis) => {
-                let along = match (number, &scene.wind) {
-                    (Number::Wind, Some(wind)) => {
-                        let across = |at: usize| at != axis.index() && wind.direction[at] != 0.0;
-                        !(0..3).any(across)
-                    }
-                    _ => axis == scene.up,
+                let direction = match (number, &scene.wind) {
+                    (Number::Wind, Some(wind)) => wind.direction,
+                    _ => scene.gravity(),
                 };
-                number.is_in(scene) && !along
+                let across = |at: usize| at != axis.index() && direction[at] != 0.0;
+                number.is_in(scene) && (0..3).any(across)
             }
             Timestep | Velocity(_) => true,
         }
@@ -152,6 +150,8 @@ impl Channel {
             Along(number, axis) => {
                 number.change(scene, None, |value| value * factor);
                 if number == Number::Gravity {
+                    scene.solver.gravity = number.value(scene, 0);
+                    scene.solver.gravities = Vectors::default();
                     scene.up = axis;
                 } else if let Some(wind) = &mut scene.wind {
                     wind.direction = [0.0; 3];

@@ -22,7 +22,7 @@ static MIRRORS: &[Mirror] = &[
     Mirror {
         effect: "gravity",
         add: |scene, _, world| {
-            world.set_gravity(scene.up, scene.solver.gravity);
+            world.set_gravity(scene.gravity());
             Ok(())
         },
     },

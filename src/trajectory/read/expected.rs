@@ -148,15 +148,13 @@ fn moves(scene: &Scene) -> [bool; 3] {
         .map(|ends| ends.map(|end| &scene.particles[end]))
         .filter(|ends| ends.iter().any(|end| !end.fixed))
         .map(|[a, b]| [0, 1, 2].map(|axis| b.position[axis] - a.position[axis]));
-    let mut gravity = [0.0; 3];
-    gravity[scene.up.index()] = scene.solver.gravity;
     let wind = scene.wind.iter().filter(|wind| wind.strength != 0.0);
     let velocities = scene.particles.iter().filter(|p| !p.fixed);
     let mut moves = [false; 3];
     for direction in lines
         .chain(wind.map(|wind| wind.direction))
         .chain(velocities.map(|p| p.velocity))
-        .chain([gravity])
+        .chain([scene.gravity()])
     {
         for axis in 0..3 {
             moves[axis] |= direction[axis] != 0.0;

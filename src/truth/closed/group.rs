@@ -58,8 +58,7 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
             parent[a.max(b)] = a.min(b);
         }
     }
-    let mut gravity = Vector3::zeros();
-    gravity[scene.up.index()] = scene.solver.gravity;
+    let gravity = Vector3::from(scene.gravity());
     let wind = scene.wind.as_ref().map_or(Vector3::zeros(), |wind| {
         wind.strength * Vector3::from(wind.direction)
     });

@@ -40,6 +40,22 @@ fn a_small_scene_gets_its_defaults() {
     assert_eq!(spring.cubic, 0.0);
 }
 
+/// A number along `up`; or vectors that add up, to which `up` does nothing.
+#[test]
+fn gravity_is_a_number_or_vectors() {
+    let gravity = |text: &str| {
+        let solver = format!("solver: {{type: rk4, timestep: 0.1, gravity: {text}}}\nup: x");
+        accepted(&solver).gravity()
+    };
+    assert_eq!(gravity("-2"), [-2.0, 0.0, 0.0]);
+    assert_eq!(gravity("[0, 0, -9.81]"), [0.0, 0.0, -9.81]);
+    assert_eq!(
+        gravity("[[0, 0, -9.81], [1, 2, 0.5]]"),
+        [1.0, 2.0, -9.81 + 0.5]
+    );
+    assert_eq!(gravity(""), [-9.81, 0.0, 0.0]);
+}
+
 #[test]
 fn every_key_is_read() {
     let scene = accepted(

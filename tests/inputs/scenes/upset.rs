@@ -70,7 +70,7 @@ const PIECES: &[&str] = &[
 
 /// Every key, small enough to be mutated often.
 const RICH: &str = "name: a\ndescription: 'b'\nduration: 2\nup: x\ndamping_model: axial\n\
-    solver: {type: rk4, timestep: 0.1, gravity: 0, tolerance: 1e-9}\n\
+    solver: {type: rk4, timestep: 0.1, gravity: [[0, 0, 1], [1, 2, 3]], tolerance: 1e-9}\n\
     plot: {particle_id: 1, dof: 2, y_range: [0, 1]}\n\
     particles:\n- &p {pos: [0, 0, 0], fixed: true, mass: 1}\n- {pos: [1, 0, 0], vel: [0, 1, 0], mass: 1, radius: 1, drag: 1}\n- *p\n\
     springs: [{particle_ids: [0, 1], stiffness: 1, cubic: 1, damping: 1, rest_length: 1}]\n\
@@ -91,6 +91,7 @@ fn seeds() -> Vec<Vec<u8>> {
 fn assert_sound(scene: &Scene) {
     let count = scene.particles.len();
     let mut numbers = vec![scene.duration, scene.solver.timestep, scene.solver.gravity];
+    numbers.extend(scene.solver.gravities.0.iter().flatten());
     assert!(scene.solver.timestep > 0.0 && scene.solver.timestep <= scene.duration);
     assert!(integrators::find(&scene.solver.method).is_some());
     for p in &scene.particles {
