@@ -42,12 +42,15 @@ pub(crate) fn gravity(scene: &Scene) -> f64 {
     x.hypot(y).hypot(z)
 }
 
-/// The energy gravity and wind give the free particles in a fall of t seconds, over t², J/s².
+/// The energy gravity, wind and the drag of moving air at rest give the free particles in t seconds, over t², J/s².
 pub(super) fn free_fall(scene: &Scene) -> f64 {
     let wind = scene.wind.as_ref().map_or(0.0, |wind| wind.strength.abs());
+    let [x, y, z] = scene.air().velocity;
+    let air = x.hypot(y).hypot(z);
     let free = scene.particles.iter().filter(|p| !p.fixed);
     let fall = free.map(|p| {
-        let a = gravity(scene) + wind / p.mass;
+        let blown = (p.drag.abs() + p.quadratic_drag.abs() * air) * air;
+        let a = gravity(scene) + (wind + blown) / p.mass;
         0.5 * p.mass * a * a
     });
     fall.sum()

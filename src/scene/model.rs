@@ -20,11 +20,13 @@ use parry3d::math::Vector;
 use serde::Serialize;
 
 /// All parts: the mappings a file consists of.
-pub static PARTS: [&Part; 7] = [
+pub static PARTS: [&Part; 9] = [
     &SPRINGS,
     &PARTICLES,
+    &TRIANGLES,
     &GRAVITATIONAL,
     &WIND,
+    &AIR,
     &SOLVER,
     &PLOT,
     &SCENE,
@@ -93,8 +95,8 @@ pub enum ValueKind {
     Vectors(Bounds),
     /// The id of a particle.
     Id,
-    /// A list of two particle ids.
-    Ids,
+    /// A list of this many particle ids.
+    Ids(usize),
     /// 0, 1 or 2 for x, y, z.
     Coordinate,
     /// `true` or `false`.
@@ -128,7 +130,7 @@ use Absent::{Derived, Required, Usual};
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    reserved ["air", "bending", "colliders", "driven", "magnetic", "objects", "rods", "strain_limit"];
+    reserved ["bending", "colliders", "driven", "magnetic", "objects", "rods", "strain_limit"];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
@@ -160,11 +162,16 @@ declare! {
         "particles" => ValueKind::Part(&PARTICLES), Required(NO_PARTICLES), None;
     /// Springs with dampers.
     springs: Vec<Spring> = Vec::new(), "springs" => ValueKind::Part(&SPRINGS), Usual, None;
+    /// Triangles of particles, which the air drags at.
+    triangles: Vec<Triangle> = Vec::new(),
+        "triangles" => ValueKind::Part(&TRIANGLES), Usual, None;
     /// Attractions.
     gravitational: Vec<GravitationalPair> = Vec::new(),
         "gravitational" => ValueKind::Part(&GRAVITATIONAL), Usual, None;
     /// A constant force.
     wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
+    /// The air that drag acts against; at rest, as at sea level, where the scene says nothing of it.
+    air: Option<Air> = None, "air" => ValueKind::Part(&AIR), Usual, None;
     /// Names of other programs that the file expects something of; the command line says what they are.
     externals: Vec<String> = Vec::new(),
         "externals" => ValueKind::Names(limits::EXTERNAL), Usual, None;
@@ -226,9 +233,12 @@ declare! {
         "mass" => ValueKind::Number(Bounds::from(1e-30, 1e30, "kg")), Derived, Some("masses");
     /// Metres; the radius of the ball where the scene has contact.
     radius: f64 = 0.1, "radius" => ValueKind::Number(Bounds::not_negative(1e12, "m")), Usual, None;
-    /// Linear drag coefficient b, N s/m.
+    /// Linear drag coefficient b, N s/m: the force is -b u, u the velocity relative to the air.
     drag: f64 = 0.0,
         "drag" => ValueKind::Number(Bounds::not_negative(1e18, "N s/m")), Usual, Some("drag");
+    /// Quadratic drag coefficient c, N s²/m²: the force is -c |u| u.
+    quadratic_drag: f64 = 0.0, "quadratic_drag" =>
+        ValueKind::Number(Bounds::not_negative(1e18, "N s²/m²")), Usual, Some("quadratic_drag");
 }
 
 declare! {
@@ -237,7 +247,7 @@ declare! {
     reserved [];
 
     /// Two different particles.
-    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids,
+    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids(2),
         Required("name the two ends: `particle_ids: [0, 1]`"), Some("ids");
     /// k, N/m, not negative.
     stiffness: f64 = 0.0, "stiffness" => ValueKind::Number(limits::STIFFNESS),
@@ -254,13 +264,27 @@ declare! {
 }
 
 declare! {
+    /// A triangle of particles that the air drags at, such as a patch of cloth.
+    TRIANGLES: Triangle, list triangles, "a triangle: a mapping with `particle_ids` and `air_drag`",
+    reserved [];
+
+    /// Three different particles, in any order.
+    corners: [usize; 3] = [0, 1, 2], "particle_ids" => ValueKind::Ids(3),
+        Required("name the three corners: `particle_ids: [0, 1, 2]`"), Some("ids");
+    /// Drag coefficient C, a pure number: the force is -density C A |u·n| (u·n) n / 2.
+    air_drag: f64 = 0.0,
+        "air_drag" => ValueKind::Number(Bounds::not_negative(1e12, "a pure number")),
+        Required("give its drag coefficient, as 1.0"), Some("air_drag");
+}
+
+declare! {
     /// Attraction G m1 m2 / r² between two particles.
     GRAVITATIONAL: GravitationalPair, list gravitational,
     "a pair: a mapping with `particle_ids` and `G`",
     reserved [];
 
     /// Two different particles.
-    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids,
+    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids(2),
         Required("name the two particles: `particle_ids: [0, 1]`"), Some("ids");
     /// G, N m²/kg²; negative repels.
     g: f64 = 0.0, "G" => ValueKind::Number(Bounds::signed(1e30, "N m²/kg²")),
@@ -270,7 +294,7 @@ declare! {
 declare! {
     /// A constant force on every free particle, whatever its mass. Not to be confused with moving air.
     WIND: Wind, maybe wind, "a mapping with `direction` and `strength`",
-    reserved ["velocity", "density", "profile"];
+    reserved ["profile"];
 
     /// Unit vector; in the file of any length but 0.
     direction: [f64; 3] = [1.0, 0.0, 0.0],
@@ -279,6 +303,19 @@ declare! {
     /// Newtons; negative blows the other way.
     strength: f64 = 0.0, "strength" => ValueKind::Number(Bounds::signed(1e18, "N")),
         Required("give its force in newtons"), Some("wind_force");
+}
+
+declare! {
+    /// The air, the same everywhere. Not to be confused with `wind`, which is a force and needs no drag.
+    AIR: Air, maybe air, "a mapping with `velocity` and `density`", reserved [];
+
+    /// Metres per second.
+    velocity: [f64; 3] = [0.0; 3],
+        "velocity" => ValueKind::Numbers(3, Bounds::signed(1e12, "m/s")), Usual,
+        Some("air_velocity");
+    /// Kilograms per cubic metre, by which triangles are dragged at.
+    density: f64 = 1.2, "density" => ValueKind::Number(Bounds::not_negative(1e12, "kg/m³")),
+        Usual, Some("air_density");
 }
 
 /// Expectations have a reader of their own, and no rows.
@@ -333,6 +370,11 @@ impl Scene {
             }
         }
         sum
+    }
+
+    /// The air, whether or not the scene says something of it.
+    pub fn air(&self) -> Air {
+        self.air.clone().unwrap_or_default()
     }
 
     /// The scene's size L in metres: the diagonal of the box around all initial positions plus the

@@ -113,10 +113,18 @@ pub(super) fn of_springs(springs: Vec<usize>) -> impl Iterator<Item = Channel> {
 }
 
 /// The channels of these particles; those that the scene has 0 of too.
-pub(super) fn of_particles(particles: &[usize]) -> impl Iterator<Item = Channel> {
-    particles
+///
+/// Of quadratic drag and of the triangles at them only where the scene has some: nobody adds those by mistake.
+pub(super) fn of_particles(scene: &Scene, particles: &[usize]) -> Vec<Channel> {
+    let squared = Some(Number::QuadraticDrag).filter(|number| number.is_in(scene));
+    let numbers = || [Number::Mass, Number::Drag].into_iter().chain(squared);
+    let own = particles
         .iter()
-        .flat_map(|i| [Number::Mass, Number::Drag].map(|number| One(number, *i)))
+        .flat_map(|&i| numbers().map(move |number| One(number, i)));
+    let triangles = scene.triangles.iter().enumerate();
+    let at = triangles.filter(|(_, t)| t.corners.iter().any(|corner| particles.contains(corner)));
+    own.chain(at.map(|(id, _)| One(Number::AirDrag, id)))
+        .collect()
 }
 
 impl Channel {

@@ -2,7 +2,9 @@
 //! say so.
 
 use super::words::{digits, times};
-use crate::scene::model::{GRAVITATIONAL, PARTICLES, Part, Row, SOLVER, SPRINGS, ValueKind, WIND};
+use crate::scene::model::{
+    AIR, GRAVITATIONAL, PARTICLES, Part, Row, SOLVER, SPRINGS, TRIANGLES, ValueKind, WIND,
+};
 use crate::scene::{Scene, Value};
 
 /// A number of a scene, in one member of its part or in all. Of a vector it is the length, with the sign of its
@@ -15,15 +17,32 @@ pub(super) enum Number {
     RestLength,
     Cubic,
     Drag,
+    QuadraticDrag,
+    AirDrag,
+    AirVelocity,
     Wind,
     Attraction,
     Mass,
 }
-use Number::{Attraction, Cubic, Damping, Drag, Gravity, Mass, RestLength, Stiffness, Wind};
+use Number::{
+    AirDrag, AirVelocity, Attraction, Cubic, Damping, Drag, Gravity, Mass, QuadraticDrag,
+    RestLength, Stiffness, Wind,
+};
 
 /// In the order in which they are suspected.
-pub(super) const NUMBERS: [Number; 9] = [
-    Gravity, Stiffness, Damping, RestLength, Cubic, Drag, Wind, Attraction, Mass,
+pub(super) const NUMBERS: [Number; 12] = [
+    Gravity,
+    Stiffness,
+    Damping,
+    RestLength,
+    Cubic,
+    Drag,
+    QuadraticDrag,
+    AirDrag,
+    AirVelocity,
+    Wind,
+    Attraction,
+    Mass,
 ];
 
 impl Number {
@@ -36,6 +55,9 @@ impl Number {
             RestLength => ("springs.rest_length", &SPRINGS, "rest_length"),
             Cubic => ("springs.cubic", &SPRINGS, "cubic"),
             Drag => ("drag", &PARTICLES, "drag"),
+            QuadraticDrag => ("quadratic_drag", &PARTICLES, "quadratic_drag"),
+            AirDrag => ("air_drag", &TRIANGLES, "air_drag"),
+            AirVelocity => ("air.velocity", &AIR, "velocity"),
             Wind => ("wind", &WIND, "strength"),
             Attraction => ("gravitational", &GRAVITATIONAL, "G"),
             Mass => ("mass", &PARTICLES, "mass"),
@@ -88,7 +110,12 @@ impl Number {
     /// In every member that it acts on: a fixed particle has neither inertia nor drag.
     pub(super) fn values(self, scene: &Scene) -> Vec<f64> {
         let part = self.part();
-        let acts = |at: &usize| part.key != PARTICLES.key || !scene.particles[*at].fixed;
+        let acts = |at: &usize| match self {
+            AirVelocity => [Drag, QuadraticDrag, AirDrag]
+                .iter()
+                .any(|drag| drag.is_in(scene)),
+            _ => part.key != PARTICLES.key || !scene.particles[*at].fixed,
+        };
         let members = (0..(part.count)(scene)).filter(acts);
         members.map(|at| self.value(scene, at)).collect()
     }
@@ -135,6 +162,9 @@ impl Number {
         match self {
             Gravity => "gravity".to_owned(),
             Cubic => "the cubic stiffness".to_owned(),
+            QuadraticDrag => "the quadratic drag".to_owned(),
+            AirDrag => "the drag of the air at triangles".to_owned(),
+            AirVelocity => "the velocity of the air".to_owned(),
             Wind => "the strength of the wind".to_owned(),
             _ => format!("the {}", self.key().2.replace('_', " ")),
         }
@@ -153,6 +183,11 @@ impl Number {
             (RestLength, _) => format!("springs have {times} their rest length"),
             (Cubic, 0.0) => "the cubic part of the springs is missing".to_owned(),
             (Cubic, _) => format!("the cubic part of the springs is {times} the scene's"),
+            (AirVelocity, 0.0) => "drag acts as if the air were at rest".to_owned(),
+            (AirVelocity, -1.0) => "the air moves the other way".to_owned(),
+            (AirVelocity, _) => format!("the air moves with {}", self.beside(scene, factor)),
+            (QuadraticDrag | AirDrag, 0.0) => format!("{} is missing", self.noun()),
+            (QuadraticDrag | AirDrag, _) => format!("{} is {times} the scene's", self.noun()),
             (_, 0.0) => format!("{} is missing", self.what()),
             (Gravity, _) => format!("gravity acts with {}", self.beside(scene, factor)),
             _ => format!("the {} is {times} the scene's", self.what()),

@@ -2,7 +2,7 @@
 
 use super::Task;
 use crate::scene::Scene;
-use crate::scene::model::{GRAVITATIONAL, PARTICLES, Part, Row, SPRINGS};
+use crate::scene::model::{GRAVITATIONAL, PARTICLES, Part, Row, SPRINGS, TRIANGLES};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// The version of the keys and of their meaning.
@@ -36,6 +36,9 @@ impl Serialize for Flat<'_> {
         map.serialize_entry("damping_model", &scene.damping_model)?;
         map.serialize_entry("gravity", &scene.gravity())?;
         map.serialize_entry("wind_force", &wind)?;
+        map.serialize_entry("air_velocity", &scene.air().velocity)?;
+        map.serialize_entry("air_density", &scene.air().density)?;
+        map.serialize_entry("triangles", &Arrays(scene, &TRIANGLES))?;
         map.serialize_entry("gravitational", &Arrays(scene, &GRAVITATIONAL))?;
         map.serialize_entry("effects", &effects)?;
         map.serialize_entry("timestep", &timestep)?;

@@ -29,7 +29,7 @@ pub(super) struct World {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum End {
     Particle(usize),
-    /// The air, at rest.
+    /// A body at rest, against which motors of drag push.
     Air,
 }
 

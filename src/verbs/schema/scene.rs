@@ -114,7 +114,7 @@ fn value(row: &Row, names: &Names) -> Json {
             json!({"anyOf": [vector(), several]})
         }
         ValueKind::Id => id(),
-        ValueKind::Ids => list(id(), 2, 2),
+        ValueKind::Ids(count) => list(id(), *count, *count),
         ValueKind::Coordinate => json!({"enum": [0, 1, 2]}),
         ValueKind::Flag => json!({"type": "boolean"}),
         ValueKind::Word(words) => json!({"enum": words}),

@@ -36,8 +36,14 @@ pub fn full() -> Value {
     json!({
         "name": "all",
         "solver": {"type": "rk4", "timestep": 0.1},
-        "particles": [{"pos": [0, 0, 0], "mass": 1}, {"pos": [1, 0, 0], "mass": 2}],
+        "particles": [
+            {"pos": [0, 0, 0], "mass": 1},
+            {"pos": [1, 0, 0], "mass": 2},
+            {"pos": [0, 1, 0], "mass": 3},
+        ],
         "springs": [{"particle_ids": [0, 1], "stiffness": 20}],
+        "triangles": [{"particle_ids": [0, 1, 2], "air_drag": 1}],
+        "air": {},
         "gravitational": [{"particle_ids": [0, 1], "G": 1}],
         "wind": {"direction": [1, 0, 0], "strength": 1},
         "plot": {"particle_id": 0, "dof": 2},
@@ -105,10 +111,10 @@ fn inside_and_outside(row: &Row) -> (Vec<Value>, Vec<Value>) {
             ],
         ),
         ValueKind::Id => (vec![json!(0), json!(1)], vec![json!(-1), json!(0.5)]),
-        ValueKind::Ids => (
-            vec![json!([0, 1])],
-            vec![json!([0]), json!([0, 1, 1]), json!([0, -1])],
-        ),
+        ValueKind::Ids(count) => {
+            let ids = |first: i32| json!((first..first + *count as i32).collect::<Vec<_>>());
+            (vec![ids(0)], vec![json!([0]), json!([0, 1, 2, 3]), ids(-1)])
+        }
         ValueKind::Coordinate => (vec![json!(0), json!(2)], vec![json!(3), json!(-1)]),
         ValueKind::Flag => (vec![json!(false)], vec![json!(0), json!("true")]),
         ValueKind::Word(words) => (
@@ -348,6 +354,7 @@ fn defaults_are_those_of_the_reader() {
             some += 1;
         }
     }
-    // duration, up, damping_model; gravity; vel, fixed, radius, drag; cubic, damping.
-    assert_eq!(some, 10);
+    // duration, up, damping_model; gravity; vel, fixed, radius, drag, quadratic_drag; cubic, damping; velocity,
+    // density.
+    assert_eq!(some, 13);
 }

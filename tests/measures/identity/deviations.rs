@@ -2,7 +2,7 @@
 //! scene that the rows are computed in.
 
 use super::*;
-use crate::testkit::{cloth, everything};
+use crate::testkit::{all_effects, cloth, everything};
 use springcheck::measure::identify::Deviation;
 use springcheck::scene::{Axis, DampingModel, Vectors};
 
@@ -121,6 +121,67 @@ fn a_wrong_gravity_of_vectors_is_found() {
         let found = found_within(u64::MAX, &scene, &rows, None).explained;
         let found = found.map_or_else(Vec::new, |e| e.deviations);
         is(&found, &(|_| (), what, factor, place)).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+/// What the air does, left out, turned round or of another strength.
+#[test]
+fn a_wrong_drag_of_the_air_is_found() {
+    let cases: [Case; 7] = [
+        (|s| s.air = None, "air.velocity", 0.0, None),
+        (
+            |s| {
+                s.air
+                    .iter_mut()
+                    .flat_map(|a| &mut a.velocity)
+                    .for_each(|w| *w = -*w)
+            },
+            "air.velocity",
+            -1.0,
+            None,
+        ),
+        (
+            |s| s.particles.iter_mut().for_each(|p| p.quadratic_drag = 0.0),
+            "quadratic_drag",
+            0.0,
+            None,
+        ),
+        (
+            |s| {
+                s.particles
+                    .iter_mut()
+                    .for_each(|p| p.quadratic_drag *= -1.0)
+            },
+            "quadratic_drag",
+            -1.0,
+            None,
+        ),
+        (
+            |s| s.particles[2].quadratic_drag *= 2.0,
+            "quadratic_drag",
+            2.0,
+            Some("particle 2"),
+        ),
+        (
+            |s| s.triangles.iter_mut().for_each(|t| t.air_drag *= -1.0),
+            "air_drag",
+            -1.0,
+            None,
+        ),
+        // The density is in the same product.
+        (
+            |s| s.air.iter_mut().for_each(|air| air.density = 0.6),
+            "air_drag",
+            0.5,
+            None,
+        ),
+    ];
+    let scene = all_effects(DampingModel::Axial);
+    for case in &cases {
+        for method in ["symplectic_euler", "rk4"] {
+            let found = deviations(&scene, case.0, method, u64::MAX);
+            is(&found, case).unwrap_or_else(|e| panic!("{method}: {e}"));
+        }
     }
 }
 
