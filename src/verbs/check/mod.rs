@@ -139,9 +139,12 @@ impl<'a> Gate<'a> {
             check.status = CheckStatus::Skip;
         }
         let scene = self.plan.scene;
-        if self.require_all && check.id == run::expect::ID && check.status == CheckStatus::Skip {
-            let listed = |name: &String| check.subject == *name;
-            if scene.externals.iter().any(listed) {
+        let listed = |name: &String| check.subject == *name;
+        let missing = check.id == run::expect::ID && check.status == CheckStatus::Skip;
+        if missing && scene.externals.iter().any(listed) {
+            let name = &check.subject;
+            check.message = format!("it did not run: `--external {name}=COMMAND` says what it is");
+            if self.require_all {
                 check.status = CheckStatus::Fail;
             }
         }

@@ -3,15 +3,15 @@
 
 use crate::measure::identify::{Identity, Undecided};
 use crate::measure::{Check, CheckStatus};
-use crate::scene::Scene;
 use crate::solvers::Solver;
 use crate::solvers::external::{Failure, Program, Recording, Task};
 use crate::trajectory::{self, Plane, Rows, SaveError, limits};
 use crate::truth::Demand;
+use crate::verbs::cli::cache::Cache;
 use crate::verbs::cli::flags::{self, demand, plane};
 use crate::verbs::cli::interrupt;
 use crate::verbs::cli::output::{self, Output};
-use crate::verbs::cli::terminal::Terminal;
+use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity};
 use crate::verbs::scheme::Scheme;
 use crate::verbs::session::Session;
@@ -98,7 +98,13 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     interrupt::unfinished(std::slice::from_ref(&args.file));
     let terminal = Terminal::new(quiet);
-    let mut report = report(&scene, &Arc::new(rows), &name, args.truth, &terminal)?;
+    let rows = Arc::new(rows);
+    let choice = choice(&rows, &name, args.truth);
+    let plan = Plan::new(&scene, &choice).expecting(false, &Cache::new());
+    let estimates = plan.estimate();
+    let expected = terminal::expected(&estimates);
+    terminal.expect(plan.units(), expected, &estimates, "--truth closed");
+    let mut report = report(&plan, &rows, &terminal)?;
     report.header.checks.extend(wanted(args, &report));
     drop(terminal);
     let (report, saved) = output::written(report, place.as_ref());
@@ -225,28 +231,24 @@ impl Program for Recorded {
     }
 }
 
-/// The report, with one outcome of this name: errors, energy, identity over every step, and the first fault. The
-/// scene's duration must be that of the rows.
-fn report(
-    scene: &Scene,
-    rows: &Arc<Rows>,
-    name: &str,
-    truth: Demand,
-    session: &dyn Session,
-) -> Result<Report, SaveError> {
-    let choice = Choice {
+/// A plan of these rows alone, under this name. All their steps are replayed beside it, instead of some.
+fn choice(rows: &Arc<Rows>, name: &str, truth: Demand) -> Choice {
+    Choice {
         solvers: vec![Solver::program(name, Arc::new(Recorded(Arc::clone(rows))))],
         timesteps: vec![rows.timestep],
         truth,
         order: Orders::Never,
-        // All steps of the rows are replayed below, instead of some of those recorded.
         identify: false,
         prove: false,
         expectations: Expectations::Ignored,
-    };
-    let plan = Plan::new(scene, &choice);
+    }
+}
+
+/// The report, with one outcome: errors, energy, identity over every step, and the first fault. The scene's duration
+/// must be that of the rows.
+fn report(plan: &Plan, rows: &Rows, session: &dyn Session) -> Result<Report, SaveError> {
     let mut report = plan.execute(session)?;
-    let (found, fault) = identity::of_rows(&plan, rows);
+    let (found, fault) = identity::of_rows(plan, rows);
     let identified = found.identity;
     if let Body::Run { outcomes } = &mut report.body {
         let mut outcomes = std::mem::take(outcomes);
