@@ -3,7 +3,7 @@
 use crate::testkit::cloth::cloth;
 use springcheck::physics::ParticleSystem;
 use springcheck::physics::effects::{EffectRow, REGISTRY};
-use springcheck::scene::{DampingModel, GravitationalPair, Scene, Wind};
+use springcheck::scene::{Air, DampingModel, GravitationalPair, Scene, Triangle, Wind};
 use springcheck::solvers::{self, Setting};
 
 /// The ids of what a system has to call.
@@ -16,9 +16,22 @@ fn called(scene: &Scene) -> Vec<&'static str> {
 type Call = fn(&mut Scene);
 
 /// What the scene calls for one by one, each on top of gravity and springs.
-const CALLS: [(&str, Call); 4] = [
+const CALLS: [(&str, Call); 6] = [
     ("cubic_springs", |scene| scene.springs[0].cubic = 1.0),
     ("drag", |scene| scene.particles[1].drag = 0.1),
+    ("quadratic_drag", |scene| {
+        scene.particles[1].quadratic_drag = 0.1;
+    }),
+    ("air_drag", |scene| {
+        scene.air = Some(Air {
+            density: 1.2,
+            ..Air::default()
+        });
+        scene.triangles.push(Triangle {
+            corners: [0, 1, 4],
+            air_drag: 1.0,
+        });
+    }),
     ("wind", |scene| {
         scene.wind = Some(Wind {
             direction: [1.0, 0.0, 0.0],
