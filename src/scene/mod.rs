@@ -26,9 +26,10 @@ pub use error::{Refusal, SceneError};
 pub(crate) use expectation::{ALL, REST, SKIP};
 pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
-    Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, SolverSpec, Spring, Wind, steps,
+    Air, Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, SolverSpec, Spring,
+    Triangle, Wind, steps,
 };
-pub use table::Value;
+pub use table::{Value, Vectors};
 pub use write::yaml;
 
 use place::Problem;
