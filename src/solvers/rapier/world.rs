@@ -3,7 +3,7 @@
 use super::settings::RapierSettings;
 use crate::physics::State;
 use crate::scene::Scene;
-use crate::solvers::Unsupported;
+use crate::solvers::{Built, Unsupported};
 use rapier3d::dynamics::{GenericJoint, RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
@@ -125,6 +125,14 @@ impl World {
         *self
             .air
             .get_or_insert_with(|| inner.insert_body(RigidBodyBuilder::fixed()))
+    }
+
+    /// What it consists of.
+    pub(super) fn built(&self) -> Built {
+        Built {
+            bodies: self.inner.bodies.len() as u64,
+            joints: self.inner.impulse_joints.len() as u64,
+        }
     }
 
     /// Takes one step of rapier, and copies positions and velocities to `state`.
