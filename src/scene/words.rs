@@ -82,6 +82,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("velocity", "did you mean `vel`?"),
     ("dt", "did you mean `timestep`?"),
     ("h", "did you mean `timestep`?"),
+    ("velocity", "`velocity` stands under `air`"),
+    ("density", "`density` stands under `air`"),
     ("gravity", "`gravity` stands under `solver`"),
     ("timestep", "`timestep` stands under `solver`"),
     ("type", "`type` stands under `solver`"),

@@ -138,7 +138,7 @@ pub fn everything(model: DampingModel) -> Scene {
 pub fn all_effects(model: DampingModel) -> Scene {
     let mut scene = everything(model);
     scene.air = Some(Air {
-        velocity: [0.5, -0.3, 0.2],
+        velocity: [0.6, -0.3, 0.2],
         density: 1.2,
     });
     scene.particles[1].quadratic_drag = 0.2;

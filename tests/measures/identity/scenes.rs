@@ -47,7 +47,16 @@ fn every_method_is_named_on_every_shipped_scene() {
     // On the hard ones few methods last long enough to be named.
     let mut folders = folders();
     folders.retain(|folder| folder != "hard");
-    for (at, scene) in all_shipped(&folders).iter().enumerate() {
+    // Nor does a motion that is over after a few steps, or none at all, tell one from another.
+    let over = [
+        "sail.yml",
+        "test_equation_smooth.yml",
+        "test_equation_beyond.yml",
+    ];
+    let lasts = |scene: &Scene| !over.iter().any(|file| scene.file.ends_with(file));
+    let scenes = all_shipped(&folders).into_iter().filter(lasts);
+    for (at, scene) in scenes.enumerate() {
+        let scene = &scene;
         // Some methods take no force that is not linear in the velocity.
         let system = ParticleSystem::new(scene);
         let taken = |method: &&&Method| system.admits(method.id, method.takes()).is_ok();

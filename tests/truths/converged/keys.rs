@@ -20,7 +20,7 @@ const DECIDES: &[(&str, Change)] = &[
     ("corner", |s| s.triangles[0].corners = [1, 3, 2]),
     ("air drag", |s| s.triangles[0].air_drag = 0.9),
     ("velocity of the air", |s| {
-        s.air.iter_mut().for_each(|air| air.velocity[0] = 0.6)
+        s.air.iter_mut().for_each(|air| air.velocity[0] = 0.7)
     }),
     ("density of the air", |s| {
         s.air.iter_mut().for_each(|air| air.density = 1.3)
