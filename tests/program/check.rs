@@ -170,10 +170,7 @@ fn junit_is_well_formed_whatever_names_and_programs_say() {
     let mine = format!("m=sh '{}'", word(&program));
     let (code, xml, err) = check(&[&path, "--external", &mine, "--format", "junit"]);
     assert_eq!(code, 1, "{err}");
-    let may = |c: char| match u32::from(c) {
-        0x9 | 0xa | 0xd | 0x20..=0xd7ff | 0xe000..=0xfffd | 0x1_0000..=0x10_ffff => true,
-        _ => false,
-    };
+    let may = |c: char| matches!(u32::from(c), 0x9 | 0xa | 0xd | 0x20..=0xd7ff | 0xe000..=0xfffd | 0x1_0000..);
     assert!(xml.chars().all(may) && !xml.contains('\u{202e}'), "{xml:?}");
     roxmltree::Document::parse(&xml).expect("well-formed");
 }
