@@ -12,7 +12,7 @@ use super::limits::{EXPECTED, known, method};
 use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
-use super::values::{Any, Key, Maybe, Number, Numbers, Texts, flag, index_of, number, text};
+use super::values::{Any, Key, Maybe, Number, Numbers, Table, Texts, flag, index_of, number, text};
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
@@ -34,6 +34,7 @@ pub(super) fn document(text: &str, reading: &mut Reading) -> Result<(), Fault> {
     let scene = Any(Mapping {
         part: &SCENE,
         row: None,
+        at: 0,
         reading,
     });
     let first = match documents.next() {
@@ -54,6 +55,8 @@ struct Mapping<'r, 'n> {
     part: &'static Part,
     /// The row that adds the member; None for the file itself.
     row: Option<&'static Row>,
+    /// The index of the mapping that the row is of.
+    at: usize,
     reading: &'r mut Reading<'n>,
 }
 
@@ -65,11 +68,19 @@ impl<'de> Visitor<'de> for Mapping<'_, '_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let Mapping { part, row, reading } = self;
+        let Mapping {
+            part,
+            row,
+            at,
+            reading,
+        } = self;
         if let Some(row) = row {
-            (row.set)(&mut reading.scene, 0, 0, Value::Flag(true));
+            (row.set)(&mut reading.scene, at, 0, Value::Flag(true));
         }
-        let at = (part.count)(&reading.scene) - 1;
+        let at = match part.inside() {
+            Some(_) => at,
+            None => (part.count)(&reading.scene) - 1,
+        };
         // Bit i of `seen`: the key of row i occurred. Bit i of `given`: it had a value.
         let (mut seen, mut given) = (0_u32, 0_u32);
         while let Some(index) = map.next_key_seed(Key(|key: &str| row_of(part, key, &mut seen)))? {
@@ -129,6 +140,7 @@ impl<'n> Entry<'_, 'n> {
         Mapping {
             part,
             row: Some(self.row),
+            at: self.at,
             reading: self.reading,
         }
     }
@@ -136,9 +148,9 @@ impl<'n> Entry<'_, 'n> {
     /// Sets a number, or one of a list.
     fn number(&mut self, component: usize, number: Number) -> Result<(), Refusal> {
         let value = match self.row.kind {
-            ValueKind::Number(quantity) | ValueKind::Numbers(_, quantity) => {
-                Value::Number(quantity.judge(number)?)
-            }
+            ValueKind::Number(quantity)
+            | ValueKind::Numbers(_, quantity)
+            | ValueKind::Table(_, quantity) => Value::Number(quantity.judge(number)?),
             ValueKind::Coordinate => Value::Id(coordinate(number)?),
             _ => Value::Id(self.id(component, number)),
         };
@@ -169,6 +181,9 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
             }
             ValueKind::Numbers(count, _) => {
                 from.deserialize_any(Numbers(count, |i, n| self.number(i, n)))
+            }
+            ValueKind::Table(width, _) => {
+                from.deserialize_any(Table(width, |i, n| self.number(i, n)))
             }
             ValueKind::Ids => from.deserialize_any(Numbers(2, |i, n| self.number(i, n))),
             ValueKind::Flag => {

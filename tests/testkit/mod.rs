@@ -13,7 +13,7 @@ pub use springcheck::conformance::systems::{Oscillator, free_triangle, swinging_
 use springcheck::integrators::{Integrator, Method, Settings, fixed};
 use springcheck::physics::effects::Effect;
 use springcheck::physics::{ForceKinds, ParticleSystem, Power, State, System};
-use springcheck::scene::{DampingModel, GravitationalPair, Scene, Wind};
+use springcheck::scene::{DampingModel, Driven, GravitationalPair, Scene, Sine, Wind};
 
 /// All of these in a whole run, which `SPRINGCHECK_WHOLE=1` asks for as CI does; else one in `of`,
 /// beginning with number `at`: what lies in a loop over at least `of` cases that hands in its own number
@@ -131,6 +131,21 @@ pub fn everything(model: DampingModel) -> Scene {
     for ends in [[1, 2], [2, 3], [0, 3]] {
         scene.gravitational.push(GravitationalPair { ends, g: 2.0 });
     }
+    scene
+}
+
+/// The scene with its first fixed particle on a swing.
+pub fn driven(mut scene: Scene) -> Scene {
+    let particle = scene.particles.iter().position(|p| p.fixed);
+    scene.driven.push(Driven {
+        particle: particle.expect("a fixed particle"),
+        sine: Some(Sine {
+            amplitude: [0.3, -0.1, 0.2],
+            omega: 5.0,
+            phase: 0.4,
+        }),
+        ..Driven::default()
+    });
     scene
 }
 

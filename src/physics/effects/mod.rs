@@ -7,6 +7,7 @@
 
 mod central;
 mod drag;
+mod driven;
 mod gravity;
 mod scaled;
 mod springs;
@@ -14,13 +15,14 @@ mod wind;
 
 pub use central::Central;
 pub use drag::Drag;
+pub use driven::Driven;
 pub use gravity::Gravity;
 pub use scaled::Scaled;
 pub use springs::Springs;
 pub use wind::WindForce;
 
 use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 
 /// A force on particles. It is computed for all its members at once, in flat vectors of length 3n.
 ///
@@ -69,6 +71,11 @@ pub trait Effect: Send + Sync {
     /// The power of a [driven](ForceKinds::DRIVEN) force at velocity `v`, W.
     fn injected_power(&self, _t: f64, _v: &[f64]) -> f64 {
         0.0
+    }
+
+    /// The motions it gives to fixed particles.
+    fn drives(&self) -> &[Drive] {
+        &[]
     }
 
     /// *Adds* ∂f/∂x and ∂f/∂v, with the same places in the same order at every call.
@@ -125,6 +132,7 @@ pub static REGISTRY: &[EffectRow] = &[
     drag::ROW,
     wind::ROW,
     central::GRAVITATIONAL,
+    driven::ROW,
 ];
 
 fn boxed<E: Effect + 'static>(effect: E) -> Box<dyn Effect> {
