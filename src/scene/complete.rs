@@ -5,7 +5,7 @@ use super::error::Refusal;
 use super::expect::engine;
 use super::expectation::{Names, Scope};
 use super::limits;
-use super::model::{Driven, Knots, NO_PARTICLES, Particle, Scene, Wind};
+use super::model::{Driven, Knots, NO_PARTICLES, Particle, Scene, Triangle, Wind};
 use super::place::Problem;
 use super::read::Reading;
 use super::values::Number;
@@ -59,13 +59,17 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
         return Err(Problem::new(path, no_particle(number, count)));
     }
     for (at, spring) in scene.springs.iter_mut().enumerate() {
-        ends(spring.ends, count, &format_args!("springs[{at}]"))?;
+        ends(&spring.ends, count, &format_args!("springs[{at}]"))?;
         if spring.rest_length.is_nan() {
             spring.rest_length = distance(&starts, spring.ends);
         }
     }
+    for (at, found) in scene.triangles.iter().enumerate() {
+        ends(&found.corners, count, &format_args!("triangles[{at}]"))?;
+        triangle(at, found, &starts)?;
+    }
     for (at, pair) in scene.gravitational.iter().enumerate() {
-        ends(pair.ends, count, &format_args!("gravitational[{at}]"))?;
+        ends(&pair.ends, count, &format_args!("gravitational[{at}]"))?;
         attraction(pair.ends, &scene.particles, &starts).map_err(|refusal| {
             Problem::new(format!("gravitational[{at}].particle_ids"), refusal)
         })?;
@@ -142,14 +146,16 @@ fn particles(particles: &[Particle]) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Checks that the two ends exist and differ.
-fn ends(ends: [usize; 2], count: usize, of: &impl Display) -> Result<(), Problem> {
+/// Checks that the ends, or corners, exist and differ.
+fn ends(ends: &[usize], count: usize, of: &impl Display) -> Result<(), Problem> {
     if let Some(index) = ends.iter().position(|&end| end >= count) {
         let refusal = no_particle(whole(ends[index]), count);
         return Err(Problem::new(format!("{of}.particle_ids[{index}]"), refusal));
     }
-    if ends[0] == ends[1] {
-        let message = format!("expected two different particles, found {} twice", ends[0]);
+    let twice = |(at, end): (usize, &usize)| ends[..at].contains(end);
+    if let Some((_, end)) = ends.iter().enumerate().find(|end| twice(*end)) {
+        let many = if ends.len() == 2 { "two" } else { "three" };
+        let message = format!("expected {many} different particles, found {end} twice");
         return Problem::because(format!("{of}.particle_ids"), message, "");
     }
     Ok(())
@@ -204,6 +210,22 @@ fn driven(at: usize, driven: &Driven, scene: &Scene) -> Result<(), Problem> {
         let message = format!("expected a time after {before:?} s, found {found:?}");
         let help = "rows are in the order of their times, and no two have the same";
         return Problem::because(format!("{of}.table[{row}]"), message, help);
+    }
+    Ok(())
+}
+
+/// Checks that no two corners start in one place.
+fn triangle(at: usize, triangle: &Triangle, starts: &[[f64; 3]]) -> Result<(), Problem> {
+    let [a, b, c] = triangle.corners;
+    for ends in [[a, b], [b, c], [a, c]] {
+        if distance(starts, ends) == 0.0 {
+            let message = format!(
+                "expected three corners apart, found {} and {} in one place",
+                ends[0], ends[1]
+            );
+            let help = "a triangle needs an area";
+            return Problem::because(format!("triangles[{at}].particle_ids"), message, help);
+        }
     }
     Ok(())
 }

@@ -28,10 +28,10 @@ pub use error::{Refusal, SceneError};
 pub(crate) use expectation::{ALL, REST, SKIP};
 pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
-    Axis, DampingModel, Driven, GravitationalPair, Knots, Particle, Plot, Scene, Sine, SolverSpec,
-    Spring, Wind, steps,
+    Air, Axis, DampingModel, Driven, GravitationalPair, Knots, Particle, Plot, Scene, Sine,
+    SolverSpec, Spring, Triangle, Wind, steps,
 };
-pub use table::Value;
+pub use table::{Value, Vectors};
 pub use write::yaml;
 
 use place::Problem;

@@ -12,7 +12,10 @@ use super::limits::{EXPECTED, known, method};
 use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
-use super::values::{Any, Key, Maybe, Number, Numbers, Table, Texts, flag, index_of, number, text};
+use super::values::{
+    Any, Either, Key, Maybe, Number, NumberOrList, Numbers, Table, Texts, flag, index_of, number,
+    text, vectors,
+};
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
@@ -150,7 +153,8 @@ impl<'n> Entry<'_, 'n> {
         let value = match self.row.kind {
             ValueKind::Number(quantity)
             | ValueKind::Numbers(_, quantity)
-            | ValueKind::Table(_, quantity) => Value::Number(quantity.judge(number)?),
+            | ValueKind::Table(_, quantity)
+            | ValueKind::Vectors(quantity) => Value::Number(quantity.judge(number)?),
             ValueKind::Coordinate => Value::Id(coordinate(number)?),
             _ => Value::Id(self.id(component, number)),
         };
@@ -162,7 +166,7 @@ impl<'n> Entry<'_, 'n> {
     fn id(&mut self, component: usize, number: Number) -> usize {
         number.whole().unwrap_or_else(|| {
             let mut path = self.part.path(Some(self.at), self.row.key);
-            if let ValueKind::Ids = self.row.kind {
+            if let ValueKind::Ids(_) = self.row.kind {
                 path += &format!("[{component}]");
             }
             self.reading.no_id.get_or_insert((path, number));
@@ -176,6 +180,11 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
 
     fn deserialize<D: Deserializer<'de>>(mut self, from: D) -> Result<(), D::Error> {
         match self.row.kind {
+            ValueKind::Number(_) if self.vectors().is_some() => {
+                from.deserialize_any(NumberOrList(self)).map(|_| ())
+            }
+            // Its number's row reads it.
+            ValueKind::Vectors(_) => Ok(()),
             ValueKind::Number(_) | ValueKind::Id | ValueKind::Coordinate => {
                 from.deserialize_any(number(|n| self.number(0, n)))
             }
@@ -185,7 +194,7 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
             ValueKind::Table(width, _) => {
                 from.deserialize_any(Table(width, |i, n| self.number(i, n)))
             }
-            ValueKind::Ids => from.deserialize_any(Numbers(2, |i, n| self.number(i, n))),
+            ValueKind::Ids(count) => from.deserialize_any(Numbers(count, |i, n| self.number(i, n))),
             ValueKind::Flag => {
                 let flag = from.deserialize_any(flag())?;
                 self.set(0, Value::Flag(flag));
@@ -226,6 +235,27 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
                 problem: &mut self.reading.problem,
             }),
         }
+    }
+}
+
+impl Entry<'_, '_> {
+    /// The row that takes vectors in the place of this one's number.
+    fn vectors(&self) -> Option<&'static Row> {
+        let mut rows = self.part.rows.iter();
+        rows.find(|row| row.key == self.row.key && matches!(row.kind, ValueKind::Vectors(_)))
+    }
+}
+
+impl Either for Entry<'_, '_> {
+    fn number(&mut self, number: Number) -> Result<(), Refusal> {
+        Entry::number(self, 0, number)
+    }
+
+    /// Vectors stand in the place of the number, which is 0 then.
+    fn list<'de, A: SeqAccess<'de>>(mut self, list: A) -> Result<bool, A::Error> {
+        self.set(0, Value::Number(0.0));
+        self.row = self.vectors().unwrap_or(self.row);
+        vectors(list, |at, number| Entry::number(&mut self, at, number)).map(|()| true)
     }
 }
 

@@ -6,7 +6,7 @@ use super::numbers::{NUMBERS, Number};
 use super::result::Deviation;
 use super::words::{digits, seconds, times};
 use crate::scene::model::SPRINGS;
-use crate::scene::{Axis, Scene};
+use crate::scene::{Axis, Scene, Vectors};
 
 /// "spring 3 (particles 1 and 2)".
 pub(super) fn spring(scene: &Scene, id: usize) -> String {
@@ -21,6 +21,8 @@ pub(super) enum Channel {
     All(Number),
     /// Multiplies it in one; where the scene has 0, the program has so many of its unit more than 1.
     One(Number, usize),
+    /// Multiplies all forces of one spring that has several.
+    Spring(usize),
     /// Gives all members one number, so many times their mean.
     Alike(Number),
     /// Turns gravity, or the wind, to an axis, and multiplies it.
@@ -30,7 +32,10 @@ pub(super) enum Channel {
     /// Multiplies velocities once a step.
     Velocity(ScaledAt),
 }
-use Channel::{Alike, All, Along, One, Timestep, Velocity};
+use Channel::{Alike, All, Along, One, Spring, Timestep, Velocity};
+
+/// The numbers that a spring's forces are linear in.
+const FORCES: [Number; 3] = [Number::Stiffness, Number::Cubic, Number::Damping];
 
 /// The number that a known mistake changes, if it is one.
 fn named(what: &str) -> Option<Number> {
@@ -100,15 +105,26 @@ pub(super) fn of_springs(springs: Vec<usize>) -> impl Iterator<Item = Channel> {
         Number::Damping,
         Number::Cubic,
     ];
-    let of = move |id| numbers.map(|number| One(number, id));
+    let of = move |id| {
+        let each = numbers.map(|number| One(number, id));
+        std::iter::once(Spring(id)).chain(each)
+    };
     springs.into_iter().flat_map(of)
 }
 
 /// The channels of these particles; those that the scene has 0 of too.
-pub(super) fn of_particles(particles: &[usize]) -> impl Iterator<Item = Channel> {
-    particles
+///
+/// Of quadratic drag and of the triangles at them only where the scene has some: nobody adds those by mistake.
+pub(super) fn of_particles(scene: &Scene, particles: &[usize]) -> Vec<Channel> {
+    let squared = Some(Number::QuadraticDrag).filter(|number| number.is_in(scene));
+    let numbers = || [Number::Mass, Number::Drag].into_iter().chain(squared);
+    let own = particles
         .iter()
-        .flat_map(|i| [Number::Mass, Number::Drag].map(|number| One(number, *i)))
+        .flat_map(|&i| numbers().map(move |number| One(number, i)));
+    let triangles = scene.triangles.iter().enumerate();
+    let at = triangles.filter(|(_, t)| t.corners.iter().any(|corner| particles.contains(corner)));
+    own.chain(at.map(|(id, _)| One(Number::AirDrag, id)))
+        .collect()
 }
 
 impl Channel {
@@ -122,15 +138,14 @@ impl Channel {
         match self {
             All(number) | Alike(number) => number.is_in(scene),
             One(number, at) => number.value(scene, at) != 0.0,
+            Spring(id) => forces(scene, id) > 1,
             Along(number, axis) => {
-                let along = match (number, &scene.wind) {
-                    (Number::Wind, Some(wind)) => {
-                        let across = |at: usize| at != axis.index() && wind.direction[at] != 0.0;
-                        !(0..3).any(across)
-                    }
-                    _ => axis == scene.up,
+                let direction = match (number, &scene.wind) {
+                    (Number::Wind, Some(wind)) => wind.direction,
+                    _ => scene.gravity(),
                 };
-                number.is_in(scene) && !along
+                let across = |at: usize| at != axis.index() && direction[at] != 0.0;
+                number.is_in(scene) && (0..3).any(across)
             }
             Timestep | Velocity(_) => true,
         }
@@ -145,6 +160,11 @@ impl Channel {
         match self {
             All(number) => number.change(scene, None, |value| number.times(value, factor)),
             One(number, at) => number.change(scene, Some(at), |value| found(number, value, factor)),
+            Spring(id) => {
+                for number in FORCES {
+                    number.change(scene, Some(id), |value| value * factor);
+                }
+            }
             Alike(number) => {
                 let value = number.times(number.mean(scene), factor);
                 number.change(scene, None, |_| value);
@@ -152,6 +172,8 @@ impl Channel {
             Along(number, axis) => {
                 number.change(scene, None, |value| value * factor);
                 if number == Number::Gravity {
+                    scene.solver.gravity = number.value(scene, 0);
+                    scene.solver.gravities = Vectors::default();
                     scene.up = axis;
                 } else if let Some(wind) = &mut scene.wind {
                     wind.direction = [0.0; 3];
@@ -180,6 +202,7 @@ impl Channel {
         let (what, place) = match self {
             All(number) => (number.what(), None),
             One(number, at) => (number.what(), Some(member(number, at))),
+            Spring(id) => ("springs", Some(format!("spring {id}"))),
             Alike(number) => (number.what(), Some("all alike".to_owned())),
             Along(Number::Gravity, axis) => ("axis", Some(letter(axis))),
             Along(number, axis) => (number.what(), Some(letter(axis))),
@@ -192,6 +215,10 @@ impl Channel {
         };
         let sentence = match self {
             All(number) => number.sentence(scene, factor),
+            One(Number::Stiffness, id) if factor == 0.0 && forces(scene, id) == 1 => {
+                of_spring(scene, id, factor)
+            }
+            Spring(id) => of_spring(scene, id, factor),
             One(number, at) => {
                 format!(
                     "{} is {} the scene's",
@@ -252,6 +279,24 @@ impl Channel {
         };
         let (wrong, right) = (digits(wrong, 4), digits(right, 4));
         (wrong != right).then(|| format!("{name} is {wrong} {unit}, not {right}"))
+    }
+}
+
+/// How many forces a spring has: its linear and cubic pull, and its damper.
+fn forces(scene: &Scene, id: usize) -> usize {
+    let there = FORCES
+        .iter()
+        .filter(|number| number.value(scene, id) != 0.0);
+    there.count()
+}
+
+/// What is said of a program that has so many times the forces of one spring.
+fn of_spring(scene: &Scene, id: usize, factor: f64) -> String {
+    let spring = spring(scene, id);
+    match factor {
+        0.0 => format!("{spring} is missing"),
+        2.0 => format!("{spring} acts twice"),
+        _ => format!("{spring} acts with {} its force", times(factor)),
     }
 }
 

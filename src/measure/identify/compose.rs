@@ -14,7 +14,7 @@ use crate::integrators::{self, DampingTreatment::Explicit, Method, Stage, StepEr
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{Particle, Scene};
 use crate::trajectory::Rows;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 type Stepped = Result<(), StepError>;
 
@@ -230,7 +230,7 @@ pub fn composed(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
     }
     for (id, says, around) in ORDERS {
         let single = |step, name| {
-            let candidate = Candidate::new(&forces, step, name).around(Some(around));
+            let candidate = Candidate::new(&forces, step, name).each_alone(around);
             candidate.named(format!("{id}({name})"), says)
         };
         all.extend(explicit().map(|method| single(Step::Method(method), method.id)));
@@ -239,21 +239,25 @@ pub fn composed(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
     all
 }
 
-/// The ids of all composed schemes that a scene may have.
-pub fn ids() -> Vec<String> {
-    // Drag makes room for all of them.
-    let damped = Particle {
-        drag: 1.0,
-        ..Particle::default()
-    };
-    let scene = Scene {
-        particles: vec![damped],
-        ..Scene::default()
-    };
-    let all = composed(&scene, &ParticleSystem::new(&scene));
-    let mut ids: Vec<String> = all.into_iter().map(|candidate| candidate.id).collect();
-    ids.dedup();
-    ids
+/// The composed schemes that a scene may have: id, and what it does.
+pub fn composed_schemes() -> &'static [(String, String)] {
+    static ALL: LazyLock<Vec<(String, String)>> = LazyLock::new(|| {
+        // Drag makes room for all of them.
+        let damped = Particle {
+            drag: 1.0,
+            ..Particle::default()
+        };
+        let scene = Scene {
+            particles: vec![damped],
+            ..Scene::default()
+        };
+        let all = composed(&scene, &ParticleSystem::new(&scene)).into_iter();
+        let named = all.map(|scheme| (scheme.id, scheme.says.unwrap_or_default().into_owned()));
+        let mut named: Vec<(String, String)> = named.collect();
+        named.dedup_by(|a, b| a.0 == b.0);
+        named
+    });
+    &ALL
 }
 
 /// The methods whose steps solve nothing.
@@ -264,6 +268,10 @@ fn explicit() -> impl Iterator<Item = &'static Method> {
 
 /// Methods under all forces but drag, which multiplies velocities before the kick, after it or at the end.
 fn damped(scene: &Scene) -> Vec<Candidate> {
+    // Whoever multiplies velocities brings them to rest, and not to the velocity of the air.
+    if scene.air().velocity != [0.0; 3] {
+        return Vec::new();
+    }
     let Some(without) = channels::scaled(scene, &[("drag", 0.0)]) else {
         return Vec::new();
     };

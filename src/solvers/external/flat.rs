@@ -1,7 +1,9 @@
 //! A scene as flat arrays of numbers, which a program in any language can read in a few lines.
 
 use super::Task;
-use crate::scene::model::{DRIVEN, GRAVITATIONAL, PARTICLES, Part, Row, SINE, SPRINGS, ValueKind};
+use crate::scene::model::{
+    DRIVEN, GRAVITATIONAL, PARTICLES, Part, Row, SINE, SPRINGS, TRIANGLES, ValueKind,
+};
 use crate::scene::{Scene, Value};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -24,8 +26,6 @@ impl Serialize for Flat<'_> {
             timestep,
             steps,
         } = *self.0;
-        let mut gravity = [0.0; 3];
-        gravity[scene.up.index()] = scene.solver.gravity;
         let wind = scene.wind.as_ref();
         let wind = wind.map_or([0.0; 3], |wind| wind.direction.map(|d| wind.strength * d));
         let effects: Vec<&str> = system.effects().iter().map(|(row, _)| row.id).collect();
@@ -37,8 +37,11 @@ impl Serialize for Flat<'_> {
         map.serialize_entry("springs", &Arrays(scene, &[&SPRINGS]))?;
         map.serialize_entry("driven", &Arrays(scene, &[&DRIVEN, &SINE]))?;
         map.serialize_entry("damping_model", &scene.damping_model)?;
-        map.serialize_entry("gravity", &gravity)?;
+        map.serialize_entry("gravity", &scene.gravity())?;
         map.serialize_entry("wind_force", &wind)?;
+        map.serialize_entry("air_velocity", &scene.air().velocity)?;
+        map.serialize_entry("air_density", &scene.air().density)?;
+        map.serialize_entry("triangles", &Arrays(scene, &[&TRIANGLES]))?;
         map.serialize_entry("gravitational", &Arrays(scene, &[&GRAVITATIONAL]))?;
         map.serialize_entry("effects", &effects)?;
         map.serialize_entry("timestep", &timestep)?;

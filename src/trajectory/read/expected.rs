@@ -143,8 +143,8 @@ pub fn free_axis(scene: &Scene) -> Option<FreeAxis> {
     (others == 0).then_some(FreeAxis { particle, axis })
 }
 
-/// The axes on which free particles can move: where their velocities, gravity, wind, motions of driven ones, or their
-/// springs and attractions have a component.
+/// The axes on which free particles can move: where their velocities, gravity, wind, moving air, motions of driven
+/// ones, or their springs and attractions have a component; on all where the air drags at triangles, which turn.
 fn moves(scene: &Scene) -> [bool; 3] {
     let starts = scene.starts();
     // Effects of strength 0 pull nowhere.
@@ -158,16 +158,18 @@ fn moves(scene: &Scene) -> [bool; 3] {
         .chain(pairs.map(|pair| pair.ends))
         .filter(|ends| ends.iter().any(|&end| !scene.particles[end].fixed))
         .map(|[a, b]| [0, 1, 2].map(|axis| starts[b][axis] - starts[a][axis]));
-    let mut gravity = [0.0; 3];
-    gravity[scene.up.index()] = scene.solver.gravity;
     let wind = scene.wind.iter().filter(|wind| wind.strength != 0.0);
-    let velocities = scene.particles.iter().filter(|p| !p.fixed);
-    let mut moves = [false; 3];
+    let free = || scene.particles.iter().filter(|p| !p.fixed);
+    let velocities = free();
+    let dragged = free().any(|p| p.drag != 0.0 || p.quadratic_drag != 0.0);
+    let air = dragged.then(|| scene.air().velocity);
+    let mut moves = [scene.triangles.iter().any(|t| t.air_drag != 0.0); 3];
     for direction in lines
         .chain(wind.map(|wind| wind.direction))
         .chain(velocities.map(|p| p.velocity))
         .chain(scene.drives().iter().map(Drive::reach))
-        .chain([gravity])
+        .chain([scene.gravity()])
+        .chain(air)
     {
         for axis in 0..3 {
             moves[axis] |= direction[axis] != 0.0;

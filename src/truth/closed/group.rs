@@ -22,11 +22,15 @@ pub(super) struct Body {
     pub id: usize,
     pub mass: f64,
     pub drag: f64,
+    /// c of its quadratic drag, N s²/m².
+    pub quadratic: f64,
+    /// Velocity of the air, m/s.
+    pub air: Vector3<f64>,
     /// At the start: position, m, and velocity, m/s.
     pub position: Vector3<f64>,
     pub velocity: Vector3<f64>,
-    /// Acceleration under gravity and wind alone, m/s²: equal masses have the same bits, and
-    /// without wind all have.
+    /// Acceleration under gravity, wind and the linear drag of air that moves at what is at rest, m/s²: equal
+    /// masses and drags have the same bits, and under gravity alone all have.
     pub constant: Vector3<f64>,
 }
 
@@ -60,11 +64,11 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
             parent[a.max(b)] = a.min(b);
         }
     }
-    let mut gravity = Vector3::zeros();
-    gravity[scene.up.index()] = scene.solver.gravity;
+    let gravity = Vector3::from(scene.gravity());
     let wind = scene.wind.as_ref().map_or(Vector3::zeros(), |wind| {
         wind.strength * Vector3::from(wind.direction)
     });
+    let air = Vector3::from(scene.air().velocity);
     let position = |i: usize| Vector3::from_column_slice(&start.x[3 * i..3 * i + 3]);
     let drives = scene.drives();
     let drive = |i: usize| drives.iter().find(|drive| drive.particle == i).cloned();
@@ -89,7 +93,9 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
             drag: particle.drag,
             position: position(i),
             velocity: Vector3::from_column_slice(&start.v[3 * i..3 * i + 3]),
-            constant: gravity + wind / particle.mass,
+            quadratic: particle.quadratic_drag,
+            air,
+            constant: gravity + (wind + air * particle.drag) / particle.mass,
         });
     }
     for spring in springs {

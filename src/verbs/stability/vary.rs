@@ -121,6 +121,9 @@ impl VariedKey {
             }
             Some(at) if !key.free(scene, at) => refused("this one has none".into()),
             None if key.members(scene).next().is_none() => refused("the scene has none".into()),
+            _ if key.is_vector(scene) => {
+                refused("the scene gives vectors here: only a number can be varied".into())
+            }
             _ => Ok(key),
         }
     }
@@ -144,6 +147,13 @@ impl VariedKey {
                 known.join(", ")
             ))
         })
+    }
+
+    /// Whether the scene has vectors in the place of the number.
+    fn is_vector(&self, scene: &Scene) -> bool {
+        let other = |row: &&Row| row.key == self.row.key && !std::ptr::eq(*row, self.row);
+        let mut others = self.part.rows.iter().filter(other);
+        others.any(|row| (row.get)(scene, 0, 0).is_some())
     }
 
     /// The scene with this value, in the one member or in all that are free.

@@ -3,8 +3,9 @@
 use super::*;
 use crate::testkit::part;
 use crate::testkit::scenes::{all_shipped, folders, shipped};
-use springcheck::integrators::fixed;
+use springcheck::integrators::{Method, fixed};
 use springcheck::measure::identify::Undecided;
+use springcheck::physics::ParticleSystem;
 use std::collections::BTreeSet;
 
 fn course(number: u32) -> Scene {
@@ -47,7 +48,11 @@ fn every_method_is_named_on_every_shipped_scene() {
     let mut folders = folders();
     folders.retain(|folder| folder != "hard");
     for (at, scene) in all_shipped(&folders).iter().enumerate() {
+        // Some methods take no force that is not linear in the velocity.
+        let system = ParticleSystem::new(scene);
+        let taken = |method: &&&Method| system.admits(method.id, method.takes()).is_ok();
         let methods = part(fixed(), 3, at);
+        let methods: Vec<_> = methods.into_iter().filter(|m| taken(&m)).collect();
         let classes: Vec<_> = methods
             .iter()
             .map(|method| class(scene, method.id).unwrap())

@@ -6,6 +6,7 @@ mod choice;
 mod driven;
 mod edges;
 mod exact;
+mod fall;
 mod families;
 mod gauss;
 mod motion;

@@ -234,12 +234,22 @@ pub static MISTAKES: &[Mistake] = &[
     ),
     scaled(
         "damping_sign",
-        &[("springs.damping", -1.0), ("drag", -1.0)],
+        &[
+            ("springs.damping", -1.0),
+            ("drag", -1.0),
+            ("quadratic_drag", -1.0),
+            ("air_drag", -1.0),
+        ],
         "damping has the wrong sign, so it drives: a damper's force opposes the velocity",
     ),
     scaled(
         "damping_forgotten",
-        &[("springs.damping", 0.0), ("drag", 0.0)],
+        &[
+            ("springs.damping", 0.0),
+            ("drag", 0.0),
+            ("quadratic_drag", 0.0),
+            ("air_drag", 0.0),
+        ],
         "damping is missing: add the springs' dampers and the drag to the forces",
     ),
     physics(
@@ -317,6 +327,12 @@ pub static MISTAKES: &[Mistake] = &[
         springs::second_end_only,
         &[("springs.first_end", 0.0)],
         "only the second end of each spring feels it: the first feels the opposite force",
+    ),
+    physics(
+        "both_ends_alike",
+        springs::both_ends_alike,
+        &[("springs.second_end", -1.0)],
+        "springs push both their ends the same way: the force on the second end is the opposite of that on the first",
     ),
     physics(
         "mass_ignored",
