@@ -44,7 +44,7 @@ const PARTS: &[Row] = &[
     ("sine with a frequency", "driven: [{particle_id: 0, sine: {amplitude: [1, 0, 0], »frequency: 1}}]", &["driven[0].sine", "unknown key `frequency`", "amplitude, omega, phase"]),
     ("sine, too fast", "driven: [{particle_id: 0, sine: {amplitude: [1, 0, 0], omega: »1e13}}]", &["driven[0].sine.omega", "at most 1e12 (rad/s)"]),
     ("table of one row", "driven: [{particle_id: 0, table: »[[0, 0, 0, 0]]}]", &["driven[0].table", "expected two rows or more, found 1"]),
-    ("table, empty", "driven: [{particle_id: 0, table: »[]}]", &["driven[0]", "expected"]),
+    ("table, empty", "driven: [»{particle_id: 0, table: []}]", &["driven[0]", "found none"]),
     ("table, short row", "driven: [{particle_id: 0, table: [[0, 0, 0, 0], »[1, 0, 0]]}]", &["driven[0].table[1]", "expected a list of 4 numbers, found 3"]),
     ("table of numbers", "driven: [{particle_id: 0, table: [»0, 1, 2, 3]}]", &["driven[0].table[0]", "expected a list of 4 numbers"]),
     ("table that does not ascend", "driven: [{particle_id: 0, table: [[0, 0, 0, 0], [1, 0, 0, 0], »[1, 1, 0, 0]]}]", &["driven[0].table[2]", "expected a time after 1.0 s, found 1.0", "in the order of their times"]),
