@@ -369,6 +369,15 @@ fn refuse(integrator: &dyn Integrator, system: &dyn System) -> Result<(), Refuse
     })
 }
 
+/// Whether two positions are the same where motions are not given: a given one depends on the time alone.
+fn agree(system: &dyn System, a: &[f64], b: &[f64]) -> bool {
+    let free = || {
+        let both = a.iter().zip(b).zip(system.inverse_mass());
+        a.len() == b.len() && both.into_iter().all(|((a, b), w)| a == b || *w == 0.0)
+    };
+    a == b || (system.kinds().has(ForceKinds::DRIVEN) && free())
+}
+
 /// Resizes scratch memory on first use or when the system's size changed.
 fn fit(buffer: &mut Vec<f64>, n: usize) {
     if buffer.len() != n {

@@ -1,7 +1,7 @@
 //! Splitting methods: one stepper, and a list of kicks and drifts for each method.
 
 use super::velocity_flow::{HALVINGS, VelocityFlow};
-use super::{Coefficients, Integrator, MethodRow, StepError, axpy, fit, refuse};
+use super::{Coefficients, Integrator, MethodRow, StepError, agree, axpy, fit, refuse};
 use crate::physics::{Dampers, ForceKinds, State, Sweep, System};
 use crate::vector;
 
@@ -219,6 +219,7 @@ impl Splitting {
         h: f64,
         state: &mut State,
     ) -> Result<(), StepError> {
+        system.place(t, &mut state.x, &mut state.v);
         self.evaluate(system, t, h, state);
         if system.kinds().depends_on_velocity() {
             return self
@@ -239,6 +240,7 @@ impl Splitting {
         [first, last]: [bool; 2],
         state: &mut State,
     ) {
+        system.place(t, &mut state.x, &mut state.v);
         if system.dampers() == Dampers::Apart {
             self.evaluate(system, t, h, state);
             self.kick_apart(system, t, h, state);
@@ -260,7 +262,7 @@ impl Splitting {
         }
     }
 
-    /// Evaluates the acceleration at rest, unless the kept one fits.
+    /// Evaluates the acceleration where every velocity is 0, also a given one, unless the kept one fits.
     fn evaluate(&mut self, system: &dyn System, t: f64, h: f64, state: &State) {
         let n = state.x.len();
         fit(&mut self.zero, n);
@@ -269,54 +271,85 @@ impl Splitting {
         // another order, so they may differ in their last bits.
         let last_bits = 1e-9 * h.abs() + 4.0 * f64::EPSILON * t.abs();
         let same_time = (self.kept.t - t).abs() <= last_bits;
-        if !(self.kept.valid && same_time && self.kept.x == state.x) {
+        if !(self.kept.valid && same_time && agree(system, &self.kept.x, &state.x)) {
             system.acceleration(t, &state.x, &self.zero, &mut self.kept.a);
+            let kinds = system.kinds();
+            if kinds.has(ForceKinds::DRIVEN) && kinds.depends_on_velocity() {
+                self.leave_out_given(system, t, state);
+            }
             self.kept.x.clone_from(&state.x);
             self.kept.t = t;
             self.kept.valid = true;
         }
     }
 
-    /// v += h a with the acceleration at rest, and the work of driven forces.
-    fn push(&self, system: &dyn System, t: f64, h: f64, state: &mut State) {
-        if system.kinds().has(ForceKinds::DRIVEN) {
-            // The power is linear in v, and v is linear in time: the trapezoid is exact.
-            let before = system.injected_power(t, &state.x, &state.v);
-            axpy(&mut state.v, h, &self.kept.a);
-            let after = system.injected_power(t, &state.x, &state.v);
-            state.work.injected += 0.5 * h * (before + after);
-        } else {
-            axpy(&mut state.v, h, &self.kept.a);
+    /// Takes what moving fixed particles do through dampers out of the acceleration: dampers act on their velocities
+    /// when it is their turn.
+    fn leave_out_given(&mut self, system: &dyn System, t: f64, state: &State) {
+        let given = state.v.iter().zip(system.inverse_mass());
+        let given: Vec<f64> = given
+            .map(|(v, w)| if *w == 0.0 { *v } else { 0.0 })
+            .collect();
+        if given.iter().any(|v| *v != 0.0) {
+            fit(&mut self.moved, given.len());
+            system.damping(t, &state.x, &given, &mut self.moved);
+            axpy(&mut self.kept.a, -1.0, &self.moved);
         }
+    }
+
+    /// The displacement over h under the acceleration at rest alone.
+    fn displace(&mut self, h: f64, state: &State) {
+        fit(&mut self.moved, state.v.len());
+        for ((moved, v), a) in self.moved.iter_mut().zip(&state.v).zip(&self.kept.a) {
+            *moved = h * (v + 0.5 * h * a);
+        }
+    }
+
+    /// v += h a with the acceleration at rest, and the work of driven forces.
+    fn push(&mut self, system: &dyn System, t: f64, h: f64, state: &mut State) {
+        if system.kinds().has(ForceKinds::DRIVEN) {
+            self.displace(h, state);
+            state.work.injected += system.injected(t, &state.x, &self.moved, h).forces;
+        }
+        axpy(&mut state.v, h, &self.kept.a);
     }
 
     /// The exact flow of the acceleration at rest and of dampers that share no particle.
     fn kick_apart(&mut self, system: &dyn System, t: f64, h: f64, state: &mut State) {
-        let a = &self.kept.a;
         let driven = system.kinds().has(ForceKinds::DRIVEN);
         if driven {
-            fit(&mut self.moved, a.len());
-            for ((moved, v), a) in self.moved.iter_mut().zip(&state.v).zip(a) {
-                *moved = h * (v + 0.5 * h * a);
-            }
+            self.displace(h, state);
         }
+        let a = &self.kept.a;
         axpy(&mut state.v, h, a);
         let moved = driven.then_some(&mut self.moved[..]);
         let mut sweep = Sweep::new(system, &state.x, &mut state.v, h).with(a, moved);
         system.sweep(&mut sweep);
         state.work.dissipated += sweep.dissipated();
         if driven {
-            state.work.injected += system.injected_power(t, &state.x, &self.moved);
+            let work = system.injected(t, &state.x, &self.moved, h);
+            state.work.injected += work.forces + work.dampers;
         }
     }
 }
 
 /// Applies the dampers alone, one after the other, over h.
 fn sweep(system: &dyn System, h: f64, backward: bool, state: &mut State) {
+    let driven = system.kinds().has(ForceKinds::DRIVEN);
+    let before = if driven {
+        system.kinetic(&state.v)
+    } else {
+        0.0
+    };
     let mut sweep = Sweep::new(system, &state.x, &mut state.v, h);
     sweep.backward = backward;
     system.sweep(&mut sweep);
-    state.work.dissipated += sweep.dissipated();
+    let dissipated = sweep.dissipated();
+    state.work.dissipated += dissipated;
+    if driven {
+        // Only what is driven gives dampers more than they take from what is free.
+        state.work.injected += system.kinetic(&state.v) - before + dissipated;
+    }
 }
 
 impl Integrator for Splitting {

@@ -36,7 +36,7 @@ pub(super) struct VelocityFlow {
 
 impl VelocityFlow {
     /// Advances `state.v` and the work over `h` at frozen `state.x`; `a0` is the acceleration at
-    /// rest, length n. A flow that needs too large a Krylov space is halved, up to `halvings` times.
+    /// rest, length n. What is driven is in its place. A flow that needs too large a Krylov space is halved, up to `halvings` times.
     ///
     /// # Errors
     /// [`StepError::DampingTooStiff`] when even the smallest pieces need too large a space. The state is
@@ -59,7 +59,9 @@ impl VelocityFlow {
         axpy(&mut self.r, 1.0, a0);
         let speed = largest(&state.v);
         let summed = self.taylor(system, t, h, &state.x, speed);
-        let alone = !summed && a0.iter().all(|a| *a == 0.0);
+        let driven = system.kinds().has(ForceKinds::DRIVEN);
+        // A driven end pulls through its damper, so damping is not alone.
+        let alone = !(summed || driven) && a0.iter().all(|a| *a == 0.0);
         let done = if alone {
             self.r.copy_from_slice(&state.v);
             self.lanczos(system, t, h, &state.x, speed, VELOCITY)
@@ -94,8 +96,10 @@ impl VelocityFlow {
             }
         }
         state.work.dissipated += dissipated;
-        if system.kinds().has(ForceKinds::DRIVEN) {
-            state.work.injected += system.injected_power(t, &state.x, displacement);
+        if driven {
+            let work = system.injected(t, &state.x, displacement, h);
+            state.work.injected += work.forces + work.dampers;
+            state.work.dissipated += work.dampers;
         }
         Ok(())
     }

@@ -8,6 +8,7 @@ mod momentum;
 pub mod order;
 mod scale;
 pub mod stability;
+mod statics;
 mod trend;
 pub mod twin;
 
@@ -18,4 +19,5 @@ pub use error::{Deviation, ErrorSummary, Errors, TOLERANCE, TrueStates, deviatio
 pub(crate) use momentum::totals;
 pub use momentum::{Momentum, momentum};
 pub use scale::{divergence_limit, energy_scale};
+pub use statics::{Loads, Reaction, Statics, Tension};
 pub use trend::EnergyClass;

@@ -27,12 +27,17 @@ pub fn energy_scale(scene: &Scene, system: &ParticleSystem, peak: Option<f64>) -
     (scale > 0.0).then_some(scale)
 }
 
-/// The energy K + U_elastic beyond which a run counts as diverged, joules: 1e12 `scale`, and never
-/// less than a thousand times what a free fall for the whole duration gains, which is motion however
-/// small the scale. None without either.
+/// The energy K + U_elastic beyond which a run counts as diverged, joules: 1e12 `scale`, or as much of the kinetic
+/// energy that all would have at the speed of what is driven; and never less than a thousand times what a free fall for
+/// the whole duration gains, which is motion however small the scale. None without any of them.
 pub fn divergence_limit(scene: &Scene, scale: Option<f64>) -> Option<f64> {
     let fall = free_fall(scene) * scene.duration * scene.duration;
-    let limit = (1e12 * scale.unwrap_or(0.0)).max(1e3 * fall);
+    let drives = scene.drives();
+    let fastest = drives.iter().map(|d| d.speed_bound(scene.duration));
+    let speed = fastest.fold(0.0, f64::max);
+    let free = scene.particles.iter().filter(|p| !p.fixed);
+    let driven = 0.5 * free.map(|p| p.mass).sum::<f64>() * speed * speed;
+    let limit = (1e12 * scale.unwrap_or(0.0).max(driven)).max(1e3 * fall);
     (limit > 0.0 && limit.is_finite()).then_some(limit)
 }
 

@@ -1,6 +1,6 @@
 //! Counts an integrator's force evaluations, independently of the integrator and the system.
 
-use super::{Dampers, ForceKinds, Jacobian, Linearization, Power, Sweep, System};
+use super::{Dampers, ForceKinds, Injected, Jacobian, Linearization, Power, Sweep, System};
 use std::cell::Cell;
 
 /// Evaluations of the forces so far.
@@ -65,8 +65,14 @@ impl<S: System> System for Counting<S> {
         self.counted.set(counted);
         self.inner.sweep(sweep);
     }
-    fn injected_power(&self, t: f64, x: &[f64], v: &[f64]) -> f64 {
-        self.inner.injected_power(t, x, v)
+    fn place(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
+        self.inner.place(t, x, v);
+    }
+    fn jumps(&self) -> &[f64] {
+        self.inner.jumps()
+    }
+    fn injected(&self, t: f64, x: &[f64], moved: &[f64], h: f64) -> Injected {
+        self.inner.injected(t, x, moved, h)
     }
     fn potential(&self, t: f64, x: &[f64]) -> f64 {
         self.inner.potential(t, x)

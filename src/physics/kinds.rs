@@ -22,7 +22,7 @@ impl ForceKinds {
     pub const GYROSCOPIC: Self = Self(4);
     /// Depends on v in any other way, as quadratic drag, or in a way that is not known.
     pub const NON_LINEAR: Self = Self(8);
-    /// Does work that neither a potential nor its dependence on v accounts for: wind.
+    /// Does work that neither a potential nor its dependence on v accounts for: wind, or a motion that is given.
     pub const DRIVEN: Self = Self(16);
     /// All of them.
     pub const ANY: Self = Self(31);

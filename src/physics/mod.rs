@@ -15,7 +15,7 @@ pub(crate) use jacobian::PairBlock;
 pub use jacobian::{Derivative, Jacobian, Linearization, Triplets};
 pub use kinds::{ForceKinds, Refused};
 pub use particles::{Effects, ParticleSystem};
-pub use state::{Power, State, Work};
+pub use state::{Injected, Power, State, Work};
 pub use sweep::{Dampers, Sweep};
 pub(crate) use sweep::{phi1, phi2};
 
@@ -60,6 +60,17 @@ pub trait System {
         ForceKinds::NON_LINEAR
     }
 
+    /// Overwrites the coordinates whose motion is given with their positions and velocities at a time, s. They are
+    /// fixed coordinates that move. [`acceleration`](System::acceleration), [`rounding`](System::rounding),
+    /// [`potential`](System::potential) and [`jacobian`](System::jacobian) see them there whatever they are passed; a
+    /// caller of [`damping`](System::damping) and [`sweep`](System::sweep) has placed them.
+    fn place(&self, _t: f64, _x: &mut [f64], _v: &mut [f64]) {}
+
+    /// The times, s, ascending, at which some derivative of a given motion jumps.
+    fn jumps(&self) -> &[f64] {
+        &[]
+    }
+
     /// Overwrites `a` with M⁻¹ D(x) w, the acceleration due to velocity `w` alone, m/s². Only called
     /// where the force [depends on velocity](ForceKinds::depends_on_velocity), linearly.
     fn damping(&self, _t: f64, _x: &[f64], _w: &[f64], a: &mut [f64]) {
@@ -75,10 +86,11 @@ pub trait System {
     /// same, or its reverse. Only called where they can be applied so ([`dampers`](Self::dampers)).
     fn sweep(&self, _sweep: &mut Sweep) {}
 
-    /// Power at velocity `v`, W, of forces that have no potential, other than damping. It is linear in `v`,
-    /// so for a displacement it gives the work, J. Only called for [`ForceKinds::DRIVEN`].
-    fn injected_power(&self, _t: f64, _x: &[f64], _v: &[f64]) -> f64 {
-        0.0
+    /// The work that forces without a potential, other than damping, and given motions put in over `h` seconds at
+    /// frozen positions `x`, while the particles move by `moved`, m: linear in both together. Only called for
+    /// [`ForceKinds::DRIVEN`], where forces are linear in the velocity.
+    fn injected(&self, _t: f64, _x: &[f64], _moved: &[f64], _h: f64) -> Injected {
+        Injected::default()
     }
 
     /// Potential energy, J.

@@ -1,8 +1,11 @@
 //! The system a scene describes: particles and the effects that act on them.
 
-use super::{Dampers, ForceKinds, Jacobian, Linearization, Power, Refused, State, Sweep, System};
+use super::{
+    Dampers, Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, Refused, State,
+    Sweep, System,
+};
 use crate::physics::effects::{self, Effect, EffectRow, Scaled};
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 use crate::vector;
 use std::sync::Arc;
 
@@ -14,6 +17,9 @@ pub type Effects = Vec<(&'static EffectRow, Box<dyn Effect>)>;
 pub struct ParticleSystem {
     inverse_mass: Arc<[f64]>,
     effects: Arc<Effects>,
+    drives: Arc<[Drive]>,
+    /// The times at which a derivative of a drive jumps, s, ascending.
+    jumps: Arc<[f64]>,
     kinds: ForceKinds,
     dampers: Dampers,
 }
@@ -49,13 +55,35 @@ impl ParticleSystem {
         Self::of(inverse_mass, effects.collect())
     }
 
+    /// The same with other motions of driven particles.
+    pub fn driven_as(self, change: impl Fn(&Drive) -> Drive) -> Self {
+        Self {
+            drives: self.drives.iter().map(change).collect(),
+            ..self
+        }
+    }
+
+    /// The motions of driven particles.
+    pub fn drives(&self) -> &[Drive] {
+        &self.drives
+    }
+
     /// A system of any effects, with 1/m of each coordinate, 1/kg; 0 for a fixed one.
     pub fn of(inverse_mass: Vec<f64>, effects: Effects) -> Self {
+        let drives: Vec<Drive> = effects
+            .iter()
+            .flat_map(|(_, e)| e.drives().to_vec())
+            .collect();
+        let mut jumps: Vec<f64> = drives.iter().flat_map(Drive::knots).collect();
+        jumps.sort_by(f64::total_cmp);
+        jumps.dedup();
         Self {
             kinds: ForceKinds::union(effects.iter().map(|(_, effect)| effect.kinds())),
             dampers: dampers(&inverse_mass, &effects),
             inverse_mass: inverse_mass.into(),
             effects: Arc::new(effects),
+            drives: drives.into(),
+            jumps: jumps.into(),
         }
     }
 
@@ -85,14 +113,15 @@ impl ParticleSystem {
         }
     }
 
-    /// The state the scene starts from, at t = 0; fixed particles at rest.
+    /// The state the scene starts from, at t = 0; fixed particles at rest, unless they are driven.
     pub fn initial_state(scene: &Scene) -> State {
-        let x = scene.particles.iter().flat_map(|p| p.position).collect();
-        let v = scene
+        let mut x: Vec<f64> = scene.particles.iter().flat_map(|p| p.position).collect();
+        let mut v: Vec<f64> = scene
             .particles
             .iter()
             .flat_map(|p| if p.fixed { [0.0; 3] } else { p.velocity })
             .collect();
+        place(&scene.drives(), 0.0, &mut x, &mut v);
         State::new(x, v)
     }
 
@@ -105,20 +134,83 @@ impl ParticleSystem {
     /// spring's pull, are included; they move nothing.
     pub fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
         vector::clear(f);
-        let mut power = Power::default();
-        for (_, effect) in self.effects.iter() {
-            power += effect.add_force(t, x, v, f);
+        self.placed(t, x, v, |x, v| {
+            let mut power = Power::default();
+            for (_, effect) in self.effects.iter() {
+                power += effect.add_force(t, x, v, f);
+            }
+            power.injected -= self.along_drives(f, v);
+            power
+        })
+    }
+
+    /// Calls `see` with driven particles where they are at this time. Without any, the vectors pass as they are.
+    fn placed<T>(&self, t: f64, x: &[f64], v: &[f64], see: impl FnOnce(&[f64], &[f64]) -> T) -> T {
+        if self.drives.is_empty() {
+            return see(x, v);
         }
-        power
+        let (mut x, mut v) = (x.to_vec(), v.to_vec());
+        self.place(t, &mut x, &mut v);
+        see(&x, &v)
+    }
+
+    /// Sum of f v over the driven particles.
+    fn along_drives(&self, f: &[f64], v: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for drive in self.drives.iter() {
+            for at in 3 * drive.particle..3 * drive.particle + 3 {
+                sum += f[at] * v[at];
+            }
+        }
+        sum
+    }
+
+    /// *Adds* what a rounding of the time does to forces through driven particles, N.
+    fn add_rounding_of_drives(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        if self.drives.is_empty() {
+            return;
+        }
+        let late = 4.0 * f64::EPSILON * t.abs();
+        let mut off = [vec![0.0; x.len()], vec![0.0; x.len()]];
+        for drive in self.drives.iter() {
+            let [_, velocity, acceleration] = drive.at(t);
+            for axis in 0..3 {
+                let at = 3 * drive.particle + axis;
+                off[0][at] = late * velocity[axis].abs() + 4.0 * f64::EPSILON * x[at].abs();
+                off[1][at] = late * acceleration[axis].abs() + 4.0 * f64::EPSILON * v[at].abs();
+            }
+        }
+        let mut slopes = Jacobian::default();
+        for (_, effect) in self.effects.iter() {
+            effect.add_jacobian(t, x, v, Linearization::Exact, &mut slopes);
+        }
+        for (by, off) in [Derivative::Position, Derivative::Velocity]
+            .iter()
+            .zip(&off)
+        {
+            slopes.add_magnitudes(*by, 1.0, off, f);
+        }
     }
 
     /// Potential energy of the springs alone, J, for the energy scale and the divergence test.
     pub fn elastic(&self, t: f64, x: &[f64]) -> f64 {
-        self.effects
-            .iter()
-            .filter(|(row, _)| row.elastic)
-            .map(|(_, effect)| effect.potential(t, x))
-            .sum()
+        self.placed(t, x, &[], |x, _| {
+            let elastic = self.effects.iter().filter(|(row, _)| row.elastic);
+            elastic.map(|(_, effect)| effect.potential(t, x)).sum()
+        })
+    }
+}
+
+/// Overwrites positions, and velocities where there are any, of driven particles.
+fn place(drives: &[Drive], t: f64, x: &mut [f64], v: &mut [f64]) {
+    for drive in drives {
+        let [position, velocity, _] = drive.at(t);
+        let at = 3 * drive.particle..3 * drive.particle + 3;
+        for (all, own) in [(&mut *x, position), (&mut *v, velocity)] {
+            if let Some(place) = all.get_mut(at.clone()) {
+                place.copy_from_slice(&own);
+            }
+        }
     }
 }
 
@@ -150,14 +242,25 @@ impl System for ParticleSystem {
 
     fn rounding(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
         vector::clear(a);
-        for (_, effect) in self.effects.iter() {
-            effect.add_rounding(t, x, v, a);
-        }
+        self.placed(t, x, v, |x, v| {
+            for (_, effect) in self.effects.iter() {
+                effect.add_rounding(t, x, v, a);
+            }
+            self.add_rounding_of_drives(t, x, v, a);
+        });
         vector::multiply(a, &self.inverse_mass);
     }
 
     fn kinds(&self) -> ForceKinds {
         self.kinds
+    }
+
+    fn place(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
+        place(&self.drives, t, x, v);
+    }
+
+    fn jumps(&self) -> &[f64] {
+        &self.jumps
     }
 
     fn damping(&self, _t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
@@ -184,15 +287,45 @@ impl System for ParticleSystem {
         }
     }
 
-    fn injected_power(&self, t: f64, _x: &[f64], v: &[f64]) -> f64 {
-        self.effects
-            .iter()
-            .map(|(_, e)| e.injected_power(t, v))
-            .sum()
+    fn injected(&self, t: f64, x: &[f64], moved: &[f64], h: f64) -> Injected {
+        let external = self.effects.iter().map(|(_, e)| e.injected_power(t, moved));
+        let mut injected = Injected {
+            forces: external.sum(),
+            dampers: 0.0,
+        };
+        if self.drives.is_empty() {
+            return injected;
+        }
+        let rest = vec![0.0; x.len()];
+        self.placed(t, x, &rest, |x, given| {
+            let mut f = rest.clone();
+            if h != 0.0 {
+                for (_, effect) in self.effects.iter() {
+                    effect.add_force(t, x, &rest, &mut f);
+                }
+                injected.forces -= h * self.along_drives(&f, given);
+                f.fill(0.0);
+            }
+            if self.kinds.depends_on_velocity() {
+                let mut moved = moved.to_vec();
+                for drive in self.drives.iter() {
+                    for at in 3 * drive.particle..3 * drive.particle + 3 {
+                        moved[at] = h * given[at];
+                    }
+                }
+                for (_, effect) in self.effects.iter() {
+                    effect.add_damping(x, &moved, &mut f);
+                }
+                injected.dampers = -self.along_drives(&f, given);
+            }
+        });
+        injected
     }
 
     fn potential(&self, t: f64, x: &[f64]) -> f64 {
-        self.effects.iter().map(|(_, e)| e.potential(t, x)).sum()
+        self.placed(t, x, &[], |x, _| {
+            self.effects.iter().map(|(_, e)| e.potential(t, x)).sum()
+        })
     }
 
     fn jacobian(
@@ -203,8 +336,10 @@ impl System for ParticleSystem {
         linearization: Linearization,
         out: &mut Jacobian,
     ) {
-        for (_, effect) in self.effects.iter() {
-            effect.add_jacobian(t, x, v, linearization, out);
-        }
+        self.placed(t, x, v, |x, v| {
+            for (_, effect) in self.effects.iter() {
+                effect.add_jacobian(t, x, v, linearization, out);
+            }
+        });
     }
 }

@@ -61,6 +61,15 @@ pub struct Power {
     pub injected: f64,
 }
 
+/// Energy that driven forces put in over a part of a step, J.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Injected {
+    /// By external forces, and by given motions against forces that do not depend on velocity.
+    pub forces: f64,
+    /// By given motions against dampers.
+    pub dampers: f64,
+}
+
 impl AddAssign for Power {
     fn add_assign(&mut self, other: Self) {
         self.dissipated += other.dissipated;

@@ -5,7 +5,7 @@ use super::error::Refusal;
 use super::expect::engine;
 use super::expectation::{Names, Scope};
 use super::limits;
-use super::model::{NO_PARTICLES, Particle, Scene, Triangle, Wind};
+use super::model::{Driven, Knots, NO_PARTICLES, Particle, Scene, Triangle, Wind};
 use super::place::Problem;
 use super::read::Reading;
 use super::values::Number;
@@ -51,22 +51,26 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
         .map_err(|refusal| Problem::new("solver.timestep", refusal))?;
     particles(&scene.particles)?;
     let count = scene.particles.len();
+    for (at, motion) in scene.driven.iter().enumerate() {
+        driven(at, motion, &scene)?;
+    }
+    let starts = scene.starts();
     if let Some((path, number)) = reading.no_id {
         return Err(Problem::new(path, no_particle(number, count)));
     }
     for (at, spring) in scene.springs.iter_mut().enumerate() {
         ends(&spring.ends, count, &format_args!("springs[{at}]"))?;
         if spring.rest_length.is_nan() {
-            spring.rest_length = distance(&scene.particles, spring.ends);
+            spring.rest_length = distance(&starts, spring.ends);
         }
     }
     for (at, found) in scene.triangles.iter().enumerate() {
         ends(&found.corners, count, &format_args!("triangles[{at}]"))?;
-        triangle(at, found, &scene.particles)?;
+        triangle(at, found, &starts)?;
     }
     for (at, pair) in scene.gravitational.iter().enumerate() {
         ends(&pair.ends, count, &format_args!("gravitational[{at}]"))?;
-        attraction(pair.ends, &scene.particles).map_err(|refusal| {
+        attraction(pair.ends, &scene.particles, &starts).map_err(|refusal| {
             Problem::new(format!("gravitational[{at}].particle_ids"), refusal)
         })?;
     }
@@ -157,11 +161,64 @@ fn ends(ends: &[usize], count: usize, of: &impl Display) -> Result<(), Problem> 
     Ok(())
 }
 
+/// Checks that a motion is one, of a fixed particle that has no other.
+fn driven(at: usize, driven: &Driven, scene: &Scene) -> Result<(), Problem> {
+    let of = format!("driven[{at}]");
+    let id = driven.particle;
+    let because =
+        |message: String, help: &str| Problem::because(format!("{of}.particle_id"), message, help);
+    match scene.particles.get(id) {
+        // An id that is no whole number has its own message.
+        None if id == usize::MAX => return Ok(()),
+        None => {
+            let refusal = no_particle(whole(id), scene.particles.len());
+            return Err(Problem::new(format!("{of}.particle_id"), refusal));
+        }
+        Some(particle) if !particle.fixed => {
+            let message = format!("expected a fixed particle, found that {id} is free");
+            return because(message, "a motion decides where it is: add `fixed: true`");
+        }
+        Some(_) => {}
+    }
+    if scene.driven[..at].iter().any(|other| other.particle == id) {
+        let message = format!("particle {id} has two motions");
+        return because(message, "keep one of them; a table can be any motion");
+    }
+    let motions = [
+        ("sine", driven.sine.is_some()),
+        ("velocity", driven.velocity.is_some()),
+        ("table", driven.table.is_some()),
+    ];
+    let given: Vec<&str> = motions.iter().filter(|m| m.1).map(|m| m.0).collect();
+    if given.len() != 1 {
+        let found = if given.is_empty() {
+            "none".to_owned()
+        } else {
+            given.join(" and ")
+        };
+        let message = format!("expected one of `sine`, `velocity` and `table`, found {found}");
+        return Problem::because(of, message, "a particle has one motion");
+    }
+    let rows = driven.table.iter().flat_map(|Knots(rows)| rows);
+    let times: Vec<f64> = rows.map(|row| row[0]).collect();
+    if driven.table.is_some() && times.len() < 2 {
+        let message = format!("expected two rows or more, found {}", times.len());
+        return Problem::because(format!("{of}.table"), message, "a row is [t, x, y, z]");
+    }
+    if let Some(row) = (1..times.len()).find(|&row| times[row] <= times[row - 1]) {
+        let [before, found] = [times[row - 1], times[row]];
+        let message = format!("expected a time after {before:?} s, found {found:?}");
+        let help = "rows are in the order of their times, and no two have the same";
+        return Problem::because(format!("{of}.table[{row}]"), message, help);
+    }
+    Ok(())
+}
+
 /// Checks that no two corners start in one place.
-fn triangle(at: usize, triangle: &Triangle, particles: &[Particle]) -> Result<(), Problem> {
+fn triangle(at: usize, triangle: &Triangle, starts: &[[f64; 3]]) -> Result<(), Problem> {
     let [a, b, c] = triangle.corners;
     for ends in [[a, b], [b, c], [a, c]] {
-        if distance(particles, ends) == 0.0 {
+        if distance(starts, ends) == 0.0 {
             let message = format!(
                 "expected three corners apart, found {} and {} in one place",
                 ends[0], ends[1]
@@ -189,12 +246,16 @@ fn whole(id: usize) -> Number {
 }
 
 /// Checks that both particles state their mass and start at different places.
-fn attraction(ends: [usize; 2], particles: &[Particle]) -> Result<(), Refusal> {
+fn attraction(
+    ends: [usize; 2],
+    particles: &[Particle],
+    starts: &[[f64; 3]],
+) -> Result<(), Refusal> {
     if let Some(id) = ends.into_iter().find(|id| particles[*id].mass.is_nan()) {
         let message = format!("expected particles with a mass, found that {id} states none");
         return Refusal::because(message, "the attraction depends on it: add `mass`");
     }
-    let apart = distance(particles, ends);
+    let apart = distance(starts, ends);
     if apart < limits::ATTRACTION_DISTANCE {
         let message =
             format!("expected two particles apart, found them {apart:?} m from each other");
@@ -222,8 +283,8 @@ fn normalise(wind: &mut Wind) -> Result<(), Problem> {
 }
 
 /// Initial distance of two particles, in metres.
-fn distance(particles: &[Particle], [a, b]: [usize; 2]) -> f64 {
-    let (a, b) = (particles[a].position, particles[b].position);
+fn distance(starts: &[[f64; 3]], [a, b]: [usize; 2]) -> f64 {
+    let (a, b) = (starts[a], starts[b]);
     // hypot neither overflows nor loses tiny distances.
     (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
 }

@@ -8,6 +8,7 @@
 //! valid, quantities are finite and within their bounds.
 
 mod complete;
+mod drive;
 mod error;
 mod expect;
 mod expectation;
@@ -22,12 +23,13 @@ pub(crate) mod words;
 mod write;
 
 pub use complete::check_times;
+pub use drive::Drive;
 pub use error::{Refusal, SceneError};
 pub(crate) use expectation::{ALL, REST, SKIP};
 pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
-    Air, Axis, DampingModel, GravitationalPair, Particle, Plot, Scene, SolverSpec, Spring,
-    Triangle, Wind, steps,
+    Air, Axis, DampingModel, Driven, GravitationalPair, Knots, Particle, Plot, Scene, Sine,
+    SolverSpec, Spring, Triangle, Wind, steps,
 };
 pub use table::{Value, Vectors};
 pub use write::yaml;

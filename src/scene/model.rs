@@ -12,19 +12,22 @@
 //! `Default` is the value of an absent key. Where the key is required, it is something harmless, such as
 //! a force of 0.
 
+use super::drive::Drive;
 use super::expectation::{Expectation, Scope, Skipped};
 use super::limits::{self, Bounds, Form};
-use super::table::{Field, Value, Vectors, declare, members, words};
+use super::table::{Field, Value, Vectors, declare, member, words};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use serde::Serialize;
 
 /// All parts: the mappings a file consists of.
-pub static PARTS: [&Part; 9] = [
+pub static PARTS: [&Part; 11] = [
     &SPRINGS,
     &PARTICLES,
     &TRIANGLES,
     &GRAVITATIONAL,
+    &DRIVEN,
+    &SINE,
     &WIND,
     &AIR,
     &SOLVER,
@@ -35,7 +38,7 @@ pub static PARTS: [&Part; 9] = [
 /// One mapping of the file, or each of a list of them.
 #[derive(Debug)]
 pub struct Part {
-    /// `springs`; `file` for the file itself.
+    /// `springs`; `driven.sine` for a mapping inside each member of a list; `file` for the file itself.
     pub key: &'static str,
     /// Whether the file has a list of such mappings.
     pub list: bool,
@@ -67,9 +70,18 @@ pub struct Row {
 }
 
 impl Part {
+    /// The list and the key there, of a mapping inside each of its members. It has as many members as the list, of
+    /// which some may be absent.
+    pub fn inside(&self) -> Option<(&'static str, &'static str)> {
+        self.key.split_once('.')
+    }
+
     /// The path of a key, for one member or for all: `springs[3].stiffness`, `springs.stiffness`.
     pub fn path(&self, member: Option<usize>, key: &str) -> String {
         match member {
+            Some(at) if let Some((list, inner)) = self.inside() => {
+                format!("{list}[{at}].{inner}.{key}")
+            }
             Some(at) if self.list => format!("{}[{at}].{key}", self.key),
             _ if self.key == SCENE.key => key.to_owned(),
             _ => format!("{}.{key}", self.key),
@@ -91,6 +103,8 @@ pub enum ValueKind {
     Number(Bounds),
     /// A list of this many numbers.
     Numbers(usize, Bounds),
+    /// A list of such lists, of any length. Components follow one another, row by row.
+    Table(usize, Bounds),
     /// A list of three numbers, or a list of such lists.
     Vectors(Bounds),
     /// The id of a particle.
@@ -130,7 +144,7 @@ use Absent::{Derived, Required, Usual};
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    reserved ["bending", "colliders", "driven", "magnetic", "objects", "rods", "strain_limit"];
+    reserved ["bending", "colliders", "magnetic", "objects", "rods", "strain_limit"];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
@@ -168,6 +182,8 @@ declare! {
     /// Attractions.
     gravitational: Vec<GravitationalPair> = Vec::new(),
         "gravitational" => ValueKind::Part(&GRAVITATIONAL), Usual, None;
+    /// Motions of fixed particles.
+    driven: Vec<Driven> = Vec::new(), "driven" => ValueKind::Part(&DRIVEN), Usual, None;
     /// A constant force.
     wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
     /// The air that drag acts against; at rest, as at sea level, where the scene says nothing of it.
@@ -292,6 +308,59 @@ declare! {
 }
 
 declare! {
+    /// The motion of a fixed particle, in addition to its position: one of the three.
+    DRIVEN: Driven, list driven,
+    "a motion: a mapping with `particle_id` and one of `sine`, `velocity` and `table`",
+    reserved [];
+
+    /// A fixed particle.
+    particle: usize = 0, "particle_id" => ValueKind::Id,
+        Required("say which particle it moves"), Some("ids");
+    /// It swings.
+    sine: Option<Sine> = None, "sine" => ValueKind::Part(&SINE), Usual, None;
+    /// Metres per second: it moves on and on.
+    velocity: Option<[f64; 3]> = None,
+        "velocity" => ValueKind::Numbers(3, Bounds::signed(1e12, "m/s")), Usual, Some("velocities");
+    /// Rows of a time, s, ascending, and a displacement, m: it passes them on a natural cubic spline.
+    table: Option<Knots> = None,
+        "table" => ValueKind::Table(4, Bounds::signed(1e12, "s, then m")), Usual, Some("tables");
+}
+
+declare! {
+    /// A displacement amplitude sin(omega t + phase).
+    SINE: Sine, inside (driven sine), "a mapping with `amplitude` and `omega`", reserved [];
+
+    /// Metres.
+    amplitude: [f64; 3] = [0.0; 3], "amplitude" => ValueKind::Numbers(3, limits::POSITION),
+        Required("give how far it swings: `amplitude: [x, y, z]`"), Some("amplitudes");
+    /// Rate of the phase, rad/s. Not to be confused with the frequency in 1/s, which is omega / 2π.
+    omega: f64 = 0.0, "omega" => ValueKind::Number(Bounds::signed(1e12, "rad/s")),
+        Required("give the rate of its phase in rad/s"), Some("omegas");
+    /// Phase at t = 0, rad.
+    phase: f64 = 0.0, "phase" => ValueKind::Number(Bounds::signed(1e12, "rad")),
+        Usual, Some("phases");
+}
+
+/// Rows [t, x, y, z] of a table, s and m.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Knots(pub Vec<[f64; 4]>);
+
+impl Field for Knots {
+    fn value(&self, component: usize) -> Option<Value<'_>> {
+        self.0.get(component / 4)?.value(component % 4)
+    }
+
+    fn put(&mut self, component: usize, value: Value<'_>) {
+        if component / 4 == self.0.len() {
+            self.0.push([0.0; 4]);
+        }
+        if let Some(row) = self.0.get_mut(component / 4) {
+            row.put(component % 4, value);
+        }
+    }
+}
+
+declare! {
     /// A constant force on every free particle, whatever its mass. Not to be confused with moving air.
     WIND: Wind, maybe wind, "a mapping with `direction` and `strength`",
     reserved ["profile"];
@@ -380,7 +449,7 @@ impl Scene {
     /// The scene's size L in metres: the diagonal of the box around all initial positions plus the
     /// longest rest length. It is the length scale of energies and tolerances; 0 for a lone particle.
     pub fn size(&self) -> f64 {
-        let corners = self.particles.iter().map(|p| Vector::from(p.position));
+        let corners = self.starts().into_iter().map(Vector::from);
         let diagonal = if self.particles.is_empty() {
             0.0
         } else {
@@ -388,6 +457,23 @@ impl Scene {
         };
         let rest_lengths = self.springs.iter().map(|s| s.rest_length);
         diagonal + rest_lengths.fold(0.0, f64::max)
+    }
+
+    /// The motions of driven particles.
+    pub fn drives(&self) -> Vec<Drive> {
+        self.driven
+            .iter()
+            .filter_map(|driven| Drive::new(self, driven))
+            .collect()
+    }
+
+    /// Where each particle is at t = 0, m: a driven one has its motion added.
+    pub fn starts(&self) -> Vec<[f64; 3]> {
+        let mut starts: Vec<_> = self.particles.iter().map(|p| p.position).collect();
+        for drive in self.drives() {
+            starts[drive.particle] = drive.at(0.0)[0];
+        }
+        starts
     }
 
     /// The expectations of an engine, each key once: those of its own line (or, for an integrator without

@@ -13,8 +13,8 @@ use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
 use super::values::{
-    Any, Either, Key, Maybe, Number, NumberOrList, Numbers, Texts, flag, index_of, number, text,
-    vectors,
+    Any, Either, Key, Maybe, Number, NumberOrList, Numbers, Table, Texts, flag, index_of, number,
+    text, vectors,
 };
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
@@ -37,6 +37,7 @@ pub(super) fn document(text: &str, reading: &mut Reading) -> Result<(), Fault> {
     let scene = Any(Mapping {
         part: &SCENE,
         row: None,
+        at: 0,
         reading,
     });
     let first = match documents.next() {
@@ -57,6 +58,8 @@ struct Mapping<'r, 'n> {
     part: &'static Part,
     /// The row that adds the member; None for the file itself.
     row: Option<&'static Row>,
+    /// The index of the mapping that the row is of.
+    at: usize,
     reading: &'r mut Reading<'n>,
 }
 
@@ -68,11 +71,19 @@ impl<'de> Visitor<'de> for Mapping<'_, '_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let Mapping { part, row, reading } = self;
+        let Mapping {
+            part,
+            row,
+            at,
+            reading,
+        } = self;
         if let Some(row) = row {
-            (row.set)(&mut reading.scene, 0, 0, Value::Flag(true));
+            (row.set)(&mut reading.scene, at, 0, Value::Flag(true));
         }
-        let at = (part.count)(&reading.scene) - 1;
+        let at = match part.inside() {
+            Some(_) => at,
+            None => (part.count)(&reading.scene) - 1,
+        };
         // Bit i of `seen`: the key of row i occurred. Bit i of `given`: it had a value.
         let (mut seen, mut given) = (0_u32, 0_u32);
         while let Some(index) = map.next_key_seed(Key(|key: &str| row_of(part, key, &mut seen)))? {
@@ -132,6 +143,7 @@ impl<'n> Entry<'_, 'n> {
         Mapping {
             part,
             row: Some(self.row),
+            at: self.at,
             reading: self.reading,
         }
     }
@@ -141,6 +153,7 @@ impl<'n> Entry<'_, 'n> {
         let value = match self.row.kind {
             ValueKind::Number(quantity)
             | ValueKind::Numbers(_, quantity)
+            | ValueKind::Table(_, quantity)
             | ValueKind::Vectors(quantity) => Value::Number(quantity.judge(number)?),
             ValueKind::Coordinate => Value::Id(coordinate(number)?),
             _ => Value::Id(self.id(component, number)),
@@ -177,6 +190,9 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
             }
             ValueKind::Numbers(count, _) => {
                 from.deserialize_any(Numbers(count, |i, n| self.number(i, n)))
+            }
+            ValueKind::Table(width, _) => {
+                from.deserialize_any(Table(width, |i, n| self.number(i, n)))
             }
             ValueKind::Ids(count) => from.deserialize_any(Numbers(count, |i, n| self.number(i, n))),
             ValueKind::Flag => {

@@ -124,22 +124,50 @@ macro_rules! words {
     };
 }
 
-/// The members of a part as a slice: the scene `itself`, `one` member, `maybe` one or a `list`.
-macro_rules! members {
-    (itself $scene:ident . $file:ident, as_slice) => {
+/// The `key` of a part, and its members: one by its index (`get`, `get_mut`) and their number (`len`). A part is the scene `itself`, `one`
+/// member, `maybe` one, a `list`, or what is `inside` each member of one.
+macro_rules! member {
+    (key ($list:ident $part:ident)) => {
+        concat!(stringify!($list), ".", stringify!($part))
+    };
+    (key $part:ident) => {
+        stringify!($part)
+    };
+    (len inside $scene:ident ($list:ident $part:ident)) => {
+        $scene.$list.len()
+    };
+    (get inside $scene:ident ($list:ident $part:ident), $at:ident) => {
+        $scene.$list.get($at).and_then(|member| member.$part.as_ref())
+    };
+    (get_mut inside $scene:ident ($list:ident $part:ident), $at:ident) => {
+        $scene.$list.get_mut($at).and_then(|member| member.$part.as_mut())
+    };
+    (len $how:ident $scene:ident $part:ident) => {
+        member!(slice $how $scene $part).len()
+    };
+    (get $how:ident $scene:ident $part:ident, $at:ident) => {
+        member!(slice $how $scene $part).get($at)
+    };
+    (get_mut $how:ident $scene:ident $part:ident, $at:ident) => {
+        member!(slice_mut $how $scene $part).get_mut($at)
+    };
+    (slice itself $scene:ident $file:ident) => {
         std::slice::from_ref($scene)
     };
-    (itself $scene:ident . $file:ident, as_mut_slice) => {
+    (slice_mut itself $scene:ident $file:ident) => {
         std::slice::from_mut($scene)
     };
-    (one $scene:ident . $part:ident, as_slice) => {
+    (slice one $scene:ident $part:ident) => {
         std::slice::from_ref(&$scene.$part)
     };
-    (one $scene:ident . $part:ident, as_mut_slice) => {
+    (slice_mut one $scene:ident $part:ident) => {
         std::slice::from_mut(&mut $scene.$part)
     };
-    ($how:ident $scene:ident . $part:ident, $as_slice:ident) => {
-        $scene.$part.$as_slice()
+    (slice $how:ident $scene:ident $part:ident) => {
+        $scene.$part.as_slice()
+    };
+    (slice_mut $how:ident $scene:ident $part:ident) => {
+        $scene.$part.as_mut_slice()
     };
 }
 
@@ -148,7 +176,7 @@ macro_rules! members {
 macro_rules! declare {
     (
         $(#[$about:meta])*
-        $name:ident: $type:ident, $how:ident $place:ident, $expected:literal, reserved $reserved:expr;
+        $name:ident: $type:ident, $how:ident $place:tt, $expected:literal, reserved $reserved:expr;
         $([$(#[$note:meta])* $unlisted:ident: $kept:ty = $empty:expr])*
         $(
             $(#[doc = $summary:literal])*
@@ -171,7 +199,7 @@ macro_rules! declare {
         impl Field for $type {}
 
         pub static $name: Part = Part {
-            key: stringify!($place),
+            key: member!(key $place),
             list: matches!(stringify!($how).as_bytes(), b"list"),
             expected: $expected,
             reserved: &$reserved,
@@ -182,16 +210,16 @@ macro_rules! declare {
                 absent: $absent,
                 flat: $flat,
                 get: |scene, at, component| {
-                    members!($how scene.$place, as_slice).get(at)?.$field.value(component)
+                    member!(get $how scene $place, at)?.$field.value(component)
                 },
                 set: |scene, at, component, value| {
-                    if let Some(member) = members!($how scene.$place, as_mut_slice).get_mut(at) {
+                    if let Some(member) = member!(get_mut $how scene $place, at) {
                         member.$field.put(component, value);
                     }
                 },
             }),*],
-            count: |scene| members!($how scene.$place, as_slice).len(),
+            count: |scene| member!(len $how scene $place),
         };
     };
 }
-pub(super) use {declare, members, words};
+pub(super) use {declare, member, words};

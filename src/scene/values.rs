@@ -252,6 +252,28 @@ impl<'de, F: FnMut(usize, Number) -> Result<(), Refusal>> Visitor<'de> for Numbe
     }
 }
 
+/// Reads a list of lists of this many numbers each. The function also gets the index among all of them.
+pub(super) struct Table<F>(pub(super) usize, pub(super) F);
+
+impl<'de, F: FnMut(usize, Number) -> Result<(), Refusal>> Visitor<'de> for Table<F> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "a list of rows of {} numbers", self.0)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let Table(width, mut judge) = self;
+        let mut before = 0;
+        while let Some(()) =
+            list.next_element_seed(Any(Numbers(width, |i, n| judge(before + i, n))))?
+        {
+            before += width;
+        }
+        Ok(())
+    }
+}
+
 /// What reads either a number or a list.
 pub(super) trait Either {
     fn number(&mut self, number: Number) -> Result<(), Refusal>;

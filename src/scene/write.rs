@@ -62,6 +62,12 @@ fn member(part: &Part, scene: &Scene, at: usize) -> String {
 
 /// The value of a key; None where it has none.
 fn value(row: &Row, scene: &Scene, at: usize) -> Option<String> {
+    if let ValueKind::Part(part) = row.kind {
+        let mut rows = part.rows.iter();
+        return rows
+            .any(|row| (row.get)(scene, at, 0).is_some())
+            .then(|| member(part, scene, at));
+    }
     let mut values = row.values(scene, at).map(|value| match value {
         Value::Number(x) => number(x),
         Value::Id(id) => id.to_string(),
@@ -69,6 +75,11 @@ fn value(row: &Row, scene: &Scene, at: usize) -> Option<String> {
         Value::Text(text) => self::text(text),
     });
     match row.kind {
+        ValueKind::Table(width, _) => {
+            let values: Vec<String> = values.collect();
+            let rows = values.chunks(width).map(|row| brackets(row.to_vec()));
+            (!values.is_empty()).then(|| brackets(rows))
+        }
         ValueKind::Numbers(..) | ValueKind::Ids(_) | ValueKind::Names(_) => {
             let values: Vec<String> = values.collect();
             (!values.is_empty()).then(|| brackets(values))

@@ -6,7 +6,8 @@ use crate::integrators::{Integrator, Method, Settings, StepError};
 use crate::physics::{Counting, ParticleSystem, State, System};
 use crate::scene::Scene;
 
-/// Advances a state by a step of `h` seconds, from `state.t` to `state.t + h`.
+/// Advances a state by a step of `h` seconds from `state.t`, after which the time counts as `end`: `state.t + h` but for
+/// rounding. What is driven is then in its place.
 ///
 /// Every step of an integrator outside of [`conformance`](crate::conformance) is taken here. Events within a
 /// step belong here, and so do corrections after it, which add the energy they take out to `state.work`.
@@ -17,9 +18,13 @@ pub fn advance(
     integrator: &mut dyn Integrator,
     system: &dyn System,
     h: f64,
+    end: f64,
     state: &mut State,
 ) -> Result<(), StepError> {
-    integrator.step(system, h, state)
+    integrator.step(system, h, state)?;
+    state.t = end;
+    system.place(end, &mut state.x, &mut state.v);
+    Ok(())
 }
 
 /// An integrator on a scene's particle system at a fixed timestep.
@@ -63,15 +68,16 @@ impl IntegratorEngine {
 impl Engine for IntegratorEngine {
     fn step(&mut self) -> Result<(), StepError> {
         // n h, not a running sum, which would drift.
-        self.state.t = self.steps as f64 * self.timestep;
+        let time = |steps: u64| steps as f64 * self.timestep;
+        self.state.t = time(self.steps);
         advance(
             self.integrator.as_mut(),
             &self.system,
             self.timestep,
+            time(self.steps + 1),
             &mut self.state,
         )?;
         self.steps += 1;
-        self.state.t = self.steps as f64 * self.timestep;
         Ok(())
     }
 
@@ -123,7 +129,11 @@ impl Engine for AdaptiveEngine {
         if self.done() {
             return Ok(());
         }
-        self.stepper.step(&self.system, self.until, &mut self.state)
+        self.stepper
+            .step(&self.system, self.until, &mut self.state)?;
+        let State { t, x, v, .. } = &mut self.state;
+        self.system.place(*t, x, v);
+        Ok(())
     }
 
     fn state(&self) -> &State {

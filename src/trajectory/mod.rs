@@ -8,7 +8,7 @@ mod read;
 mod record;
 mod rows;
 
-pub use csv::CsvWriter;
+pub use csv::{CsvWriter, Values};
 pub use npz::{NpzWriter, Scratch};
 pub use read::{ErrorPlace, Expected, FreeAxis, Layout, Plane, ReadError, free_axis, limits, read};
 pub use record::{Recorder, Trajectory, stride};

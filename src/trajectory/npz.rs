@@ -1,5 +1,6 @@
-//! Every step for NumPy: `t` (T), `x` (T, N, 3), `v` (T, N, 3), doubles, in one NPZ.
+//! Every step for NumPy: `t` (T), `x` (T, N, 3), `v` (T, N, 3) and other values of each state, doubles, in one NPZ.
 
+use super::csv::Values;
 use super::{Observer, SaveError, Selection};
 use crate::physics::State;
 use npyz::WriterBuilder;
@@ -10,13 +11,20 @@ use zip::write::SimpleFileOptions;
 pub trait Scratch: Read + Write + Seek {}
 impl<T: Read + Write + Seek> Scratch for T {}
 
+/// An array that grows by the values of each state.
+struct Array<S: Scratch> {
+    name: &'static str,
+    /// What follows the number of instants.
+    shape: Vec<u64>,
+    values: Values,
+    scratch: BufWriter<S>,
+}
+
 /// Collects rows in scratch files as a run goes on, since a run's length is known only at its end.
 pub struct NpzWriter<S: Scratch> {
-    x: BufWriter<S>,
-    v: BufWriter<S>,
+    arrays: Vec<Array<S>>,
     rows: u64,
     last_step: u64,
-    particles: usize,
     selection: Selection,
     timestep: f64,
     /// The first failure, which `finish` returns; later rows are dropped.
@@ -27,17 +35,31 @@ impl<S: Scratch> NpzWriter<S> {
     /// Collects every `every`-th of `steps` steps (0 counts as 1) of `particles` particles, and the
     /// last. The scratch streams are empty.
     pub fn new(scratch: [S; 2], particles: usize, steps: u64, every: u64, timestep: f64) -> Self {
-        let [x, v] = scratch.map(BufWriter::new);
-        Self {
-            x,
-            v,
+        let [x, v] = scratch;
+        let shape = || vec![particles as u64, 3];
+        let writer = Self {
+            arrays: Vec::new(),
             rows: 0,
             last_step: 0,
-            particles,
             selection: Selection::new(every, steps),
             timestep,
             written: Ok(()),
-        }
+        };
+        writer
+            .with("x", shape(), Box::new(|state| state.x.clone()), x)
+            .with("v", shape(), Box::new(|state| state.v.clone()), v)
+    }
+
+    /// The same with one array more, of this shape at each instant.
+    #[must_use]
+    pub fn with(mut self, name: &'static str, shape: Vec<u64>, values: Values, scratch: S) -> Self {
+        self.arrays.push(Array {
+            name,
+            shape,
+            values,
+            scratch: BufWriter::new(scratch),
+        });
+        self
     }
 
     /// Writes the archive to `out`.
@@ -55,7 +77,6 @@ impl<S: Scratch> NpzWriter<S> {
             };
             Ok(step as f64 * self.timestep)
         };
-        let shape = [rows, self.particles as u64, 3];
         let mut archive = zip::ZipWriter::new(Stopping { out, failed: false });
         // The archive holds no date: two runs give the same bytes.
         let options = SimpleFileOptions::default()
@@ -64,13 +85,15 @@ impl<S: Scratch> NpzWriter<S> {
             .large_file(true);
         archive.start_file("t.npy", options)?;
         write_array(&mut archive, &[rows], (0..rows).map(time))?;
-        for (name, scratch) in [("x.npy", self.x), ("v.npy", self.v)] {
-            let mut scratch = scratch
+        for array in self.arrays {
+            let mut scratch = array
+                .scratch
                 .into_inner()
                 .map_err(std::io::IntoInnerError::into_error)?;
             scratch.seek(SeekFrom::Start(0))?;
-            archive.start_file(name, options)?;
-            let count = rows * self.particles as u64 * 3;
+            archive.start_file(format!("{}.npy", array.name), options)?;
+            let shape = [&[rows], &array.shape[..]].concat();
+            let count = shape.iter().product();
             write_array(
                 &mut archive,
                 &shape,
@@ -153,8 +176,9 @@ impl<S: Scratch> Observer for NpzWriter<S> {
         if self.written.is_ok() {
             self.rows += 1;
             self.last_step = step;
+            let mut arrays = self.arrays.iter_mut();
             self.written =
-                append(&mut self.x, &state.x).and_then(|()| append(&mut self.v, &state.v));
+                arrays.try_for_each(|array| append(&mut array.scratch, &(array.values)(state)));
         }
     }
 }

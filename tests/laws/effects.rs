@@ -435,6 +435,7 @@ fn only_what_the_scene_calls_for_is_built() {
     scene.solver.gravities = Vectors(vec![[0.0, 2.0, 0.0], [0.0, -2.0, 0.0]]);
     scene.wind = None;
     scene.gravitational.clear();
+    scene.driven.clear();
     for particle in &mut scene.particles {
         particle.drag = 0.0;
         particle.quadratic_drag = 0.0;

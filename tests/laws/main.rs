@@ -7,6 +7,7 @@ mod adaptive;
 mod coincidence;
 mod conformance;
 mod damping_flow;
+mod driven;
 mod effects;
 mod force_kinds;
 mod hard;

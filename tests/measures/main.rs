@@ -12,5 +12,6 @@ mod gate;
 mod identity;
 mod plan;
 mod stability;
+mod statics;
 #[path = "../testkit/mod.rs"]
 mod testkit;

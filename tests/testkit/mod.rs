@@ -13,7 +13,9 @@ pub use springcheck::conformance::systems::{Oscillator, free_triangle, swinging_
 use springcheck::integrators::{Integrator, Method, Settings, fixed};
 use springcheck::physics::effects::Effect;
 use springcheck::physics::{ForceKinds, ParticleSystem, Power, State, System};
-use springcheck::scene::{Air, DampingModel, GravitationalPair, Scene, Triangle, Wind};
+use springcheck::scene::{
+    Air, DampingModel, Driven, GravitationalPair, Scene, Sine, Triangle, Wind,
+};
 
 /// All of these in a whole run, which `SPRINGCHECK_WHOLE=1` asks for as CI does; else one in `of`,
 /// beginning with number `at`: what lies in a loop over at least `of` cases that hands in its own number
@@ -134,9 +136,24 @@ pub fn everything(model: DampingModel) -> Scene {
     scene
 }
 
+/// The scene with its first fixed particle on a swing.
+pub fn driven(mut scene: Scene) -> Scene {
+    let particle = scene.particles.iter().position(|p| p.fixed);
+    scene.driven.push(Driven {
+        particle: particle.expect("a fixed particle"),
+        sine: Some(Sine {
+            amplitude: [0.3, -0.1, 0.2],
+            omega: 5.0,
+            phase: 0.4,
+        }),
+        ..Driven::default()
+    });
+    scene
+}
+
 /// A scene that calls for every effect of the registry, in moving air.
 pub fn all_effects(model: DampingModel) -> Scene {
-    let mut scene = everything(model);
+    let mut scene = driven(everything(model));
     scene.air = Some(Air {
         velocity: [0.6, -0.3, 0.2],
         density: 1.2,

@@ -324,15 +324,17 @@ impl Newton {
         fit(&mut self.d, u.len());
         let mut right = vec![0.0; u.len()];
         let inverse_mass = system.inverse_mass();
-        // Forces that depend on time are evaluated at the end of the step, as in implicit Euler.
-        let power = system.acceleration(t + h, &state.x, &state.v, &mut right);
+        // What is driven is where it is at the start, too, and goes on with its velocity there.
+        let (mut x, mut v) = (state.x.clone(), state.v.clone());
+        system.place(t, &mut x, &mut v);
+        let power = system.acceleration(t, &x, &v, &mut right);
         self.jacobian.clear();
-        system.jacobian(t + h, &state.x, &state.v, linearization, &mut self.jacobian);
+        system.jacobian(t, &x, &v, linearization, &mut self.jacobian);
         for (right, &w) in right.iter_mut().zip(inverse_mass) {
             *right = if w > 0.0 { h * *right / w } else { 0.0 };
         }
         self.jacobian
-            .add_product(Derivative::Position, h * h, &state.v, &mut right);
+            .add_product(Derivative::Position, h * h, &v, &mut right);
         for (right, &w) in right.iter_mut().zip(inverse_mass) {
             *right = if w > 0.0 { *right } else { 0.0 };
         }

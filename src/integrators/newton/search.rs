@@ -156,7 +156,9 @@ impl Line {
         }
         if system.kinds().has(ForceKinds::DRIVEN) {
             let displacement: Vec<f64> = d.iter().map(|d| gamma * d).collect();
-            rest -= system.injected_power(stage.t, &from.x, &displacement);
+            // The force of a damper on what is free is the mirror image of that on its driven end.
+            let work = system.injected(stage.t, &from.x, &displacement, 0.0);
+            rest -= work.forces - work.dampers;
         }
         Self {
             slope,

@@ -137,6 +137,10 @@ impl System for Altered<'_> {
         }
     }
 
+    fn place(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
+        self.inner.place(t, x, v);
+    }
+
     fn dampers(&self) -> Dampers {
         self.inner.dampers()
     }

@@ -313,6 +313,7 @@ impl<'a> Replayer<'a> {
             }
             self.scale(ScaledAt::Kick, inner, &start.x, state);
             self.scale(ScaledAt::End, inner, &start.x, state);
+            system.place((part + 1) as f64 * part_of_h, &mut state.x, &mut state.v);
             previous = Some(start);
         }
         Ok(())

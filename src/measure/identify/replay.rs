@@ -7,7 +7,7 @@ use super::transition::Transition;
 use super::velocity;
 use crate::integrators::{Settings, StepError};
 use crate::physics::{ParticleSystem, State, System};
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 use crate::trajectory::Rows;
 
 /// A transition follows a scheme if its defect is at most this many units.
@@ -90,6 +90,8 @@ pub struct Replay<'a> {
     pub(super) settings: Settings,
     /// Positions of the fixed coordinates, m; None for the free.
     fixed: Vec<Option<f64>>,
+    /// The motions of those that are driven.
+    drives: Vec<Drive>,
     /// The longest rest length, m: forces are rounded by as much even where positions are small.
     length: f64,
     /// Whether velocities are differences of positions over the step, and round as those do.
@@ -114,6 +116,7 @@ impl<'a> Replay<'a> {
             && rows.v.as_ref().is_none_or(|v| v.len() == values)
             && rows.steps.windows(2).all(|pair| pair[0] < pair[1]);
         let start = ParticleSystem::initial_state(scene);
+        let driven = |i: usize| scene.driven.iter().any(|d| d.particle == i / 3);
         let fixed = start.x.iter().zip(system.inverse_mass());
         let lengths = scene.springs.iter().map(|s| s.rest_length);
         shaped.then(|| Self {
@@ -122,7 +125,11 @@ impl<'a> Replay<'a> {
                 iterations: settings.iterations.min(ITERATIONS),
                 ..settings
             },
-            fixed: fixed.map(|(x, w)| (*w == 0.0).then_some(*x)).collect(),
+            fixed: fixed
+                .enumerate()
+                .map(|(i, (x, w))| (*w == 0.0 && !driven(i)).then_some(*x))
+                .collect(),
+            drives: scene.drives(),
             length: lengths.fold(0.0, f64::max),
             differenced: is_differenced(rows),
             iterated: false,
@@ -182,7 +189,11 @@ impl<'a> Replay<'a> {
         let off: Vec<f64> = self
             .recorded(transition)
             .zip(predicted.x.iter().chain(&predicted.v))
-            .map(|(recorded, predicted)| (predicted - recorded).abs())
+            .enumerate()
+            .map(|(i, (recorded, predicted))| match self.is_driven(i) {
+                true => 0.0,
+                false => (predicted - recorded).abs(),
+            })
             .collect();
         if off.iter().all(|d| *d == 0.0) {
             return Ok(Defect {
@@ -242,11 +253,18 @@ impl<'a> Replay<'a> {
         units: &[f64],
     ) -> impl Iterator<Item = f64> {
         let numbers = state.x.iter().chain(&state.v).zip(units);
-        let pairs = self.recorded(transition).zip(numbers);
-        pairs.map(|(recorded, (state, unit))| match state - recorded {
+        let pairs = self.recorded(transition).zip(numbers).enumerate();
+        pairs.map(|(i, (recorded, (state, unit)))| match state - recorded {
             0.0 => 0.0,
+            _ if self.is_driven(i) => 0.0,
             off => off / unit,
         })
+    }
+
+    /// Whether a number of a state, positions then velocities, is given: no scheme computes it.
+    fn is_driven(&self, i: usize) -> bool {
+        let particle = i % self.rows.dim / 3;
+        self.drives.iter().any(|drive| drive.particle == particle)
     }
 
     /// Raises `grown` to how far away inputs moved in this direction end.
@@ -418,12 +436,26 @@ impl<'a> Replay<'a> {
             .v(k)
             .map_or_else(|| vec![0.0; x.len()], <[f64]>::to_vec);
         let dim = rows.dim;
+        let t = rows.time(k);
+        for drive in &self.drives {
+            let [position, velocity, _] = drive.at(t);
+            let late = 2.0 * f64::EPSILON * t.abs();
+            for axis in 0..3 {
+                let at = 3 * drive.particle + axis;
+                let off = late * velocity[axis].abs();
+                know(
+                    &mut x[at],
+                    position[axis],
+                    off + rows.half_unit(at, position[axis]),
+                );
+                if rows.v.is_none() {
+                    v[at] = velocity[axis];
+                }
+            }
+        }
         for (i, fixed) in self.fixed.iter().enumerate() {
             if let Some(place) = *fixed {
-                // Better known from the scene than from a rounded file.
-                if (x[i] - place).abs() <= 1.01 * rows.half_unit(i, place) {
-                    x[i] = place;
-                }
+                know(&mut x[i], place, rows.half_unit(i, place));
             } else if let Some(nudge) = nudge {
                 let Nudge {
                     pattern,
@@ -442,8 +474,15 @@ impl<'a> Replay<'a> {
             }
         }
         let mut state = State::new(x, v);
-        state.t = rows.time(k);
+        state.t = t;
         state
+    }
+}
+
+/// What the scene says, where a file differs by its rounding alone: it is better known than that.
+fn know(recorded: &mut f64, place: f64, half_unit: f64) {
+    if (*recorded - place).abs() <= 1.01 * half_unit {
+        *recorded = place;
     }
 }
 

@@ -128,7 +128,8 @@ impl TestProblem<'_> {
             for step in instant * m..(instant + 1) * m {
                 // n h, not a running sum, which would drift.
                 state.t = step as f64 * h;
-                advance(integrator.as_mut(), self.system, h, &mut state)
+                let end = (step + 1) as f64 * h;
+                advance(integrator.as_mut(), self.system, h, end, &mut state)
                     .map_err(|error| format!("failed at {:.3e} s: {error}", step as f64 * h))?;
             }
             let error = farthest(&state.x, grid.truth.x(instant as usize));

@@ -13,7 +13,8 @@ pub(super) struct Path {
 }
 
 impl Path {
-    /// `steps` world steps of `substeps` steps of `h` seconds each, or fewer if a step fails.
+    /// `steps` world steps of `substeps` steps of `h` seconds each, or fewer if a step fails. Within a world step of
+    /// several what is driven moves straight, as a body of an engine does.
     pub(super) fn of(
         solver: &Solver,
         scene: &Scene,
@@ -21,7 +22,11 @@ impl Path {
         substeps: u32,
         steps: u32,
     ) -> Result<Self, Unsupported> {
-        let system = ParticleSystem::new(scene);
+        let smooth = ParticleSystem::new(scene);
+        let mut system = smooth.clone();
+        if substeps > 1 {
+            system = system.driven_as(|drive| drive.straight(f64::from(substeps) * h));
+        }
         let mut run = solver.start(scene, &system, &Setting::step(h))?;
         let mut path = Self {
             states: vec![run.state().clone()],
@@ -32,7 +37,9 @@ impl Path {
                 path.failed = Some(error);
                 break;
             }
-            path.states.push(run.state().clone());
+            let mut state = run.state().clone();
+            smooth.place(state.t, &mut state.x, &mut state.v);
+            path.states.push(state);
         }
         Ok(path)
     }

@@ -71,8 +71,9 @@ fn per_mass(scene: &Scene, of: impl Fn(&Spring) -> f64) -> f64 {
 
 /// The shortest spring that has a length, m; else the scene's size; else 1.
 fn shortest(scene: &Scene) -> f64 {
+    let starts = scene.starts();
     let length = |ends: [usize; 2]| {
-        let [a, b] = ends.map(|end| scene.particles[end].position);
+        let [a, b] = ends.map(|end| starts[end]);
         let squares = (0..3).map(|axis| (a[axis] - b[axis]).powi(2));
         squares.sum::<f64>().sqrt()
     };

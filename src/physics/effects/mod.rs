@@ -8,6 +8,7 @@
 mod air_drag;
 mod central;
 mod drag;
+mod driven;
 mod gravity;
 mod quadratic_drag;
 mod scaled;
@@ -17,6 +18,7 @@ mod wind;
 pub use air_drag::AirDrag;
 pub use central::Central;
 pub use drag::Drag;
+pub use driven::Driven;
 pub use gravity::Gravity;
 pub use quadratic_drag::QuadraticDrag;
 pub use scaled::Scaled;
@@ -24,7 +26,7 @@ pub use springs::Springs;
 pub use wind::WindForce;
 
 use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 
 /// A force on particles. It is computed for all its members at once, in flat vectors of length 3n.
 ///
@@ -75,6 +77,11 @@ pub trait Effect: Send + Sync {
     /// that is not linear in v.
     fn injected_power(&self, _t: f64, _v: &[f64]) -> f64 {
         0.0
+    }
+
+    /// The motions it gives to fixed particles.
+    fn drives(&self) -> &[Drive] {
+        &[]
     }
 
     /// *Adds* ∂f/∂x and ∂f/∂v, with the same places in the same order at every call.
@@ -133,6 +140,7 @@ pub static REGISTRY: &[EffectRow] = &[
     air_drag::ROW,
     wind::ROW,
     central::GRAVITATIONAL,
+    driven::ROW,
 ];
 
 fn boxed<E: Effect + 'static>(effect: E) -> Box<dyn Effect> {

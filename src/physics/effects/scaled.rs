@@ -2,6 +2,7 @@
 
 use super::Effect;
 use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
+use crate::scene::Drive;
 
 /// `factor` times another effect: -1 flips its sign, 2 applies it twice.
 ///
@@ -9,11 +10,18 @@ use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
 pub struct Scaled {
     effect: Box<dyn Effect>,
     factor: f64,
+    /// Its motions, so many times as far.
+    drives: Vec<Drive>,
 }
 
 impl Scaled {
     pub fn new(effect: Box<dyn Effect>, factor: f64) -> Self {
-        Self { effect, factor }
+        let drives = effect.drives().iter().map(|drive| drive.times(factor));
+        Self {
+            drives: drives.collect(),
+            effect,
+            factor,
+        }
     }
 
     /// Calls `add`, and adds `factor` times the force it computes.
@@ -75,6 +83,10 @@ impl Effect for Scaled {
 
     fn injected_power(&self, t: f64, v: &[f64]) -> f64 {
         self.factor * self.effect.injected_power(t, v)
+    }
+
+    fn drives(&self) -> &[Drive] {
+        &self.drives
     }
 
     fn add_jacobian(

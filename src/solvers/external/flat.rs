@@ -1,8 +1,10 @@
 //! A scene as flat arrays of numbers, which a program in any language can read in a few lines.
 
 use super::Task;
-use crate::scene::Scene;
-use crate::scene::model::{GRAVITATIONAL, PARTICLES, Part, Row, SPRINGS, TRIANGLES};
+use crate::scene::model::{
+    DRIVEN, GRAVITATIONAL, PARTICLES, Part, Row, SINE, SPRINGS, TRIANGLES, ValueKind,
+};
+use crate::scene::{Scene, Value};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// The version of the keys and of their meaning.
@@ -32,14 +34,15 @@ impl Serialize for Flat<'_> {
         map.serialize_entry("schema_version", &SCHEMA_VERSION)?;
         map.serialize_entry("particles", &scene.particles.len())?;
         arrays(&mut map, scene, &PARTICLES)?;
-        map.serialize_entry("springs", &Arrays(scene, &SPRINGS))?;
+        map.serialize_entry("springs", &Arrays(scene, &[&SPRINGS]))?;
+        map.serialize_entry("driven", &Arrays(scene, &[&DRIVEN, &SINE]))?;
         map.serialize_entry("damping_model", &scene.damping_model)?;
         map.serialize_entry("gravity", &scene.gravity())?;
         map.serialize_entry("wind_force", &wind)?;
         map.serialize_entry("air_velocity", &scene.air().velocity)?;
         map.serialize_entry("air_density", &scene.air().density)?;
-        map.serialize_entry("triangles", &Arrays(scene, &TRIANGLES))?;
-        map.serialize_entry("gravitational", &Arrays(scene, &GRAVITATIONAL))?;
+        map.serialize_entry("triangles", &Arrays(scene, &[&TRIANGLES]))?;
+        map.serialize_entry("gravitational", &Arrays(scene, &[&GRAVITATIONAL]))?;
         map.serialize_entry("effects", &effects)?;
         map.serialize_entry("timestep", &timestep)?;
         map.serialize_entry("duration", &scene.duration)?;
@@ -51,30 +54,46 @@ impl Serialize for Flat<'_> {
 /// Writes an array for each row of a part that influences the motion.
 fn arrays<M: SerializeMap>(map: &mut M, scene: &Scene, part: &Part) -> Result<(), M::Error> {
     for row in part.rows {
-        if let Some(name) = row.flat {
-            map.serialize_entry(name, &Array(scene, row, (part.count)(scene)))?;
+        let Some(name) = row.flat else { continue };
+        let count = (part.count)(scene);
+        if let ValueKind::Table(width, _) = row.kind {
+            let rows = (0..count).map(|at| row.values(scene, at).count() / width);
+            map.serialize_entry("rows", &rows.collect::<Vec<_>>())?;
         }
+        map.serialize_entry(name, &Array(scene, row, count))?;
     }
     Ok(())
 }
 
-/// The members of a part, as a mapping of arrays.
-struct Arrays<'a>(&'a Scene, &'a Part);
+/// The members of some parts, as a mapping of arrays.
+struct Arrays<'a>(&'a Scene, &'a [&'a Part]);
 
 impl Serialize for Arrays<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let mut map = to.serialize_map(None)?;
-        arrays(&mut map, self.0, self.1)?;
+        for part in self.1 {
+            arrays(&mut map, self.0, part)?;
+        }
         map.end()
     }
 }
 
-/// One row for this many members. Components, as x, y, z, follow one another.
+/// One row for this many members. Components, as x, y, z, follow one another; a member without the key has zeros.
 struct Array<'a>(&'a Scene, &'a Row, usize);
 
 impl Serialize for Array<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let Array(scene, row, count) = *self;
-        to.collect_seq((0..count).flat_map(|at| row.values(scene, at)))
+        let components = match row.kind {
+            ValueKind::Number(_) => 1,
+            ValueKind::Numbers(count, _) => count,
+            _ => 0,
+        };
+        let member = |at| {
+            let given = row.values(scene, at).count();
+            let zeros = std::iter::repeat_n(Value::Number(0.0), components.saturating_sub(given));
+            row.values(scene, at).chain(zeros)
+        };
+        to.collect_seq((0..count).flat_map(member))
     }
 }

@@ -55,9 +55,9 @@ impl Engine for RapierForces {
         // The work is taken at the kick. With one substep it equals symplectic Euler's to the last bit.
         self.state.work.advance(power, self.timestep);
         self.world.set_forces(&self.forces);
-        self.world.step(&mut self.state);
         self.steps += 1;
-        self.state.t = self.steps as f64 * self.timestep;
+        let end = self.steps as f64 * self.timestep;
+        self.world.step(end, &mut self.state);
         Ok(())
     }
 

@@ -68,9 +68,9 @@ impl RapierEngine {
 
 impl Engine for RapierEngine {
     fn step(&mut self) -> Result<(), StepError> {
-        self.world.step(&mut self.state);
         self.steps += 1;
-        self.state.t = self.steps as f64 * self.timestep;
+        let end = self.steps as f64 * self.timestep;
+        self.world.step(end, &mut self.state);
         let before = std::mem::take(&mut self.power);
         self.power = self.power_now();
         self.state.work.advance(before, 0.5 * self.timestep);

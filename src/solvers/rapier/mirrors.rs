@@ -35,6 +35,11 @@ static MIRRORS: &[Mirror] = &[
         add: drag,
     },
     Mirror {
+        effect: "driven",
+        // The bodies of driven particles are kinematic from the start.
+        add: |_, _, _| Ok(()),
+    },
+    Mirror {
         effect: "wind",
         add: wind,
     },
@@ -62,12 +67,13 @@ pub(super) fn add_all(
 /// Adds a spring joint for each spring. An axial damper is part of the joint; an isotropic one is a motor of
 /// its own.
 fn springs(scene: &Scene, substep: f64, world: &mut World) -> Result<(), Unsupported> {
+    let starts = scene.starts();
     for (id, spring) in scene.springs.iter().enumerate() {
-        let [a, b] = spring.ends.map(|end| &scene.particles[end]);
-        if a.fixed && b.fixed {
+        let [a, b] = spring.ends;
+        if scene.particles[a].fixed && scene.particles[b].fixed {
             continue;
         }
-        if spring.rest_length > 0.0 && a.position == b.position {
+        if spring.rest_length > 0.0 && starts[a] == starts[b] {
             return Err(unsupported(format!(
                 "spring {id} starts with both ends in one place but has a rest length: rapier's \
                  joint has no direction to push it in"

@@ -2,7 +2,7 @@
 
 use super::settings::RapierSettings;
 use crate::physics::State;
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 use crate::solvers::{Built, Unsupported};
 use rapier3d::dynamics::{GenericJoint, RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Vector;
@@ -19,6 +19,8 @@ pub(super) struct World {
     bodies: Vec<RigidBodyHandle>,
     /// The indices of the free particles.
     free: Vec<usize>,
+    /// The motions of driven particles, which are kinematic bodies.
+    drives: Vec<Drive>,
     /// The fixed body that stands for the air in drag joints; made on first use.
     air: Option<RigidBodyHandle>,
     /// Whether rapier disabled a body that was no longer finite.
@@ -51,10 +53,14 @@ impl World {
         parameters.normalized_max_linear_velocity = settings.speed.unwrap_or(f64::MAX);
         parameters.max_ccd_substeps = 0;
 
+        let drives = scene.drives();
+        let starts = scene.starts();
         let mut bodies = Vec::with_capacity(scene.particles.len());
         let mut free = Vec::new();
         for (i, particle) in scene.particles.iter().enumerate() {
-            let builder = if particle.fixed {
+            let builder = if drives.iter().any(|drive| drive.particle == i) {
+                RigidBodyBuilder::kinematic_position_based()
+            } else if particle.fixed {
                 RigidBodyBuilder::fixed()
             } else {
                 if particle.mass <= NEGLIGIBLE || 1.0 / particle.mass <= NEGLIGIBLE {
@@ -70,7 +76,7 @@ impl World {
                     .linvel(vector(particle.velocity))
             };
             let body = builder
-                .translation(vector(particle.position))
+                .translation(vector(starts[i]))
                 .lock_rotations()
                 .linear_damping(0.0)
                 // rapier would put a body with a small oscillation to sleep.
@@ -81,6 +87,7 @@ impl World {
             inner,
             bodies,
             free,
+            drives,
             air: None,
             quarantined: false,
         })
@@ -135,8 +142,20 @@ impl World {
         }
     }
 
-    /// Takes one step of rapier, and copies positions and velocities to `state`.
-    pub(super) fn step(&mut self, state: &mut State) {
+    /// Takes one step of rapier, which ends at this time, s, and copies positions and velocities to `state`.
+    ///
+    /// Within a step a driven body moves at the constant velocity that takes it to where its motion has it at the end.
+    pub(super) fn step(&mut self, end: f64, state: &mut State) {
+        state.t = end;
+        for drive in &self.drives {
+            let [position, velocity, _] = drive.at(end);
+            if let Some(body) = self.inner.bodies.get_mut(self.bodies[drive.particle]) {
+                body.set_next_kinematic_translation(vector(position));
+            }
+            let own = 3 * drive.particle..3 * drive.particle + 3;
+            state.x[own.clone()].copy_from_slice(&position);
+            state.v[own].copy_from_slice(&velocity);
+        }
         if self.quarantined {
             return;
         }

@@ -1,6 +1,6 @@
 //! The facts a file must fit: the scene's particles and the step its times are counted in.
 
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 
 /// The scene as a trajectory file sees it. What a file may leave out is filled in from here.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,6 +9,8 @@ pub struct Expected {
     pub(super) timestep: f64,
     /// Positions at the start, 3 a particle, m: what a file does not say of fixed ones.
     pub(super) start: Vec<f64>,
+    /// The motions of driven particles: what a file does not say of those.
+    pub(super) drives: Vec<Drive>,
     /// Whether each particle is fixed.
     pub(super) fixed: Vec<bool>,
     pub(super) free_axis: Option<FreeAxis>,
@@ -71,7 +73,8 @@ impl Expected {
     pub fn new(scene: &Scene, timestep: f64) -> Self {
         Self {
             timestep,
-            start: scene.particles.iter().flat_map(|p| p.position).collect(),
+            start: scene.starts().concat(),
+            drives: scene.drives(),
             fixed: scene.particles.iter().map(|p| p.fixed).collect(),
             free_axis: free_axis(scene),
             plane: None,
@@ -111,6 +114,13 @@ impl Expected {
             .collect()
     }
 
+    /// The driven particles of which `given` is not true, as indices in `drives`.
+    pub(super) fn left_out(&self, given: impl Fn(usize) -> bool) -> Vec<usize> {
+        let drives = self.drives.iter().enumerate();
+        let left_out = drives.filter(|(_, drive)| !given(drive.particle));
+        left_out.map(|(at, _)| at).collect()
+    }
+
     /// The particle that rows without an id are about: the scene's only one, or its only free one.
     pub(super) fn only(&self) -> Option<usize> {
         match self.free()[..] {
@@ -133,9 +143,10 @@ pub fn free_axis(scene: &Scene) -> Option<FreeAxis> {
     (others == 0).then_some(FreeAxis { particle, axis })
 }
 
-/// The axes on which free particles can move: where their velocities, gravity, wind, moving air, or
-/// their springs and attractions have a component; on all where the air drags at triangles, which turn.
+/// The axes on which free particles can move: where their velocities, gravity, wind, moving air, motions of driven
+/// ones, or their springs and attractions have a component; on all where the air drags at triangles, which turn.
 fn moves(scene: &Scene) -> [bool; 3] {
+    let starts = scene.starts();
     // Effects of strength 0 pull nowhere.
     let springs = scene
         .springs
@@ -145,9 +156,8 @@ fn moves(scene: &Scene) -> [bool; 3] {
     let pairs = scene.gravitational.iter().filter(|pair| pair.g != 0.0);
     let lines = springs
         .chain(pairs.map(|pair| pair.ends))
-        .map(|ends| ends.map(|end| &scene.particles[end]))
-        .filter(|ends| ends.iter().any(|end| !end.fixed))
-        .map(|[a, b]| [0, 1, 2].map(|axis| b.position[axis] - a.position[axis]));
+        .filter(|ends| ends.iter().any(|&end| !scene.particles[end].fixed))
+        .map(|[a, b]| [0, 1, 2].map(|axis| starts[b][axis] - starts[a][axis]));
     let wind = scene.wind.iter().filter(|wind| wind.strength != 0.0);
     let free = || scene.particles.iter().filter(|p| !p.fixed);
     let velocities = free();
@@ -157,6 +167,7 @@ fn moves(scene: &Scene) -> [bool; 3] {
     for direction in lines
         .chain(wind.map(|wind| wind.direction))
         .chain(velocities.map(|p| p.velocity))
+        .chain(scene.drives().iter().map(Drive::reach))
         .chain([scene.gravity()])
         .chain(air)
     {

@@ -94,6 +94,8 @@ struct Table {
     x: Numbers,
     /// Velocities, m/s.
     v: Option<Numbers>,
+    /// The driven particles that it says nothing of, as indices in [`Expected::drives`].
+    left_out: Vec<usize>,
     /// The last row may be cut and is left out.
     cut: bool,
 }
@@ -157,8 +159,18 @@ fn rows(bytes: &[u8], layout: Layout, expected: &Expected) -> Result<Rows, ReadE
     };
     let steps = table.times.steps(expected.timestep, bytes)?;
     let dim = 3 * expected.particles();
-    let (precision, x) = table.x.measured(dim);
-    let (precision_v, v) = table.v.map(|v| v.measured(dim)).unzip();
+    let (precision, mut x) = table.x.measured(dim);
+    let (precision_v, mut v) = table.v.map(|v| v.measured(dim)).unzip();
+    for drive in table.left_out.iter().map(|at| &expected.drives[*at]) {
+        for (row, step) in steps.iter().enumerate() {
+            let [position, velocity, _] = drive.at(*step as f64 * expected.timestep);
+            let at = row * dim + 3 * drive.particle;
+            x[at..at + 3].copy_from_slice(&position);
+            if let Some(v) = &mut v {
+                v[at..at + 3].copy_from_slice(&velocity);
+            }
+        }
+    }
     Ok(Rows {
         timestep: expected.timestep,
         dim,

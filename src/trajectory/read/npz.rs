@@ -11,6 +11,8 @@ use zip::{ZipArchive, result::ZipError};
 
 /// The arrays an archive may hold.
 const NAMES: [&str; 3] = ["t", "x", "v"];
+/// Arrays that `--columns` adds, which say nothing of the state.
+const BESIDE: [&str; 2] = ["reaction", "tension"];
 const EXAMPLE: &str = "np.savez('mine.npz', t=t, x=x, v=v) writes what is read here";
 
 /// Reads an archive as `np.savez` and `np.savez_compressed` write it.
@@ -30,7 +32,7 @@ pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError
     }
     let known = |name: &str| {
         name.strip_suffix(".npy")
-            .is_some_and(|name| NAMES.contains(&name))
+            .is_some_and(|name| NAMES.contains(&name) || BESIDE.contains(&name))
     };
     if let Some(name) = archive.file_names().find(|name| !known(name)) {
         return Err(whole(unknown(name)));
@@ -71,6 +73,7 @@ pub(super) fn read(bytes: &[u8], expected: &Expected) -> Result<Table, ReadError
             numbers: t.numbers,
             fields: None,
         },
+        left_out: expected.left_out(|id| x.coordinates.contains(&(3 * id))),
         x: x.states(&expected.start),
         v: v.map(|v| v.states(&vec![0.0; 3 * expected.particles()])),
         cut: false,
@@ -96,6 +99,7 @@ pub(super) fn positions(bytes: &[u8], expected: &Expected) -> Result<Table, Read
             },
             fields: None,
         },
+        left_out: expected.left_out(|id| x.coordinates.contains(&(3 * id))),
         x: x.states(&expected.start),
         v: None,
         cut: false,

@@ -1,7 +1,7 @@
 //! Groups of particles that move independently of all others: each has a closed form of its own, or none.
 
 use crate::physics::State;
-use crate::scene::{DampingModel, Scene, Spring};
+use crate::scene::{DampingModel, Drive, Scene, Spring};
 use nalgebra::Vector3;
 
 /// Free particles joined by springs, and what acts on them from t = 0 to `until`.
@@ -35,13 +35,15 @@ pub(super) struct Body {
 }
 
 /// A spring and damper of a group.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Link<'a> {
     pub spring: &'a Spring,
     /// Index in `bodies` of each end; None for a fixed end.
     pub ends: [Option<usize>; 2],
     /// Positions of its ends at the start, m.
     pub at: [Vector3<f64>; 2],
+    /// The motion of each end that is driven.
+    pub drives: [Option<Drive>; 2],
     /// Damping along its direction alone, N s/m; 0 where the scene's dampers have none.
     pub axial_damping: f64,
 }
@@ -67,7 +69,9 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
         wind.strength * Vector3::from(wind.direction)
     });
     let air = Vector3::from(scene.air().velocity);
-    let position = |i: usize| Vector3::from(scene.particles[i].position);
+    let position = |i: usize| Vector3::from_column_slice(&start.x[3 * i..3 * i + 3]);
+    let drives = scene.drives();
+    let drive = |i: usize| drives.iter().find(|drive| drive.particle == i).cloned();
     let size = scene.size();
     let mut groups: Vec<Group> = Vec::new();
     let mut group_of = vec![usize::MAX; parent.len()];
@@ -103,6 +107,7 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
             spring,
             ends: spring.ends.map(place),
             at: spring.ends.map(position),
+            drives: spring.ends.map(drive),
             axial_damping: match scene.damping_model {
                 DampingModel::Axial => spring.damping,
                 DampingModel::Isotropic => 0.0,
@@ -122,6 +127,13 @@ fn root(parent: &mut [usize], mut i: usize) -> usize {
 }
 
 impl Group<'_> {
+    /// Whether some spring ends at a driven particle.
+    pub fn is_driven(&self) -> bool {
+        self.links
+            .iter()
+            .any(|link| link.drives.iter().any(Option::is_some))
+    }
+
     /// Whether every force is linear wherever the particles are: no spring has a rest length, and no
     /// damper a direction.
     pub fn is_linear(&self) -> bool {

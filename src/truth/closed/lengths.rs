@@ -1,5 +1,6 @@
 //! Proof that springs on a line keep their length above 0, up to which they are linear.
 
+use super::forced::{End, Forcing};
 use super::mode::{Mode, Start};
 
 /// A length may shrink to this fraction of itself in one step of the proof.
@@ -14,6 +15,15 @@ pub(super) struct Length {
     pub start: f64,
     /// Change of the length per unit of each mode.
     pub stretch: Vec<f64>,
+    /// Driven ends, and which way they change the length.
+    pub ends: Vec<(f64, End)>,
+}
+
+/// The motion of a mode.
+pub(super) struct Moved {
+    pub mode: Mode,
+    pub start: Start,
+    pub forcing: Forcing,
 }
 
 /// Bounds that hold from t = 0 to the end.
@@ -30,8 +40,23 @@ pub(super) struct Bounds {
 struct Instant {
     mode: Mode,
     position: f64,
-    /// The start of its motion from here on.
+    velocity: f64,
+    /// The start of its motion from here on, where nothing is driven.
     start: Start,
+}
+
+/// What holds of a length at all times.
+struct Outer {
+    bounds: Bounds,
+    driven: Option<Driven>,
+}
+
+/// The same where something is driven.
+struct Driven {
+    /// m.
+    shortest: f64,
+    /// Of its rate of change, m/s².
+    acceleration: f64,
 }
 
 /// Bounds for each of these lengths, or None if one may come to `closest` or below before `until`.
@@ -40,24 +65,23 @@ struct Instant {
 /// the proof as soon as it is enough; until then the length, its rate and a bound on its
 /// acceleration give the next step in which no length shrinks below [`SHRINK`] of itself.
 pub(super) fn bounds(
-    modes: &[(Mode, Start)],
+    modes: &[Moved],
     lengths: &[Length],
     until: f64,
     closest: f64,
 ) -> Option<Vec<Bounds>> {
-    let mut bounds: Vec<Bounds> = lengths.iter().map(|l| l.outer(modes, until)).collect();
+    let outer: Vec<Outer> = lengths.iter().map(|l| l.outer(modes, until)).collect();
+    let mut bounds: Vec<Bounds> = outer.iter().map(|outer| outer.bounds).collect();
     let mut t = 0.0;
     let work = (lengths.len() * modes.len()).max(1);
     for _ in 0..EFFORT / work {
-        let now: Vec<Instant> = modes
-            .iter()
-            .map(|&(mode, start)| Instant::new(t, mode, start))
-            .collect();
+        let now: Vec<Instant> = modes.iter().map(|moved| Instant::new(t, moved)).collect();
         let left = until - t;
         let mut step = left;
         let mut proven = true;
-        for (length, bounds) in lengths.iter().zip(&mut bounds) {
-            let l = length.start + length.sum(&now, |s, now| s * now.position);
+        for ((length, bounds), outer) in lengths.iter().zip(&mut bounds).zip(&outer) {
+            let [apart, parting] = length.ends_at(t);
+            let l = length.start + length.sum(&now, |s, now| s * now.position) + apart;
             bounds.shortest = bounds.shortest.min(l);
             if l <= closest {
                 return None;
@@ -66,16 +90,23 @@ pub(super) fn bounds(
             let lost = length.sum(&now, |s, now| {
                 s.abs() * now.mode.lowest(now.start.times(s.signum()), left)
             });
-            let lowest = l + lost;
+            // What is driven has its energy from outside: only bounds for all time hold.
+            let lowest = match &outer.driven {
+                Some(driven) => driven.shortest,
+                None => l + lost,
+            };
             if lowest > SHRINK * l {
                 bounds.shortest = bounds.shortest.min(lowest);
                 continue;
             }
             proven = false;
-            let speed = length.sum(&now, |s, now| s * now.start.velocity);
-            let most = length.sum(&now, |s, now| {
-                s.abs() * now.mode.acceleration_bound(now.start, left)
-            });
+            let speed = length.sum(&now, |s, now| s * now.velocity) + parting;
+            let most = match &outer.driven {
+                Some(driven) => driven.acceleration,
+                None => length.sum(&now, |s, now| {
+                    s.abs() * now.mode.acceleration_bound(now.start, left)
+                }),
+            };
             step = step.min(safe(speed, most, (1.0 - SHRINK) * l));
             bounds.shortest = bounds.shortest.min(SHRINK * l);
         }
@@ -103,14 +134,23 @@ fn safe(speed: f64, most: f64, room: f64) -> f64 {
 }
 
 impl Instant {
-    fn new(t: f64, mode: Mode, start: Start) -> Self {
+    fn new(t: f64, moved: &Moved) -> Self {
+        let Moved {
+            mode,
+            start,
+            forcing,
+        } = moved;
+        let (mode, start) = (*mode, *start);
         let response = mode.response(t);
-        let position = response.position(start);
+        let [forced, faster] = forcing.moved(&mode, &response, t);
+        let position = response.position(start) + forced;
+        let velocity = start.velocity + response.gained(start) + faster;
         Self {
             mode,
             position,
+            velocity,
             start: Start {
-                velocity: start.velocity + response.gained(start),
+                velocity,
                 pull: start.pull - mode.w * mode.w * position,
             },
         }
@@ -125,16 +165,49 @@ impl Length {
     }
 
     /// Bounds from the modes' energies alone; `shortest` is still the length at the start.
-    fn outer(&self, modes: &[(Mode, Start)], until: f64) -> Bounds {
-        let mut bounds = Bounds {
-            shortest: self.start,
-            longest: self.start,
-            fastest: 0.0,
-        };
-        for ((mode, start), s) in modes.iter().zip(&self.stretch) {
-            bounds.longest += s.abs() * mode.travel_bound(*start, until);
-            bounds.fastest += s.abs() * mode.speed_bound(*start, until);
+    fn outer(&self, modes: &[Moved], until: f64) -> Outer {
+        let mut sums = [0.0; 3];
+        let mut driven = !self.ends.is_empty();
+        for (moved, s) in modes.iter().zip(&self.stretch) {
+            let Moved { mode, start, .. } = moved;
+            driven |= moved.forcing != Forcing::default();
+            let own = [
+                mode.travel_bound(*start, until),
+                mode.speed_bound(*start, until),
+                mode.acceleration_bound(*start, until),
+            ];
+            let forced = moved.forcing.bounds(mode, until);
+            for ((sum, own), forced) in sums.iter_mut().zip(own).zip(forced) {
+                *sum += s.abs() * (own + forced);
+            }
         }
-        bounds
+        for (_, end) in &self.ends {
+            for (sum, own) in sums.iter_mut().zip(end.bounds(until)) {
+                *sum += own;
+            }
+        }
+        let [way, speed, acceleration] = sums;
+        Outer {
+            bounds: Bounds {
+                shortest: self.start,
+                longest: self.start + way,
+                fastest: speed,
+            },
+            driven: driven.then_some(Driven {
+                shortest: self.start - way,
+                acceleration,
+            }),
+        }
+    }
+
+    /// How much driven ends have changed the length, m, and how fast they do, m/s.
+    fn ends_at(&self, t: f64) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for (sign, end) in &self.ends {
+            let [moved, speed] = end.at(t);
+            sum[0] += sign * moved;
+            sum[1] += sign * speed;
+        }
+        sum
     }
 }

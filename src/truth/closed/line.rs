@@ -4,6 +4,7 @@ use super::group::Group;
 use super::lengths::Bounds;
 use super::mode::Mode;
 use super::vector::{across, norm, unit};
+use crate::scene::Drive;
 use nalgebra::Vector3;
 
 /// Rounding of numbers in a file: a point meant to be on a line lies this many eps off it.
@@ -68,6 +69,15 @@ impl Line {
         let extent = points.iter().map(|&p| norm(p)).fold(0.0, f64::max);
         let position = apart.iter().map(|&p| across(p, along)).fold(0.0, f64::max);
         if position > ROUNDING * extent {
+            return None;
+        }
+        let drives = group.links.iter().flat_map(|l| &l.drives).flatten();
+        let aside = |drive: &Drive| {
+            let swing = drive.sine().map(|sine| sine.amplitude).or(drive.steady());
+            swing.is_none_or(|swing| across(Vector3::from(swing), along) != 0.0)
+        };
+        // A motion aside, by however little, may be in resonance across the line.
+        if drives.into_iter().any(aside) {
             return None;
         }
         let anchored = group.links.iter().any(|l| l.ends.contains(&None));

@@ -8,6 +8,7 @@
 
 mod elliptic;
 mod fall;
+mod forced;
 mod group;
 mod lengths;
 mod line;
@@ -22,13 +23,20 @@ pub use pendulum::Pendulum;
 
 use super::{Motion, States, Truth, TruthKind};
 use crate::physics::ParticleSystem;
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 use fall::Fall;
 use group::{Group, groups};
 use part::GroupMotion;
 
 /// Ids of the effects the forms account for. Any other effect in a scene means no closed form.
-const KNOWN: &[&str] = &["gravity", "springs", "drag", "quadratic_drag", "wind"];
+const KNOWN: &[&str] = &[
+    "gravity",
+    "springs",
+    "drag",
+    "quadratic_drag",
+    "wind",
+    "driven",
+];
 
 /// The form that holds for this scene up to `until` seconds, if one does: what it is, such as
 /// `parabola`, and why it applies.
@@ -56,6 +64,7 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
         farthest: start.x.iter().fold(0.0, |m, x| m.max(x.abs())),
         x: start.x,
         v: start.v,
+        drives: scene.drives(),
         parts,
     };
     Some(Truth {
@@ -127,6 +136,7 @@ struct Apart {
     v: Vec<f64>,
     /// Largest coordinate, m.
     farthest: f64,
+    drives: Vec<Drive>,
     parts: Vec<Part>,
 }
 
@@ -144,12 +154,21 @@ impl Motion for Apart {
             for part in &self.parts {
                 part.add(t, x, v);
             }
+            for drive in &self.drives {
+                let [position, velocity, _] = drive.at(t);
+                let own = 3 * drive.particle..3 * drive.particle + 3;
+                x[own.clone()].copy_from_slice(&position);
+                v[own].copy_from_slice(&velocity);
+            }
         }
         states
     }
 
     fn error_bar(&self, t: f64) -> f64 {
-        let bars = self.parts.iter().map(|p| p.error_bar(t));
+        // A rounding of the time, and a few of the position itself.
+        let speeds = self.drives.iter().map(|drive| drive.speed_bound(t));
+        let late = speeds.fold(0.0, |most, speed| f64::max(most, speed * t)) * 4.0 * f64::EPSILON;
+        let bars = self.parts.iter().map(|p| p.error_bar(t)).chain([late]);
         // A position is a sum with the start, which may lie far from the origin.
         bars.fold(0.0, f64::max) + f64::EPSILON * self.farthest
     }

@@ -1,10 +1,11 @@
 //! One group's motion, where its forces are linear all along: its modes along one axis or three, and
 //! its error bar.
 
+use super::forced::{End, Forcing, forcing};
 use super::group::{Body, Group, Link};
-use super::lengths::{Length, bounds};
+use super::lengths::{Length, Moved, bounds};
 use super::line::{Drift, Line, Sideways};
-use super::mode::{Mode, Response, Start};
+use super::mode::{Response, Start};
 use super::modes::Modes;
 use super::vector::norm;
 use super::words;
@@ -23,6 +24,8 @@ struct Axis {
     direction: Vector3<f64>,
     /// The start of each mode.
     starts: Vec<Start>,
+    /// What driven ends do to each mode.
+    forcings: Vec<Forcing>,
 }
 
 /// x(t) = x(0) + axes times modes + drift.
@@ -54,18 +57,13 @@ impl GroupMotion {
     /// The motion along three axes, which are alike and independent.
     fn in_space(group: &Group) -> Option<Self> {
         let modes = Modes::new(group)?;
-        let axes = [0, 1, 2].map(|c| {
+        let axes = (0..3).map(|c| {
             let tension = |link: &Link| link.spring.stiffness * link.between()[c];
             Axis::new(group, &modes, Vector3::ith(c, 1.0), tension)
         });
+        let axes = axes.collect::<Option<_>>()?;
         let words = words::in_space(group, &modes.modes);
-        Some(Self::new(
-            group,
-            modes,
-            axes.to_vec(),
-            Drift::default(),
-            words,
-        ))
+        Some(Self::new(group, modes, axes, Drift::default(), words))
     }
 
     /// The motion along one axis: a line that may move sideways as a whole.
@@ -83,7 +81,7 @@ impl GroupMotion {
             let stretch = norm(link.between()) - link.spring.rest_length;
             link.spring.stiffness * stretch * sign(link)
         };
-        let along = Axis::new(group, &modes, line.direction, tension);
+        let along = Axis::new(group, &modes, line.direction, tension)?;
         // Springs are linear only while their ends do not pass each other.
         let lengths: Vec<Length> = bound()
             .map(|link| Length {
@@ -93,17 +91,21 @@ impl GroupMotion {
                     .iter()
                     .map(|s| sign(link) * s)
                     .collect(),
+                ends: ends(link, line.direction, sign(link)),
             })
             .collect();
-        let both = modes
-            .modes
-            .iter()
-            .copied()
-            .zip(along.starts.iter().copied());
-        let both: Vec<(Mode, Start)> = both.collect();
+        let starts = modes.modes.iter().zip(&along.starts);
+        let moved: Vec<Moved> = starts
+            .zip(&along.forcings)
+            .map(|((mode, start), forcing)| Moved {
+                mode: *mode,
+                start: *start,
+                forcing: forcing.clone(),
+            })
+            .collect();
         let mut part = Self::new(group, modes, vec![along], line.drift, Default::default());
         let closest = (CLOSEST * part.size).max(4.0 * part.error_bar(group.until));
-        let lengths = bounds(&both, &lengths, group.until, closest)?;
+        let lengths = bounds(&moved, &lengths, group.until, closest)?;
         if !line.offset.is_none() {
             let sideways = Sideways::new(group, line.offset, &lengths)?;
             let stays = sideways.bound(group.until) <= ASIDE * part.size;
@@ -145,7 +147,9 @@ impl GroupMotion {
             moved.fill(0.0);
             gained.fill(0.0);
             for (j, (response, &start)) in responses.iter().zip(&axis.starts).enumerate() {
-                let (position, speed) = (response.position(start), response.gained(start));
+                let [forced, faster] = axis.forcings[j].moved(&self.modes.modes[j], response, t);
+                let position = response.position(start) + forced;
+                let speed = response.gained(start) + faster;
                 for (i, shape) in self.modes.shape(j).iter().enumerate() {
                     moved[i] += shape * position;
                     gained[i] += shape * speed;
@@ -187,7 +191,7 @@ impl GroupMotion {
         for axis in &self.axes {
             let (mut each, mut swinging) = (vec![0.0; n], vec![0.0; n]);
             for (j, (mode, start)) in self.modes.modes.iter().zip(&axis.starts).enumerate() {
-                let bound = mode.travel_bound(*start, t);
+                let bound = mode.travel_bound(*start, t) + axis.forcings[j].bounds(mode, t)[0];
                 for (i, shape) in self.modes.shape(j).iter().enumerate() {
                     each[i] += shape.abs() * bound;
                     if mode.w > 0.0 {
@@ -218,8 +222,13 @@ impl GroupMotion {
         let phase = swinging
             .map(|m| t.min(1.0 / m.g.min(m.w)))
             .fold(0.0, f64::max);
-        let starts = self.axes.iter().flat_map(|axis| modes().zip(&axis.starts));
-        let speeds = starts.map(|(mode, start)| mode.speed_bound(*start, t));
+        let starts = self.axes.iter().flat_map(|axis| {
+            let starts = modes().zip(&axis.starts);
+            starts.zip(&axis.forcings)
+        });
+        let speeds = starts.map(|((mode, start), forcing)| {
+            mode.speed_bound(*start, t) + forcing.bounds(mode, t)[1]
+        });
         let speed = speeds.fold(0.0, f64::hypot);
         // Damping left between the modes pushes like leak times speed.
         let pushed =
@@ -233,8 +242,22 @@ impl GroupMotion {
         };
         let rate = 16.0 * f64::EPSILON * fastest + self.modes.spread;
         let sideways = self.sideways.as_ref().map_or(0.0, |s| s.bound(t));
-        16.0 * f64::EPSILON * self.size.max(all) + rate * phase * swinging + pushed + sideways
+        // A drive goes on however damped the modes are.
+        let forcings = self.axes.iter().flat_map(|axis| &axis.forcings);
+        let drive = forcings.map(Forcing::fastest).fold(0.0, f64::max);
+        16.0 * f64::EPSILON * (self.size.max(all) + drive * t * swing)
+            + rate * phase * swinging
+            + pushed
+            + sideways
     }
+}
+
+/// The motions of a link's driven ends, as they change its length.
+fn ends(link: &Link, direction: Vector3<f64>, sign: f64) -> Vec<(f64, End)> {
+    let drives = link.drives.iter().zip([-sign, sign]);
+    drives
+        .filter_map(|(drive, sign)| Some((sign, End::new(drive.as_ref()?, direction)?)))
+        .collect()
 }
 
 impl Axis {
@@ -244,7 +267,7 @@ impl Axis {
         modes: &Modes,
         direction: Vector3<f64>,
         tension: impl Fn(&Link) -> f64,
-    ) -> Self {
+    ) -> Option<Self> {
         let along = |of: fn(&Body) -> Vector3<f64>| -> Vec<f64> {
             let bodies = group.bodies.iter();
             bodies.map(|b| b.mass * of(b).dot(&direction)).collect()
@@ -258,12 +281,17 @@ impl Axis {
                 *pull -= force * stretch;
             }
         }
+        let forcings = forcing(group, &modes.modes, |link| modes.stretches(link), direction)?;
+        for (pull, forcing) in pulls.iter_mut().zip(&forcings) {
+            *pull += forcing.constant;
+        }
         let starts = velocities.into_iter().zip(pulls);
-        Self {
+        Some(Self {
             direction,
             starts: starts
                 .map(|(velocity, pull)| Start { velocity, pull })
                 .collect(),
-        }
+            forcings,
+        })
     }
 }

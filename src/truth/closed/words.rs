@@ -54,24 +54,35 @@ pub(super) fn on_line(group: &Group, modes: &[Mode], shortest: Option<f64>) -> (
     (method(group, modes, "in line"), reason)
 }
 
+/// As an adjective of a group with driven ends.
+fn driven(group: &Group) -> &'static str {
+    if group.is_driven() { "driven " } else { "" }
+}
+
 fn subject(group: &Group) -> String {
     let particles = match group.bodies.len() {
         1 => "one free particle".to_owned(),
         n => format!("{n} free particles"),
     };
     match group.links.len() {
+        1 if group.is_driven() => format!("{particles} on one spring with a driven end"),
         1 => format!("{particles} on one spring"),
+        n if group.is_driven() => format!("{particles} on {n} springs with driven ends"),
         n => format!("{particles} on {n} springs"),
     }
 }
 
 fn method(group: &Group, modes: &[Mode], where_: &str) -> String {
     match modes {
-        [mode] => format!("oscillator {where_}, {}", regime(*mode)),
+        [mode] => format!("{}oscillator {where_}, {}", driven(group), regime(*mode)),
         [mode, _] if group.links.len() == 1 => {
             format!("two bodies on one spring, {}", regime(*mode))
         }
-        modes => format!("eigendecomposition of {} modes", modes.len()),
+        modes => format!(
+            "eigendecomposition of {} {}modes",
+            modes.len(),
+            driven(group)
+        ),
     }
 }
 

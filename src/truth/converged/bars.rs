@@ -160,6 +160,12 @@ impl System for Noisy<'_> {
         }
         power
     }
+    fn place(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
+        self.system.place(t, x, v);
+    }
+    fn jumps(&self) -> &[f64] {
+        self.system.jumps()
+    }
     fn potential(&self, t: f64, x: &[f64]) -> f64 {
         self.system.potential(t, x)
     }

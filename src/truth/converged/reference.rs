@@ -3,7 +3,7 @@
 
 use super::dormand_prince::DormandPrince;
 use super::mesh::Mesh;
-use super::stepper::{Precise, Stepper};
+use super::stepper::{Precise, through};
 use super::{Converged, NotConverged, ReferenceFacts, VERSION};
 use crate::physics::System;
 use crate::truth::{Motion, States};
@@ -85,16 +85,18 @@ impl Reference {
                 let since = (-(k as f64)).mul_add(interval, inside(t));
                 while let Some(step) = steps.next_if(|step| step.end() * interval <= since) {
                     let t = mesh.time(k) + step.offset * interval;
-                    method.step(&*self.system, t, step.length * interval, &mut base);
+                    let h = step.length * interval;
+                    through(&mut method, &*self.system, t, h, &mut base);
                 }
                 let mut at = base.clone();
                 if let Some(step) = steps.peek() {
                     let rest = (-step.offset).mul_add(interval, since);
                     if rest > 0.0 {
                         let t = mesh.time(k) + step.offset * interval;
-                        method.step(&*self.system, t, rest, &mut at);
+                        through(&mut method, &*self.system, t, rest, &mut at);
                     }
                 }
+                self.system.place(t, &mut at.x, &mut at.v);
                 states.push(&at.x, &at.v);
             }
         }

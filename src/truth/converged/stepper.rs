@@ -101,7 +101,7 @@ pub(super) fn integrate<S: Stepper>(
                 mesh.time(k) + part.offset * interval,
                 part.length * interval,
             );
-            stepper.step(system, t, h, &mut state);
+            through(&mut stepper, system, t, h, &mut state);
             after(first + step / each as usize, h, &stepper);
         }
         if !state.is_finite() {
@@ -109,7 +109,27 @@ pub(super) fn integrate<S: Stepper>(
             samples.v.resize(instants * dim, f64::NAN);
             break;
         }
+        let end = mesh.time(k + 1);
+        system.place(end, &mut state.x, &mut state.v);
         samples.push(&state.x, &state.v);
     }
     samples
+}
+
+/// A step of `h` seconds from `t`, cut where a derivative of a given motion jumps.
+pub(super) fn through<S: Stepper>(
+    stepper: &mut S,
+    system: &dyn System,
+    t: f64,
+    h: f64,
+    state: &mut Precise,
+) {
+    let (mut from, mut left) = (t, h);
+    let jumps = system.jumps();
+    let ahead = jumps[jumps.partition_point(|jump| *jump <= t)..].iter();
+    for &jump in ahead.take_while(|jump| **jump < t + h) {
+        stepper.step(system, from, jump - from, state);
+        (from, left) = (jump, t + h - jump);
+    }
+    stepper.step(system, from, left, state);
 }

@@ -2,8 +2,9 @@
 
 use super::target::Target;
 use super::temporary::Temporary;
+use crate::measure::Statics;
 use crate::physics::State;
-use crate::trajectory::{CsvWriter, NpzWriter, Observer, SaveError};
+use crate::trajectory::{CsvWriter, NpzWriter, Observer, SaveError, Values};
 use crate::verbs::session::{Label, Saver};
 use std::path::PathBuf;
 
@@ -15,13 +16,26 @@ pub enum FileKind {
     Npz,
 }
 
+/// Static quantities that may be asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Column {
+    /// What holds each fixed particle, N: `rx,ry,rz`, or `reaction` (T,N,3).
+    Reaction,
+    /// How much each spring pulls, N: a file `.tension.csv` of `t,id,tension`, or `tension` (T,M).
+    Tension,
+}
+
 /// Settings of the files, one for each case.
-#[derive(Debug)]
 pub struct Files {
     pub kind: FileKind,
     pub folder: PathBuf,
     /// The number of steps from one row to the next.
     pub every: u64,
+    /// What is saved beside the states, and what computes it.
+    pub columns: Vec<Column>,
+    pub statics: Statics,
+    /// The number of springs.
+    pub springs: usize,
 }
 
 impl Files {
@@ -37,27 +51,82 @@ impl Files {
             let name = format!("{engine}@{timestep}.{extension}");
             Target::of(&self.folder.join(name))
         };
-        Ok(match self.kind {
+        let asked = |column| self.columns.contains(&column);
+        let rows = (*steps, self.every);
+        match self.kind {
             FileKind::Csv => {
                 let target = path("csv")?;
                 let file = target.begin()?;
-                Box::new(Saving {
-                    writer: CsvWriter::new(file, *steps, self.every, *timestep),
-                    complete: CsvWriter::finish,
+                let states = if asked(Column::Reaction) {
+                    let reaction = self.values(Column::Reaction);
+                    CsvWriter::with(file, ["rx", "ry", "rz"], reaction, rows, *timestep)
+                } else {
+                    CsvWriter::new(file, *steps, self.every, *timestep)
+                };
+                let mut files = vec![(states, target)];
+                if asked(Column::Tension) {
+                    let target = path("tension.csv")?;
+                    let (file, tension) = (target.begin()?, self.values(Column::Tension));
+                    let tensions = CsvWriter::alone(file, "tension", tension, rows, *timestep);
+                    files.push((tensions, target));
+                }
+                let files = files.into_iter().map(|(writer, target)| Saving {
+                    writer,
+                    complete: CsvWriter::finish as fn(_) -> _,
                     target,
-                })
+                });
+                Ok(Box::new(Several(files.collect())))
             }
             FileKind::Npz => {
                 let target = path("npz")?;
                 let file = target.begin()?;
                 let scratch = [tempfile::tempfile()?, tempfile::tempfile()?];
-                Box::new(Saving {
-                    writer: NpzWriter::new(scratch, *particles, *steps, self.every, *timestep),
+                let mut writer = NpzWriter::new(scratch, *particles, *steps, self.every, *timestep);
+                for (column, name, shape) in [
+                    (Column::Reaction, "reaction", vec![*particles as u64, 3]),
+                    (Column::Tension, "tension", vec![self.springs as u64]),
+                ] {
+                    if asked(column) {
+                        let scratch = tempfile::tempfile()?;
+                        writer = writer.with(name, shape, self.values(column), scratch);
+                    }
+                }
+                Ok(Box::new(Saving {
+                    writer,
                     complete: |writer: NpzWriter<_>| writer.finish(file),
                     target,
-                })
+                }))
             }
+        }
+    }
+
+    fn values(&self, column: Column) -> Values {
+        let statics = self.statics.clone();
+        Box::new(move |state| match column {
+            Column::Reaction => statics.reactions(state),
+            Column::Tension => statics.tensions(state),
         })
+    }
+}
+
+/// Files of the same steps.
+struct Several<S>(Vec<S>);
+
+impl<S: Observer> Observer for Several<S> {
+    fn next(&self, from: u64) -> Option<u64> {
+        self.0.first()?.next(from)
+    }
+
+    fn observe(&mut self, step: u64, state: &State) {
+        self.0.iter_mut().for_each(|file| file.observe(step, state));
+    }
+}
+
+impl<S: Saver> Saver for Several<S> {
+    fn finish(self: Box<Self>) -> Result<(), SaveError> {
+        self.0
+            .into_iter()
+            .try_for_each(|file| Box::new(file).finish())
     }
 }
 

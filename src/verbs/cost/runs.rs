@@ -77,7 +77,7 @@ impl<'a> Setup<'a> {
         session: &'a dyn Session,
         named: bool,
     ) -> Self {
-        let positions = scene.particles.iter().flat_map(|p| p.position);
+        let positions = scene.starts().into_iter().flatten();
         let mut size = positions.fold(0.0, |most: f64, x| most.max(x.abs()));
         if let Some(motion) = truth.motion() {
             let states = motion.states(&motion.landmarks(truth.horizon));

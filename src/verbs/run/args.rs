@@ -1,6 +1,7 @@
 //! `springcheck run SCENE...`
 
-use crate::measure::CheckStatus;
+use crate::measure::{CheckStatus, Statics};
+use crate::physics::ParticleSystem;
 use crate::report::json::Tool;
 use crate::scene::{self, Scene};
 use crate::trajectory::Plane;
@@ -12,7 +13,7 @@ use crate::verbs::cli::flags::{self, Time, demand};
 use crate::verbs::cli::interrupt;
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::place::Place;
-use crate::verbs::cli::save::{FileKind, Files};
+use crate::verbs::cli::save::{Column, FileKind, Files};
 use crate::verbs::cli::solvers::{Custom, chosen};
 use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::run::{Choice, Expectations, Orders, Plan};
@@ -87,6 +88,11 @@ pub struct Args {
     /// Save every step of every engine beside the report.
     #[arg(long, value_enum, value_name = "FORMAT")]
     save: Option<FileKind>,
+
+    /// State the largest tensions of springs and the reactions of fixed particles, N; with --save those of every step
+    /// are saved, too.
+    #[arg(long, value_enum, value_name = "A,B", value_delimiter = ',')]
+    columns: Vec<Column>,
 
     /// Save only every N-th step, and the last.
     #[arg(long, value_name = "N", requires = "save", allow_hyphen_values = true, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
@@ -182,10 +188,14 @@ fn one(
         kind,
         folder: place.folder().to_owned(),
         every: args.every,
+        columns: args.columns.clone(),
+        statics: Statics::new(scene, &ParticleSystem::new(scene)),
+        springs: scene.springs.len(),
     });
     let saving = files.is_some();
     let terminal = Terminal::new(quiet).saving(files);
-    let plan = Plan::new(scene, choice).expecting(saving, &Cache::new());
+    let mut plan = Plan::new(scene, choice).expecting(saving, &Cache::new());
+    plan.loads = !args.columns.is_empty();
     let estimates = plan.estimate();
     let expected = terminal::expected(&estimates);
     terminal.expect(plan.units(), expected, &estimates, SHORTER);

@@ -58,11 +58,9 @@ pub fn series(
             y_range: plot.y_range,
         }),
         plane,
-        fixed: scene
-            .particles
-            .iter()
-            .filter(|p| p.fixed)
-            .map(|p| plane.map(|axis| p.position[axis]))
+        fixed: std::iter::zip(&scene.particles, scene.starts())
+            .filter(|(p, _)| p.fixed)
+            .map(|(_, start)| plane.map(|axis| start[axis]))
             .collect(),
     }
 }
@@ -130,7 +128,7 @@ fn extent(scene: &Scene, records: &[Record], axis: usize) -> f64 {
     let completed = |record: &&Record| record.status == Status::Completed;
     let first = records.iter().find(completed);
     let first = first.and_then(|record| record.trajectory.as_ref());
-    let start = scene.particles.iter().map(|p| p.position[axis]);
+    let start = scene.starts().into_iter().map(|start| start[axis]);
     let moved = first.into_iter().flat_map(|run| {
         (0..run.len()).flat_map(move |k| run.x(k)[axis..].iter().step_by(3).copied())
     });

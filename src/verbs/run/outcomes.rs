@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::record::Record;
 use super::truths::Truths;
 use super::{budget, identity, remarks};
-use crate::measure::{self, Deviation, EnergySeries, TOLERANCE};
+use crate::measure::{self, Deviation, EnergySeries, Statics, TOLERANCE};
 use crate::solvers::Status;
 use crate::trajectory::Trajectory;
 use crate::verbs::run::{Outcome, WorkSummary};
@@ -20,6 +20,7 @@ pub fn all(
     scale: Option<f64>,
 ) -> (Vec<Outcome>, Vec<Option<EnergySeries>>, Vec<String>) {
     let (limits, limits_left_out) = remarks::linearised(plan, budget::of_limits(plan));
+    let statics = plan.loads.then(|| Statics::new(plan.scene, &plan.system));
     let one = |index: usize| {
         let (case, record) = (&plan.cases[index], &records[index]);
         let timestep = case.label.timestep;
@@ -46,6 +47,10 @@ pub fn all(
             deviation_m: deviations(plan, records, index),
             energy: series.as_ref().map(judged),
             momentum: trajectory.and_then(|run| measure::momentum(plan.scene, &plan.system, run)),
+            loads: statics
+                .as_ref()
+                .zip(trajectory)
+                .and_then(|(statics, run)| statics.loads(run)),
             work: WorkSummary {
                 steps: record.steps,
                 force_evaluations: record.counts.all_force_passes(),

@@ -138,6 +138,8 @@ pub struct Plan<'a> {
     pub cases: Vec<Case>,
     /// The choice the plan is made from.
     pub choice: Choice,
+    /// Whether outcomes state tensions and reactions.
+    pub loads: bool,
     /// What is done beside the runs, for the progress; nothing until [`Plan::expecting`] says it.
     pub beside: Beside,
 }
@@ -164,6 +166,7 @@ impl<'a> Plan<'a> {
             system: ParticleSystem::new(scene),
             cases,
             choice: choice.clone(),
+            loads: false,
             beside: Beside::default(),
         }
     }

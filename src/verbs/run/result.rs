@@ -2,7 +2,7 @@
 //! figures are drawn from.
 
 use crate::measure::identify::{Explained, Identity};
-use crate::measure::{Deviation, Energy, ErrorSummary, Momentum};
+use crate::measure::{Deviation, Energy, ErrorSummary, Loads, Momentum};
 use crate::solvers::{Built, SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use schemars::JsonSchema;
@@ -36,6 +36,10 @@ pub struct Outcome {
     pub energy: Option<Energy>,
     /// Null where the scene keeps neither, or nothing was recorded.
     pub momentum: Option<Momentum>,
+    /// Tensions of springs and reactions of fixed particles; null where they were not asked for, or velocities are not
+    /// known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loads: Option<Loads>,
     /// What the run took.
     pub work: WorkSummary,
     /// The scheme it follows by replay; null where there is nothing to replay.

@@ -52,8 +52,10 @@ fn mapping(properties: Map<String, Json>) -> Json {
 fn key(part: &'static Part, row: &'static Row, names: &Names) -> Json {
     let mut schema = value(row, names);
     let mut says = row.summary.trim().to_owned();
-    if let ValueKind::Number(bounds) | ValueKind::Numbers(_, bounds) | ValueKind::Vectors(bounds) =
-        &row.kind
+    if let ValueKind::Number(bounds)
+    | ValueKind::Numbers(_, bounds)
+    | ValueKind::Table(_, bounds)
+    | ValueKind::Vectors(bounds) = &row.kind
     {
         let [low, high] = [bounds.low, bounds.high].map(short);
         says += &format!(" From {low} to {high} ({}).", bounds.unit);
@@ -91,9 +93,14 @@ fn default(part: &Part, row: &Row) -> Option<Json> {
     let usual = matches!(row.absent, Absent::Usual);
     let text = matches!(row.kind, ValueKind::Text(_));
     let mut scene = Scene::default();
-    if (part.count)(&scene) == 0 {
-        let holder = SCENE.rows.iter().find(|row| row.key == part.key)?;
+    let mut rows = SCENE.rows;
+    let absent = (part.count)(&scene) == 0;
+    for key in part.key.split('.').filter(|_| absent) {
+        let holder = rows.iter().find(|row| row.key == key)?;
         (holder.set)(&mut scene, 0, 0, Value::Flag(true));
+        if let ValueKind::Part(of) = holder.kind {
+            rows = of.rows;
+        }
     }
     let values: Vec<Value> = row.values(&scene, 0).collect();
     match (&row.kind, &values[..]) {
@@ -108,6 +115,10 @@ fn value(row: &Row, names: &Names) -> Json {
     match &row.kind {
         ValueKind::Number(bounds) => number(bounds),
         ValueKind::Numbers(count, bounds) => list(number(bounds), *count, *count),
+        ValueKind::Table(width, bounds) => {
+            let row = list(number(bounds), *width, *width);
+            json!({"type": "array", "items": row, "minItems": 2})
+        }
         ValueKind::Vectors(bounds) => {
             let vector = || list(number(bounds), 3, 3);
             let several = json!({"type": "array", "items": vector(), "minItems": 1});

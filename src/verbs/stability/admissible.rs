@@ -113,7 +113,8 @@ fn admits(
     };
     let before = strain(&state);
     for _ in 0..2 {
-        if advance(integrator, system, timestep, &mut state).is_err() {
+        let end = state.t + timestep;
+        if advance(integrator, system, timestep, end, &mut state).is_err() {
             return false;
         }
     }

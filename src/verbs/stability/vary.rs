@@ -116,10 +116,11 @@ impl VariedKey {
         let count = (key.part.count)(scene);
         match key.member {
             Some(at) if at >= count => refused(format!("the scene has {count} of these, from 0")),
-            Some(at) if !key.free(scene, at) => {
+            Some(at) if !key.free(scene, at) && key.part.key == PARTICLES.key => {
                 refused(format!("particle {at} is fixed: it changes nothing"))
             }
-            None if count == 0 => refused("the scene has none".into()),
+            Some(at) if !key.free(scene, at) => refused("this one has none".into()),
+            None if key.members(scene).next().is_none() => refused("the scene has none".into()),
             _ if key.is_vector(scene) => {
                 refused("the scene gives vectors here: only a number can be varied".into())
             }
@@ -133,7 +134,8 @@ impl VariedKey {
         let plain = format!("{list}{field}");
         let member = index.parse().ok();
         let found = keys().find(|key| {
-            key.to_string() == plain && (plain == id || key.part.list && member.is_some())
+            let listed = key.part.list || key.part.inside().is_some();
+            key.to_string() == plain && (plain == id || listed && member.is_some())
         });
         found.map(|key| VariedKey { member, ..key }).ok_or_else(|| {
             let known: Vec<String> = keys().map(|key| key.to_string()).collect();
@@ -180,7 +182,9 @@ impl VariedKey {
 
     /// Whether the key acts on this member: a fixed particle has neither inertia nor drag.
     fn free(&self, scene: &Scene, at: usize) -> bool {
-        self.part.key != PARTICLES.key || scene.particles.get(at).is_some_and(|p| !p.fixed)
+        let there = (self.row.get)(scene, at, 0).is_some();
+        let fixed = || scene.particles.get(at).is_some_and(|p| p.fixed);
+        there && !(self.part.key == PARTICLES.key && fixed())
     }
 }
 

@@ -146,6 +146,7 @@ pub fn outcome(engine: &str, kind: SolverKind, timestep: f64) -> Outcome {
         deviation_m: BTreeMap::new(),
         energy: None,
         momentum: None,
+        loads: None,
         work: WorkSummary {
             steps: 100,
             force_evaluations: Some(100),

@@ -38,9 +38,10 @@ pub fn full() -> Value {
         "solver": {"type": "rk4", "timestep": 0.1},
         "particles": [
             {"pos": [0, 0, 0], "mass": 1},
-            {"pos": [1, 0, 0], "mass": 2},
+            {"pos": [1, 0, 0], "mass": 2, "fixed": true},
             {"pos": [0, 1, 0], "mass": 3},
         ],
+        "driven": [{"particle_id": 1, "sine": {"amplitude": [0.1, 0, 0], "omega": 5}}],
         "springs": [{"particle_ids": [0, 1], "stiffness": 20}],
         "triangles": [{"particle_ids": [0, 1, 2], "air_drag": 1}],
         "air": {},
@@ -57,9 +58,29 @@ fn member<'s>(scene: &'s mut Value, part: &Part) -> &'s mut Value {
     match part.key {
         "file" => scene,
         key if part.list => &mut scene[key][0],
-        key => &mut scene[key],
+        key => match part.inside() {
+            Some((list, key)) => &mut scene[list][0][key],
+            None => &mut scene[key],
+        },
     }
 }
+
+/// The schema's properties of a part.
+fn properties<'s>(schema: &'s Value, part: &Part) -> &'s Value {
+    match part.key {
+        "file" => &schema["properties"],
+        key if part.list => &schema["properties"][key]["items"]["properties"],
+        key => match part.inside() {
+            Some((list, key)) => {
+                &schema["properties"][list]["items"]["properties"][key]["properties"]
+            }
+            None => &schema["properties"][key]["properties"],
+        },
+    }
+}
+
+/// The keys of which a member has exactly one, which no schema says.
+const ONE_OF: [&str; 3] = ["driven.sine", "driven.velocity", "driven.table"];
 
 fn all_rows() -> impl Iterator<Item = (&'static Part, &'static Row)> {
     let rows = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
@@ -94,6 +115,13 @@ fn inside_and_outside(row: &Row) -> (Vec<Value>, Vec<Value>) {
             outside.push(json!(vec![1.0; count + 1]));
             outside.push(json!(vec![1.0; count - 1]));
             (vec![json!(ascending)], outside)
+        }
+        ValueKind::Table(width, bounds) => {
+            let row = |x: f64| vec![x; *width];
+            let table = |x: f64| json!([row(0.0), row(x)]);
+            let mut outside = vec![json!([row(0.0)]), json!(row(0.0)), json!([[0.0], [1.0]])];
+            outside.push(table(1.1 * bounds.high));
+            (vec![table(bounds.high)], outside)
         }
         ValueKind::Vectors(Bounds { high, .. }) => (
             vec![
@@ -188,7 +216,18 @@ fn the_schema_and_the_reader_agree_on_every_key() {
         let (inside, outside) = inside_and_outside(row);
         let with = |value: &Value| {
             let mut scene = full();
-            member(&mut scene, part)[row.key] = value.clone();
+            let own = member(&mut scene, part);
+            own[row.key] = value.clone();
+            let path = part.path(None, row.key);
+            if ONE_OF.contains(&path.as_str()) && row.key != "sine" && !value.is_null() {
+                own["sine"] = Value::Null;
+            }
+            // What is driven is fixed, and something is not.
+            if path == "driven.particle_id" && *value == json!(0) {
+                for (at, fixed) in [true, false].into_iter().enumerate() {
+                    scene["particles"][at]["fixed"] = json!(fixed);
+                }
+            }
             // The timestep has to fit the duration.
             if row.key == "duration" {
                 scene["solver"]["timestep"] = json!(0.5);
@@ -198,6 +237,9 @@ fn the_schema_and_the_reader_agree_on_every_key() {
         let path = part.path(None, row.key);
         for (values, good) in [(inside, true), (outside, false)] {
             for value in values {
+                if path == "driven.sine" && value.is_null() {
+                    continue;
+                }
                 // Without its `externals`, the file may not speak of `mine`.
                 let mut scene = with(&value);
                 if row.key == "externals" {
@@ -215,7 +257,7 @@ fn the_schema_and_the_reader_agree_on_every_key() {
             members.remove("expect");
         }
         // Particles that attract each other need their mass: two keys, which no schema holds together.
-        if path != "particles.mass" {
+        if path != "particles.mass" && path != "driven.sine" {
             let optional = !matches!(row.absent, Absent::Required(_));
             agree(&without, optional, &format!("without {path}"));
         }
@@ -302,11 +344,7 @@ fn the_schema_and_the_reader_agree_on_expectations() {
 fn every_key_says_what_it_is() {
     let schema = schema();
     for (part, row) in all_rows() {
-        let properties = match part.key {
-            "file" => &schema["properties"],
-            key if part.list => &schema["properties"][key]["items"]["properties"],
-            key => &schema["properties"][key]["properties"],
-        };
+        let properties = properties(&schema, part);
         let says = properties[row.key]["description"]
             .as_str()
             .unwrap_or_default();
@@ -320,6 +358,7 @@ fn every_key_says_what_it_is() {
         );
         if let ValueKind::Number(bounds)
         | ValueKind::Numbers(_, bounds)
+        | ValueKind::Table(_, bounds)
         | ValueKind::Vectors(bounds) = &row.kind
         {
             assert!(
@@ -337,11 +376,7 @@ fn defaults_are_those_of_the_reader() {
     let original = read(&full()).expect("a scene");
     let mut some = 0;
     for (part, row) in all_rows() {
-        let properties = match part.key {
-            "file" => &schema["properties"],
-            key if part.list => &schema["properties"][key]["items"]["properties"],
-            key => &schema["properties"][key]["properties"],
-        };
+        let properties = properties(&schema, part);
         let second = matches!(row.kind, ValueKind::Vectors(_));
         if let Some(default) = properties[row.key].get("default").filter(|_| !second) {
             let mut scene = full();
@@ -355,6 +390,6 @@ fn defaults_are_those_of_the_reader() {
         }
     }
     // duration, up, damping_model; gravity; vel, fixed, radius, drag, quadratic_drag; cubic, damping; velocity,
-    // density.
-    assert_eq!(some, 13);
+    // density; phase.
+    assert_eq!(some, 14);
 }

@@ -5,7 +5,7 @@ use super::{NAMES, parse};
 use crate::testkit::all_effects;
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::model::{Absent, PARTS, Part, Row, SCENE, ValueKind};
-use springcheck::scene::{DampingModel, Plot, Scene, Value};
+use springcheck::scene::{DampingModel, Driven, Knots, Plot, Scene, Sine, Value};
 use springcheck::solvers::external::{Flat, Task};
 use springcheck::truth::converged::key;
 use springcheck::verbs::stability::Vary;
@@ -20,6 +20,7 @@ fn rows() -> impl Iterator<Item = (&'static Part, &'static Row)> {
 fn components(row: &Row) -> usize {
     match row.kind {
         ValueKind::Numbers(count, _) => count,
+        ValueKind::Table(width, _) => width,
         ValueKind::Ids(count) => count,
         ValueKind::Vectors(_) => 3,
         _ => 1,
@@ -30,6 +31,13 @@ fn components(row: &Row) -> usize {
 fn full() -> Scene {
     let mut scene = all_effects(DampingModel::Axial);
     scene.plot = Some(Plot::default());
+    // No file may have all three.
+    scene.driven.push(Driven {
+        sine: Some(Sine::default()),
+        velocity: Some([0.0; 3]),
+        table: Some(Knots(vec![[0.0; 4], [1.0; 4]])),
+        ..Driven::default()
+    });
     for part in PARTS {
         assert!((part.count)(&scene) > 0, "{}: no member", part.key);
     }
@@ -69,17 +77,15 @@ fn differences(a: &serde_json::Value, b: &serde_json::Value) -> Vec<String> {
 
 #[test]
 fn every_part_of_the_file_is_in_the_table() {
+    let all = || PARTS.into_iter().flat_map(|part| part.rows);
     let below = |part: &&Part| {
         let is = |row: &&Row| matches!(row.kind, ValueKind::Part(of) if of.key == part.key);
-        SCENE.rows.iter().filter(is).count()
+        all().filter(is).count()
     };
     for part in PARTS.iter().filter(|part| part.key != SCENE.key) {
         assert_eq!(below(part), 1, "{}", part.key);
     }
-    let parts = SCENE.rows.iter().filter_map(|row| match row.kind {
-        ValueKind::Part(part) => Some(part.key),
-        _ => None,
-    });
+    let parts = all().filter(|row| matches!(row.kind, ValueKind::Part(_)));
     assert_eq!(parts.count(), PARTS.len() - 1);
 }
 
@@ -110,6 +116,7 @@ fn a_change_is_seen_by_whatever_depends_on_it() {
             assert_eq!(key(&scene, 5.0) != key(&original, 5.0), moves, "{title}");
             let name = row.flat.map(|name| match part.key {
                 "springs" | "gravitational" | "triangles" => format!("{}.{name}", part.key),
+                "driven" | "driven.sine" => format!("driven.{name}"),
                 _ => name.to_owned(),
             });
             let found = differences(&flat(&scene), &flat(&original));
@@ -146,7 +153,7 @@ fn every_number_that_moves_something_can_be_varied() {
 }
 
 /// The keys a scene has to have, with one member of every part, in the order of [`PARTS`].
-const REQUIRED: [(&str, &[(&str, &str)]); 9] = [
+const REQUIRED: [(&str, &[(&str, &str)]); 11] = [
     ("springs", &[("particle_ids", "[0, 1]"), ("stiffness", "1")]),
     ("particles", &[("pos", "[1, 0, 0]"), ("mass", "1")]),
     (
@@ -154,6 +161,11 @@ const REQUIRED: [(&str, &[(&str, &str)]); 9] = [
         &[("particle_ids", "[0, 1, 2]"), ("air_drag", "1")],
     ),
     ("gravitational", &[("particle_ids", "[0, 1]"), ("G", "1")]),
+    ("driven", &[("particle_id", "0")]),
+    (
+        "driven.sine",
+        &[("amplitude", "[0.1, 0, 0]"), ("omega", "5")],
+    ),
     ("wind", &[("direction", "[1, 0, 0]"), ("strength", "1")]),
     ("air", &[]),
     ("solver", &[("type", "midpoint"), ("timestep", "0.01")]),
@@ -164,6 +176,7 @@ const REQUIRED: [(&str, &[(&str, &str)]); 9] = [
 /// That scene; one row has this value.
 fn written(changed: Option<(&Part, &Row, &str)>) -> String {
     let mut text = String::new();
+    let mut driven = String::new();
     for ((key, required), part) in REQUIRED.iter().zip(PARTS) {
         assert_eq!(
             *key, part.key,
@@ -179,9 +192,18 @@ fn written(changed: Option<(&Part, &Row, &str)>) -> String {
         text += &match *key {
             "file" => lines.join("\n"),
             "particles" => format!(
-                "particles: [{{pos: [0, 0, 1], mass: 1}}, {{pos: [0, 1, 0], mass: 1}}, {{{}}}]\n",
+                "particles: [{{pos: [0, 0, 1], mass: 1, fixed: true}}, {{pos: [0, 1, 0], mass: 1}}, {{{}}}]\n",
                 lines.join(", ")
             ),
+            "driven" => {
+                driven = lines.join(", ");
+                continue;
+            }
+            // Another motion takes the place of the sine.
+            "driven.sine" if driven.contains("velocity") || driven.contains("table") => {
+                format!("driven: [{{{driven}}}]\n")
+            }
+            "driven.sine" => format!("driven: [{{{driven}, sine: {{{}}}}}]\n", lines.join(", ")),
             _ if part.list => format!("{key}: [{{{}}}]\n", lines.join(", ")),
             _ => format!("{key}: {{{}}}\n", lines.join(", ")),
         };
@@ -259,11 +281,10 @@ fn numbers_are_read_at_their_bounds_and_refused_beyond() {
 fn a_key_left_out_means_the_default_or_is_missed() {
     let scene = parse(&written(None)).unwrap_or_else(|e| panic!("{e}"));
     let mut defaults = Scene::default();
-    for row in SCENE.rows {
-        // A member of each part.
-        if let ValueKind::Part(_) = row.kind {
-            (row.set)(&mut defaults, 0, 0, Value::Flag(true));
-        }
+    // A member of each part, and then of what is inside of one.
+    let all = PARTS.into_iter().rev().flat_map(|part| part.rows);
+    for row in all.filter(|row| matches!(row.kind, ValueKind::Part(_))) {
+        (row.set)(&mut defaults, 0, 0, Value::Flag(true));
     }
     for (part, row) in rows() {
         let at = (part.count)(&scene) - 1;

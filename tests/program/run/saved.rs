@@ -60,6 +60,73 @@ fn saved_trajectories_hold_every_step_and_agree_to_the_last_bit() {
     }
 }
 
+/// Reactions and tensions beside the states, in the report and in both formats; files of states read back.
+#[test]
+fn static_quantities_are_stated_and_saved_on_request() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = word(folder.path());
+    let common = [
+        "run",
+        SCENE,
+        "--output",
+        out,
+        "--duration",
+        "0.05",
+        "--engines",
+        "none",
+        "--integrators",
+        "rk4",
+    ];
+    for format in ["csv", "npz"] {
+        let more = ["--save", format, "--columns", "reaction,tension"];
+        let (code, text, _) = output(&[&common[..], &more].concat());
+        assert_eq!(code, 0);
+        assert!(
+            text.contains("rk4: at most") && text.contains("particle 0 is held by"),
+            "{text}"
+        );
+    }
+    let place = folder.path().join("pa1/scene01");
+    let (shape, reaction) = array(&place.join("rk4@0.0005.npz"), "reaction.npy");
+    assert_eq!(shape, [101, 2, 3]);
+    let (shape, tension) = array(&place.join("rk4@0.0005.npz"), "tension.npy");
+    assert_eq!(shape, [101, 1]);
+    let lines = |name: &str| -> Vec<Vec<f64>> {
+        let text = std::fs::read_to_string(place.join(name)).expect("text");
+        let rows = text
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').map(|n| n.parse().expect("a number")));
+        rows.map(Iterator::collect).collect()
+    };
+    let states = lines("rk4@0.0005.csv");
+    for (row, line) in states.iter().enumerate() {
+        assert_eq!(line[8..], reaction[3 * row..3 * row + 3]);
+    }
+    let tensions = lines("rk4@0.0005.tension.csv");
+    assert_eq!(
+        tensions.iter().map(|line| line[2]).collect::<Vec<_>>(),
+        tension
+    );
+    // One spring on one anchor: what it pulls with is what holds that.
+    for (k, tension) in tension.iter().enumerate() {
+        assert!(
+            (reaction[6 * k + 2] - tension).abs() < 1e-12 * tension.abs().max(1.0),
+            "{k}"
+        );
+    }
+    for file in ["rk4@0.0005.csv", "rk4@0.0005.npz"] {
+        let file = place.join(file);
+        let (code, ..) = output(&["compare", word(&file), "--scene", SCENE]);
+        assert_eq!(code, 0);
+    }
+    // Nobody asked.
+    let (_, text, _) = output(&common);
+    assert!(!text.contains("at most"), "{text}");
+    let report = std::fs::read_to_string(place.join("report.json")).expect("a report");
+    assert!(!report.contains("tension_n"));
+}
+
 #[test]
 fn a_saved_run_can_be_thinned_and_keeps_its_end() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -3,6 +3,7 @@
 
 mod bars;
 mod choice;
+mod driven;
 mod edges;
 mod exact;
 mod fall;

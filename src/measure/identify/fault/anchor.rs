@@ -1,27 +1,49 @@
-//! Fixed particles that move: no scheme does that.
+//! Fixed particles that move, and driven ones that move otherwise: no scheme does that.
 
 use crate::measure::identify::{Fault, Quantity};
-use crate::scene::Scene;
+use crate::scene::{Drive, Scene};
 use crate::trajectory::Rows;
 
 /// A fixed particle may be this many of its roundings away from where the scene has it: its own, and
 /// that of the file's number for it.
 const ROUNDINGS: f64 = 4.0;
 
-/// The first row in which a fixed particle is not where the scene has it; None if there is none.
+/// The first row in which a fixed or driven particle is not where the scene has it; None if there is none.
 pub fn moved_anchor(scene: &Scene, rows: &Rows) -> Option<Fault> {
-    let fixed: Vec<usize> = (0..scene.particles.len())
+    let drives = scene.drives();
+    let fixed: Vec<(usize, Option<&Drive>)> = (0..scene.particles.len())
         .filter(|&i| scene.particles[i].fixed && 3 * i + 3 <= rows.dim)
+        .map(|i| (i, drives.iter().find(|drive| drive.particle == i)))
         .collect();
-    (0..rows.len()).find_map(|k| fixed.iter().find_map(|&i| moved(scene, rows, k, i)))
+    let first = |k| {
+        fixed
+            .iter()
+            .find_map(|&(i, by)| moved(scene, rows, k, i, by))
+    };
+    (0..rows.len()).find_map(first)
 }
 
-fn moved(scene: &Scene, rows: &Rows, k: usize, particle: usize) -> Option<Fault> {
-    let expected = scene.particles[particle].position;
+fn moved(
+    scene: &Scene,
+    rows: &Rows,
+    k: usize,
+    particle: usize,
+    by: Option<&Drive>,
+) -> Option<Fault> {
+    let t = rows.time(k);
+    let (expected, late) = match by {
+        // Another program's time is off by its rounding.
+        Some(drive) => {
+            let [position, velocity, _] = drive.at(t);
+            (position, velocity.map(|v| v.abs() * f64::EPSILON * t.abs()))
+        }
+        None => (scene.particles[particle].position, [0.0; 3]),
+    };
     let at = &rows.x(k)[3 * particle..3 * particle + 3];
     let found = [at[0], at[1], at[2]];
-    let away = expected.iter().zip(&found).any(|(place, x)| {
-        let rounding = rows.precision.half_unit(*place).max(f64::MIN_POSITIVE);
+    let away = (0..3).any(|axis| {
+        let (place, x) = (&expected[axis], &found[axis]);
+        let rounding = rows.precision.half_unit(*place).max(f64::MIN_POSITIVE) + late[axis];
         // A program in single precision puts it at the nearest single, whatever it prints.
         let near = |place: f64| (x - place).abs() <= ROUNDINGS * rounding;
         !near(*place) && !near(f64::from(*place as f32))
@@ -33,9 +55,62 @@ fn moved(scene: &Scene, rows: &Rows, k: usize, particle: usize) -> Option<Fault>
         quantity: Quantity::Position,
         expected,
         found: found.map(|c| Some(c).filter(|c| c.is_finite())),
-        explanation: format!(
-            "particle {particle} is fixed in the scene, but moves: leave fixed particles out of \
-             every update"
-        ),
+        explanation: match by {
+            Some(drive) => format!("particle {particle} is driven, but {}", otherwise(drive, rows)),
+            None => format!(
+                "particle {particle} is fixed in the scene, but moves: leave fixed particles out of \
+                 every update"
+            ),
+        },
     })
+}
+
+/// How a driven particle moves that does not move as the scene says.
+fn otherwise(drive: &Drive, rows: &Rows) -> String {
+    let h = rows.timestep;
+    let [start, pos] = [drive.at(0.0)[0], drive.times(0.0).at(0.0)[0]];
+    let less = |t: f64, from: [f64; 3]| {
+        let position = drive.at(t)[0];
+        [0, 1, 2].map(|axis| position[axis] - from[axis])
+    };
+    let from_pos = |t: f64| {
+        let moved = less(t, start);
+        [0, 1, 2].map(|axis| pos[axis] + moved[axis])
+    };
+    let ways: [(&str, &dyn Fn(f64) -> [f64; 3]); 7] = [
+        (
+            "stays at its `pos`: its displacement at time t is missing",
+            &|_| pos,
+        ),
+        (
+            "moves the other way: its displacement has the wrong sign",
+            &|t| drive.times(-1.0).at(t)[0],
+        ),
+        ("moves twice as far as its motion says", &|t| {
+            drive.times(2.0).at(t)[0]
+        }),
+        ("is one step late", &|t| drive.at(t - h)[0]),
+        ("is one step ahead", &|t| drive.at(t + h)[0]),
+        (
+            "starts at its `pos`: it starts at `pos` plus its displacement at t = 0",
+            &from_pos,
+        ),
+        (
+            "is where its displacement alone has it: that is added to `pos`",
+            &|t| less(t, pos),
+        ),
+    ];
+    let follows = |way: &dyn Fn(f64) -> [f64; 3]| {
+        (1..rows.len()).all(|k| {
+            let at = &rows.x(k)[3 * drive.particle..3 * drive.particle + 3];
+            let wanted = way(rows.time(k));
+            at.iter().zip(wanted).all(|(x, wanted)| {
+                let size = wanted.abs().max(start[0].hypot(start[1]).hypot(start[2]));
+                (x - wanted).abs() <= 1e-9 * size + rows.precision.half_unit(wanted)
+            })
+        })
+    };
+    let way = ways.iter().find(|(_, way)| follows(way));
+    let says = way.map_or("is not where its motion has it", |(says, _)| says);
+    format!("{says}; at n h it is at `pos` plus its displacement at that time")
 }

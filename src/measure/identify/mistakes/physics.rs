@@ -2,7 +2,7 @@
 //! difference.
 
 use crate::physics::ParticleSystem;
-use crate::scene::{DampingModel, Scene, Vectors, Wind};
+use crate::scene::{DampingModel, Drive, Scene, Vectors, Wind};
 
 /// The scene changed by `change`, if `there` is something to change.
 fn changed(scene: &Scene, there: bool, change: impl FnOnce(&mut Scene)) -> Option<ParticleSystem> {
@@ -11,6 +11,23 @@ fn changed(scene: &Scene, there: bool, change: impl FnOnce(&mut Scene)) -> Optio
         change(&mut wrong);
         ParticleSystem::new(&wrong)
     })
+}
+
+/// Driven particles that stay where they are fixed.
+pub(super) fn drive_forgotten(scene: &Scene) -> Option<ParticleSystem> {
+    driven(scene, |drive| drive.times(0.0))
+}
+
+/// Driven particles that move, and are at rest for dampers.
+pub(super) fn drive_at_rest(scene: &Scene) -> Option<ParticleSystem> {
+    let driven_end = |end: &usize| scene.driven.iter().any(|d| d.particle == *end);
+    let damped = scene.springs.iter().filter(|s| s.damping != 0.0);
+    let ends = damped.flat_map(|spring| &spring.ends).any(driven_end);
+    driven(scene, Drive::still).filter(|_| ends)
+}
+
+fn driven(scene: &Scene, change: fn(&Drive) -> Drive) -> Option<ParticleSystem> {
+    (!scene.driven.is_empty()).then(|| ParticleSystem::new(scene).driven_as(change))
 }
 
 /// The same g newtons on every particle: what a wind would do.

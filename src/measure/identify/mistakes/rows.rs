@@ -220,6 +220,18 @@ pub static MISTAKES: &[Mistake] = &[
         &[("gravity", 1.0)],
         "gravity is added as a force of g newtons whatever the mass: the force is m g",
     ),
+    physics(
+        "drive_forgotten",
+        physics::drive_forgotten,
+        &[("driven", 0.0)],
+        "forces see a driven particle at its `pos`: at time t it is there plus its displacement at t",
+    ),
+    physics(
+        "drive_at_rest",
+        physics::drive_at_rest,
+        &[("driven.velocity", 0.0)],
+        "a driven particle moves, but dampers take it to be at rest: they resist the velocity relative to its own",
+    ),
     scaled(
         "damping_sign",
         &[

@@ -87,6 +87,11 @@ impl Header {
             let before = match name.as_str() {
                 "t" => header.t.replace(at),
                 "id" => header.id.replace(at),
+                // What `--columns` adds says nothing of the state.
+                "rx" | "ry" | "rz" => {
+                    header.count += 1;
+                    continue;
+                }
                 _ => match Column::new(&name) {
                     Some(column) => header.columns.insert(column, at),
                     None => return Err((at, unknown(&name))),

@@ -346,6 +346,7 @@ impl<'a> Rows<'a> {
                 values: self.v,
                 written: v_form.written(),
             }),
+            left_out: self.expected.left_out(|id| self.given_in[id] > 0),
             cut: self.cut,
         })
     }

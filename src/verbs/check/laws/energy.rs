@@ -17,7 +17,8 @@ pub(super) const BOUNDED: Row = Row {
                  K + a·M a / (2 w²); rounding beside it",
     remedy: "a force of another time or place in the kick, a step that changes, or a force without a potential",
     judge: Some(|ran| {
-        if ran.system().kinds().depends_on_velocity() {
+        // A drive feeds energy in and out, and at resonance without end.
+        if ran.system().kinds().depends_on_velocity() || !ran.system().drives().is_empty() {
             return Vec::new();
         }
         let judged = |(subject, run, method): (Subject, &Trajectory, &'static Method)| {

@@ -1,6 +1,6 @@
 //! Two tables: the energy at the end, and the effects that ran, with the bodies and joints of rapier's worlds.
 
-use crate::measure::Energy;
+use crate::measure::{Energy, Loads, Reaction, Tension};
 use crate::report::EffectUse;
 use crate::report::table::Table;
 use crate::report::terminal::clip;
@@ -50,6 +50,70 @@ pub fn energies(report: &Report) -> String {
     let intro = "Joules at the last recorded instant; momenta in kg m/s and kg m²/s, where the scene \
                  conserves them.";
     format!("{intro}\n\n{}", table.in_markdown())
+}
+
+/// The table of the largest tensions and of what holds fixed particles at the end; empty where nobody asked.
+pub fn loads(report: &Report) -> String {
+    let rows: Vec<(&Outcome, &Loads)> = report
+        .outcomes()
+        .iter()
+        .filter_map(|outcome| Some((outcome, outcome.loads.as_ref()?)))
+        .collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(&rows);
+    table.engines(|(o, _)| (super::engine(o), report.header.mark(&o.engine)));
+    table.markdown("largest tension", |(_, loads)| {
+        loads.tension_max.as_ref().map(tension)
+    });
+    table.markdown("smallest tension", |(_, loads)| {
+        loads.tension_min.as_ref().map(tension)
+    });
+    table.markdown("holds at the end", |(_, loads)| {
+        let held = loads.reactions_final.iter().take(HELD).map(reaction);
+        let hidden = loads.reactions_final.len().saturating_sub(HELD);
+        let more = (hidden > 0).then(|| format!("{hidden} more"));
+        let all: Vec<String> = held.chain(more).collect();
+        (!all.is_empty()).then(|| all.join("; "))
+    });
+    let intro = "Newtons. A spring pulls where its tension is above 0, its damper included, and pushes below. What holds a \
+                 fixed particle is minus the sum of the other forces on it.";
+    format!("{intro}\n\n{}", table.in_markdown())
+}
+
+/// Fixed particles that a text names.
+const HELD: usize = 4;
+
+/// The loads of the first engine that has some, for the terminal.
+pub fn own_loads(report: &Report) -> Vec<(&'static str, String)> {
+    let first = report.outcomes().iter().find(|o| o.loads.is_some());
+    let Some((engine, loads)) =
+        first.and_then(|o| Some((words::one_line(&o.engine), o.loads.as_ref()?)))
+    else {
+        return Vec::new();
+    };
+    let mut lines = Vec::new();
+    if let Some(most) = &loads.tension_max {
+        lines.push(("tension", format!("{engine}: at most {}", tension(most))));
+    }
+    for (at, held) in loads.reactions_final.iter().take(HELD).enumerate() {
+        let label = if at == 0 { "reactions" } else { "" };
+        lines.push((label, format!("{engine} at the end: {}", reaction(held))));
+    }
+    lines
+}
+
+/// `14.7 N in spring 3 at 0.5 s`
+fn tension(tension: &Tension) -> String {
+    let (newtons, t) = (words::short(tension.tension_n), words::short(tension.t_s));
+    format!("{newtons} N in spring {} at {t} s", tension.spring)
+}
+
+/// `particle 0 is held by (0, 0, 9.81) N`
+fn reaction(reaction: &Reaction) -> String {
+    let force = reaction.force_n.map(words::short).join(", ");
+    format!("particle {} is held by ({force}) N", reaction.particle)
 }
 
 fn number(value: Option<f64>) -> Option<String> {

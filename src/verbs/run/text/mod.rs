@@ -40,6 +40,7 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome], columns: usize) -> Vie
     // A comparison would count only the evaluations made to judge it.
     if let Body::Run { .. } = report.body {
         facts.extend(ledger::lines(report));
+        facts.extend(ledger::own_loads(report));
     }
     // The verdict of a comparison is the identity.
     let said = |outcome: &Outcome, sentence: &String| {
@@ -102,6 +103,7 @@ pub fn page(report: &Report, view: &View) -> String {
         findings(view),
         section("First fault", fault.collect()),
         section("Where the energy is at the end", ledger::energies(report)),
+        section("Loads", ledger::loads(report)),
         section("Effects that ran", ledger::effects(report)),
         LEGEND.to_owned(),
     ]
