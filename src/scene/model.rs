@@ -18,11 +18,12 @@ use parry3d::math::Vector;
 use serde::Serialize;
 
 /// All parts: the mappings a file consists of.
-pub static PARTS: [&Part; 7] = [
+pub static PARTS: [&Part; 8] = [
     &SPRINGS,
     &PARTICLES,
     &GRAVITATIONAL,
     &WIND,
+    &MAGNETIC,
     &SOLVER,
     &PLOT,
     &SCENE,
@@ -124,7 +125,7 @@ use Absent::{Derived, Required, Usual};
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    reserved ["air", "bending", "colliders", "driven", "magnetic", "objects", "rods", "strain_limit"];
+    reserved ["air", "bending", "colliders", "driven", "objects", "rods", "strain_limit"];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
@@ -161,6 +162,8 @@ declare! {
         "gravitational" => ValueKind::Part(&GRAVITATIONAL), Usual, None;
     /// A constant force.
     wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
+    /// A uniform magnetic field.
+    magnetic: Option<Magnetic> = None, "magnetic" => ValueKind::Part(&MAGNETIC), Usual, None;
     /// Names of other programs that the file expects something of; the command line says what they are.
     externals: Vec<String> = Vec::new(),
         "externals" => ValueKind::Names(limits::EXTERNAL), Usual, None;
@@ -222,6 +225,9 @@ declare! {
     /// Linear drag coefficient b, N s/m.
     drag: f64 = 0.0,
         "drag" => ValueKind::Number(Bounds::not_negative(1e18, "N s/m")), Usual, Some("drag");
+    /// Charge q, coulombs; acts in a magnetic field alone. Charges do not attract or repel each other.
+    charge: f64 = 0.0,
+        "charge" => ValueKind::Number(Bounds::signed(1e12, "C")), Usual, Some("charges");
 }
 
 declare! {
@@ -272,6 +278,15 @@ declare! {
     /// Newtons; negative blows the other way.
     strength: f64 = 0.0, "strength" => ValueKind::Number(Bounds::signed(1e18, "N")),
         Required("give its force in newtons"), Some("wind_force");
+}
+
+declare! {
+    /// A uniform, constant magnetic field, which acts on charged particles.
+    MAGNETIC: Magnetic, maybe magnetic, "a mapping with `field`", reserved [];
+
+    /// B, tesla: the force is q v x B.
+    field: [f64; 3] = [0.0; 3], "field" => ValueKind::Numbers(3, Bounds::signed(1e12, "T")),
+        Required("give the field in tesla: `field: [0, 0, 3]`"), Some("magnetic_field");
 }
 
 /// Expectations have a reader of their own, and no rows.

@@ -90,7 +90,8 @@ fn effect_law(effect: &dyn Effect, x: &[f64], v: &[f64]) -> Result<(), String> {
         scale,
         rounding,
     )?;
-    if dissipated < 0.0 {
+    // A magnetic field leaves the rounding of a sum that is 0.
+    if dissipated < -rounding * scale {
         return Err(format!("damping feeds {dissipated} W"));
     }
     let injected = if effect.kinds().has(ForceKinds::DRIVEN) {
@@ -414,6 +415,7 @@ fn only_what_the_scene_calls_for_is_built() {
     scene.solver.gravity = 0.0;
     scene.wind = None;
     scene.gravitational.clear();
+    scene.magnetic = None;
     for particle in &mut scene.particles {
         particle.drag = 0.0;
     }

@@ -11,6 +11,7 @@ mod effects;
 mod force_kinds;
 mod hard;
 mod kernel;
+mod magnetic;
 mod momentum;
 mod order;
 mod oscillator;

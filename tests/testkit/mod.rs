@@ -13,7 +13,7 @@ pub use springcheck::conformance::systems::{Oscillator, free_triangle, swinging_
 use springcheck::integrators::{Integrator, Method, Settings, fixed};
 use springcheck::physics::effects::Effect;
 use springcheck::physics::{ForceKinds, ParticleSystem, Power, State, System};
-use springcheck::scene::{DampingModel, GravitationalPair, Scene, Wind};
+use springcheck::scene::{DampingModel, GravitationalPair, Magnetic, Scene, Wind};
 
 /// All of these in a whole run, which `SPRINGCHECK_WHOLE=1` asks for as CI does; else one in `of`,
 /// beginning with number `at`: what lies in a loop over at least `of` cases that hands in its own number
@@ -131,6 +131,11 @@ pub fn everything(model: DampingModel) -> Scene {
     for ends in [[1, 2], [2, 3], [0, 3]] {
         scene.gravitational.push(GravitationalPair { ends, g: 2.0 });
     }
+    scene.particles[1].charge = 0.8;
+    scene.particles[2].charge = -0.5;
+    scene.magnetic = Some(Magnetic {
+        field: [0.4, -0.3, 0.6],
+    });
     scene
 }
 

@@ -104,11 +104,12 @@ pub(super) fn of_springs(springs: Vec<usize>) -> impl Iterator<Item = Channel> {
     springs.into_iter().flat_map(of)
 }
 
-/// The channels of these particles; those that the scene has 0 of too.
-pub(super) fn of_particles(particles: &[usize]) -> impl Iterator<Item = Channel> {
-    particles
-        .iter()
-        .flat_map(|i| [Number::Mass, Number::Drag].map(|number| One(number, *i)))
+/// The channels of these particles; those that the scene has 0 of too, but charges only in a magnetic field.
+pub(super) fn of_particles(scene: &Scene, particles: &[usize]) -> impl Iterator<Item = Channel> {
+    let field = scene.magnetic.is_some();
+    let numbers = [Number::Mass, Number::Drag, Number::Charge].into_iter();
+    let numbers = numbers.filter(move |number| field || *number != Number::Charge);
+    (particles.iter()).flat_map(move |i| numbers.clone().map(|number| One(number, *i)))
 }
 
 impl Channel {

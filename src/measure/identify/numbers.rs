@@ -14,15 +14,18 @@ pub(super) enum Number {
     RestLength,
     Cubic,
     Drag,
+    Charge,
     Wind,
     Attraction,
     Mass,
 }
-use Number::{Attraction, Cubic, Damping, Drag, Gravity, Mass, RestLength, Stiffness, Wind};
+use Number::{
+    Attraction, Charge, Cubic, Damping, Drag, Gravity, Mass, RestLength, Stiffness, Wind,
+};
 
 /// In the order in which they are suspected.
-pub(super) const NUMBERS: [Number; 9] = [
-    Gravity, Stiffness, Damping, RestLength, Cubic, Drag, Wind, Attraction, Mass,
+pub(super) const NUMBERS: [Number; 10] = [
+    Gravity, Stiffness, Damping, RestLength, Cubic, Drag, Charge, Wind, Attraction, Mass,
 ];
 
 impl Number {
@@ -35,6 +38,7 @@ impl Number {
             RestLength => ("springs.rest_length", &SPRINGS, "rest_length"),
             Cubic => ("springs.cubic", &SPRINGS, "cubic"),
             Drag => ("drag", &PARTICLES, "drag"),
+            Charge => ("charge", &PARTICLES, "charge"),
             Wind => ("wind", &WIND, "strength"),
             Attraction => ("gravitational", &GRAVITATIONAL, "G"),
             Mass => ("mass", &PARTICLES, "mass"),
@@ -86,7 +90,9 @@ impl Number {
     }
 
     pub(super) fn is_in(self, scene: &Scene) -> bool {
-        self.values(scene).iter().any(|value| *value != 0.0)
+        // A charge does nothing without a field.
+        let acts = self != Charge || scene.magnetic.is_some();
+        acts && self.values(scene).iter().any(|value| *value != 0.0)
     }
 
     /// Replaces it in one member, or in all.
@@ -129,6 +135,9 @@ impl Number {
             (RestLength, _) => format!("springs have {times} their rest length"),
             (Cubic, 0.0) => "the cubic part of the springs is missing".to_owned(),
             (Cubic, _) => format!("the cubic part of the springs is {times} the scene's"),
+            (Charge, 0.0) => "the magnetic force is missing".to_owned(),
+            (Charge, -1.0) => "the magnetic force has the wrong sign: it is q v x B".to_owned(),
+            (Charge, _) => format!("the magnetic force is {times} the scene's"),
             (_, 0.0) => format!("{} is missing", self.what()),
             (Gravity, _) => format!("gravity acts with {}", self.beside(scene, factor)),
             _ => format!("the {} is {times} the scene's", self.what()),

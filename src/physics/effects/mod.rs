@@ -8,6 +8,7 @@
 mod central;
 mod drag;
 mod gravity;
+mod magnetic;
 mod scaled;
 mod springs;
 mod wind;
@@ -15,6 +16,7 @@ mod wind;
 pub use central::Central;
 pub use drag::Drag;
 pub use gravity::Gravity;
+pub use magnetic::MagneticForce;
 pub use scaled::Scaled;
 pub use springs::Springs;
 pub use wind::WindForce;
@@ -125,6 +127,7 @@ pub static REGISTRY: &[EffectRow] = &[
     drag::ROW,
     wind::ROW,
     central::GRAVITATIONAL,
+    magnetic::ROW,
 ];
 
 fn boxed<E: Effect + 'static>(effect: E) -> Box<dyn Effect> {

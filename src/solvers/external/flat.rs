@@ -38,6 +38,11 @@ impl Serialize for Flat<'_> {
         map.serialize_entry("damping_model", &scene.damping_model)?;
         map.serialize_entry("gravity", &gravity)?;
         map.serialize_entry("wind_force", &wind)?;
+        let field = scene
+            .magnetic
+            .as_ref()
+            .map_or([0.0; 3], |magnetic| magnetic.field);
+        map.serialize_entry("magnetic_field", &field)?;
         map.serialize_entry("gravitational", &Arrays(scene, &GRAVITATIONAL))?;
         map.serialize_entry("effects", &effects)?;
         map.serialize_entry("timestep", &timestep)?;

@@ -134,7 +134,7 @@ pub fn free_axis(scene: &Scene) -> Option<FreeAxis> {
 }
 
 /// The axes on which free particles can move: where their velocities, gravity, wind, or their springs
-/// and attractions have a component.
+/// and attractions have a component, and where a magnetic field turns such motion.
 fn moves(scene: &Scene) -> [bool; 3] {
     // Effects of strength 0 pull nowhere.
     let springs = scene
@@ -160,6 +160,15 @@ fn moves(scene: &Scene) -> [bool; 3] {
     {
         for axis in 0..3 {
             moves[axis] |= direction[axis] != 0.0;
+        }
+    }
+    let charged = scene.particles.iter().any(|p| !p.fixed && p.charge != 0.0);
+    if let Some(magnetic) = scene.magnetic.as_ref().filter(|_| charged) {
+        // v x B moves across both; what it moves it turns again.
+        for axis in [0, 1, 2, 0, 1, 2] {
+            let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+            let turned = |of: usize, by: usize| moves[of] && magnetic.field[by] != 0.0;
+            moves[axis] |= turned(next, last) || turned(last, next);
         }
     }
     moves

@@ -28,6 +28,8 @@ pub(super) struct Body {
     /// Acceleration under gravity and wind alone, m/s²: equal masses have the same bits, and
     /// without wind all have.
     pub constant: Vector3<f64>,
+    /// q B / m, 1/s: a magnetic field turns the velocity v by v x this a second.
+    pub turning: Vector3<f64>,
 }
 
 /// A spring and damper of a group.
@@ -63,6 +65,10 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
     let wind = scene.wind.as_ref().map_or(Vector3::zeros(), |wind| {
         wind.strength * Vector3::from(wind.direction)
     });
+    let field = scene
+        .magnetic
+        .as_ref()
+        .map_or(Vector3::zeros(), |magnetic| magnetic.field.into());
     let position = |i: usize| Vector3::from(scene.particles[i].position);
     let size = scene.size();
     let mut groups: Vec<Group> = Vec::new();
@@ -86,6 +92,7 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
             position: position(i),
             velocity: Vector3::from_column_slice(&start.v[3 * i..3 * i + 3]),
             constant: gravity + wind / particle.mass,
+            turning: field * particle.charge / particle.mass,
         });
     }
     for spring in springs {

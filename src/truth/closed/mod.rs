@@ -3,11 +3,12 @@
 //! Particles that springs join form a group; a scene has a closed form if every group has one. A
 //! group has one where its forces stay linear: without springs, with springs of rest length 0, or
 //! moving on one line with lengths proven to stay above 0. Its modes are then decoupled, and each is
-//! one scalar equation. Forces here are read off the scene, not off the effects' code, so that
+//! one scalar equation. In a magnetic field a particle without springs goes round a helix. Forces here are read off the scene, not off the effects' code, so that
 //! either would show a fault in the other.
 
 mod elliptic;
 mod group;
+mod helix;
 mod lengths;
 mod line;
 mod mode;
@@ -22,11 +23,13 @@ pub use pendulum::Pendulum;
 use super::{Motion, States, Truth, TruthKind};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use group::groups;
+use group::{Group, groups};
+use helix::Helix;
+use nalgebra::Vector3;
 use part::GroupMotion;
 
 /// Ids of the effects the forms account for. Any other effect in a scene means no closed form.
-const KNOWN: &[&str] = &["gravity", "springs", "drag", "wind"];
+const KNOWN: &[&str] = &["gravity", "springs", "drag", "wind", "magnetic"];
 
 /// The form that holds for this scene up to `until` seconds, if one does: what it is, such as
 /// `parabola`, and why it applies.
@@ -41,15 +44,16 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
     }
     let start = ParticleSystem::initial_state(scene);
     let groups = groups(scene, &start, until);
-    let parts: Vec<GroupMotion> = groups.iter().map(GroupMotion::of).collect::<Option<_>>()?;
-    let mut methods = each_once(parts.iter().map(|p| p.method.as_str()));
-    let mut reasons = each_once(parts.iter().map(|p| p.reason.as_str()));
+    let parts: Vec<Part> = groups.iter().map(Part::of).collect::<Option<_>>()?;
+    let words: Vec<[&str; 2]> = parts.iter().map(Part::words).collect();
+    let mut methods = each_once(words.iter().map(|words| words[0]));
+    let mut reasons = each_once(words.iter().map(|words| words[1]));
     if parts.is_empty() {
         methods.push("rest");
         reasons.push("nothing is free to move");
     }
     let (method, reason) = (methods.join(" and "), reasons.join("; "));
-    let motion = Modal {
+    let motion = Apart {
         farthest: start.x.iter().fold(0.0, |m, x| m.max(x.abs())),
         x: start.x,
         v: start.v,
@@ -80,16 +84,58 @@ fn each_once<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     found
 }
 
-/// Groups of modes around the start.
-struct Modal {
+/// The motion of one group.
+enum Part {
+    Modes(GroupMotion),
+    Helix(Helix),
+}
+
+impl Part {
+    /// The group's motion, if it has a closed form.
+    fn of(group: &Group) -> Option<Self> {
+        if group
+            .bodies
+            .iter()
+            .any(|body| body.turning != Vector3::zeros())
+        {
+            return Helix::of(group).map(Self::Helix);
+        }
+        GroupMotion::of(group).map(Self::Modes)
+    }
+
+    /// Method and reason.
+    fn words(&self) -> [&str; 2] {
+        match self {
+            Self::Modes(motion) => [&motion.method, &motion.reason],
+            Self::Helix(helix) => helix.words(),
+        }
+    }
+
+    fn add(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
+        match self {
+            Self::Modes(motion) => motion.add(t, x, v),
+            Self::Helix(helix) => helix.add(t, x, v),
+        }
+    }
+
+    fn error_bar(&self, t: f64) -> f64 {
+        match self {
+            Self::Modes(motion) => motion.error_bar(t),
+            Self::Helix(helix) => helix.error_bar(t),
+        }
+    }
+}
+
+/// The motions of all groups around the start.
+struct Apart {
     x: Vec<f64>,
     v: Vec<f64>,
     /// Largest coordinate, m.
     farthest: f64,
-    parts: Vec<GroupMotion>,
+    parts: Vec<Part>,
 }
 
-impl Motion for Modal {
+impl Motion for Apart {
     fn states(&self, times: &[f64]) -> States {
         let dim = self.x.len();
         let mut states = States {

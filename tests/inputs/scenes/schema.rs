@@ -40,6 +40,7 @@ pub fn full() -> Value {
         "springs": [{"particle_ids": [0, 1], "stiffness": 20}],
         "gravitational": [{"particle_ids": [0, 1], "G": 1}],
         "wind": {"direction": [1, 0, 0], "strength": 1},
+        "magnetic": {"field": [0, 0, 1]},
         "plot": {"particle_id": 0, "dof": 2},
         "externals": ["mine"],
         "expect": {"mine": {"status": "completed"}},
@@ -326,6 +327,6 @@ fn defaults_are_those_of_the_reader() {
             some += 1;
         }
     }
-    // duration, up, damping_model; gravity; vel, fixed, radius, drag; cubic, damping.
-    assert_eq!(some, 10);
+    // duration, up, damping_model; gravity; vel, fixed, radius, drag, charge; cubic, damping.
+    assert_eq!(some, 11);
 }

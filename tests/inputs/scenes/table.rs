@@ -142,11 +142,12 @@ fn every_number_that_moves_something_can_be_varied() {
 }
 
 /// The keys a scene has to have, with one member of every part, in the order of [`PARTS`].
-const REQUIRED: [(&str, &[(&str, &str)]); 7] = [
+const REQUIRED: [(&str, &[(&str, &str)]); 8] = [
     ("springs", &[("particle_ids", "[0, 1]"), ("stiffness", "1")]),
     ("particles", &[("pos", "[1, 0, 0]"), ("mass", "1")]),
     ("gravitational", &[("particle_ids", "[0, 1]"), ("G", "1")]),
     ("wind", &[("direction", "[1, 0, 0]"), ("strength", "1")]),
+    ("magnetic", &[("field", "[0, 0, 1]")]),
     ("solver", &[("type", "midpoint"), ("timestep", "0.01")]),
     ("plot", &[("particle_id", "0"), ("dof", "0")]),
     ("file", &[]),

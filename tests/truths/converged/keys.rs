@@ -41,6 +41,13 @@ const DECIDES: &[(&str, Change)] = &[
         }
     }),
     ("no wind", |s| s.wind = None),
+    ("charge", |s| s.particles[1].charge += 0.1),
+    ("field", |s| {
+        if let Some(magnetic) = &mut s.magnetic {
+            magnetic.field[1] += 0.1;
+        }
+    }),
+    ("no field", |s| s.magnetic = None),
     ("a particle less", |s| {
         s.particles.truncate(s.particles.len() - 1)
     }),
@@ -113,6 +120,10 @@ fn a_key_that_forgets_any_field_is_found_out() {
         ("up", |s, o| s.up = o.up),
         ("damping_model", |s, o| s.damping_model = o.damping_model),
         ("wind", |s, o| s.wind.clone_from(&o.wind)),
+        ("field", |s, o| s.magnetic.clone_from(&o.magnetic)),
+        ("charge", |s, _| {
+            s.particles.iter_mut().for_each(|p| p.charge = 0.0)
+        }),
         ("drag", |s, _| {
             s.particles.iter_mut().for_each(|p| p.drag = 0.0)
         }),

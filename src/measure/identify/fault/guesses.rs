@@ -108,7 +108,7 @@ pub(super) fn numbers(spot: &Spot) -> Vec<Guess> {
     let springs = channels::springs_at(scene, &[spot.worst]);
     let mut channels: Vec<Channel> = channels::of_springs(springs).collect();
     channels.push(Channel::One(Gravity, 0));
-    channels.extend(channels::of_particles(&[spot.worst]));
+    channels.extend(channels::of_particles(scene, &[spot.worst]));
     channels.extend(scene.wind.as_ref().map(|_| Channel::One(Wind, 0)));
     channels.push(Channel::Timestep);
     let fitted = channels.into_iter().filter_map(|channel| {
