@@ -152,7 +152,7 @@ impl Implicit {
     pub fn new(scheme: ImplicitScheme, settings: &Settings) -> Self {
         Self {
             scheme,
-            newton: Newton::new(settings.tolerance),
+            newton: Newton::new(*settings),
             u: Vec::new(),
             b: Vec::new(),
             y: Vec::new(),

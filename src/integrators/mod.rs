@@ -269,18 +269,27 @@ impl std::fmt::Debug for EnergyLaw {
 pub struct Settings {
     /// Relative residual at which Newton's iteration stops.
     pub tolerance: f64,
+    /// Newton's iterations after which a solve has failed. Quadratic convergence takes four to six, a path around
+    /// maxima of the incremental potential a few dozen, and one along a curved valley hundreds.
+    pub iterations: u32,
 }
 
 impl Settings {
     /// The settings with the tolerance that a scene states, if it states one.
     pub fn stated(tolerance: Option<f64>) -> Self {
-        tolerance.map_or_else(Self::default, |tolerance| Self { tolerance })
+        Self {
+            tolerance: tolerance.unwrap_or(Self::default().tolerance),
+            ..Self::default()
+        }
     }
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-12 }
+        Self {
+            tolerance: 1e-12,
+            iterations: 2_000,
+        }
     }
 }
 

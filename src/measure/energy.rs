@@ -55,6 +55,39 @@ pub enum Behaviour {
 }
 
 impl Behaviour {
+    pub const ALL: [Self; 7] = [
+        Self::Steady,
+        Self::Bounded,
+        Self::Unsteady,
+        Self::FewSamples,
+        Self::Drifting,
+        Self::Dissipating,
+        Self::Growing,
+    ];
+
+    /// What the word means, in a sentence.
+    pub fn says(self) -> &'static str {
+        match self {
+            Self::Steady => {
+                "E + dissipated - injected is never off by a millionth of the scene's energy S"
+            }
+            Self::Bounded => "its error comes and goes, with no trend that outweighs that",
+            Self::Unsteady => {
+                "it is off by more than the scene's energy S, and no trend says which way"
+            }
+            Self::FewSamples => "too few instants were seen to tell a trend",
+            Self::Drifting => {
+                "its error has a trend that outweighs its coming and going, up in part and down in part"
+            }
+            Self::Dissipating => {
+                "E + dissipated - injected falls: the method takes out energy that no damper took"
+            }
+            Self::Growing => {
+                "E + dissipated - injected rises: the method puts in energy that no force put in"
+            }
+        }
+    }
+
     pub fn word(self) -> &'static str {
         match self {
             Self::Steady => "steady",

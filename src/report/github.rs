@@ -34,13 +34,12 @@ pub fn summary<'a>(headers: impl Iterator<Item = &'a Header>) -> String {
     }
     let cell = |text: &str| super::words::escape(&super::words::one_line(text));
     let row = |(header, check): &(&Header, &Check)| {
-        let [file, id, subject, message] = [
-            &header.scene.file,
-            &check.id,
-            &check.subject,
-            &check.message,
-        ]
-        .map(|text| cell(text));
+        let found = match &check.cause {
+            Some(cause) => format!("{}; likely: {cause}", check.message),
+            None => check.message.clone(),
+        };
+        let [file, id, subject, message] =
+            [&header.scene.file, &check.id, &check.subject, &found].map(|text| cell(text));
         format!("| {file} | {id} | {subject} | {message} |\n")
     };
     let rows: String = told.iter().map(row).collect();

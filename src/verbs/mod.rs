@@ -18,6 +18,7 @@ pub mod list;
 pub mod merge;
 pub mod run;
 pub mod schema;
+pub mod scheme;
 pub mod series;
 pub mod session;
 pub mod show;

@@ -208,6 +208,17 @@ fn a_baseline_says_what_moved() {
     let (code, out, _) = check(&[&path, "--baseline", file]);
     assert_eq!(code, 1);
     assert!(out.contains("energy.initial_j was 6.5, is 6.25"), "{out}");
+    // Another scene has other runs.
+    fs::write(&baseline, &accepted).expect("written");
+    let text = fs::read_to_string(&path).expect("read");
+    fs::write(&path, text.replace("stiffness: 50", "stiffness: 51")).expect("written");
+    let (code, out, _) = check(&[&path, "--baseline", file]);
+    assert_eq!(code, 1, "{out}");
+    assert!(out.contains("the scene has changed"), "{out}");
+    // What it is called and expects is no part of them.
+    fs::write(&path, format!("name: other\n{text}")).expect("written");
+    assert_eq!(check(&[&path, "--baseline", file]).0, 0);
+    fs::write(&path, text).expect("written");
     // Never in CI unless forced.
     let mut command = springcheck();
     command
@@ -239,8 +250,13 @@ fn a_program_is_held_to_what_it_claims() {
         "a.yml",
         "externals: [mine]\nexpect: {mine: {energy.class: bounded}}\n",
     );
-    // Not given, it is a skip, or with --require-all a failure.
-    assert_eq!(check(&[&path]).0, 0);
+    // Not given, it is a skip that is said, or with --require-all a failure.
+    let (code, out, _) = check(&[&path]);
+    assert_eq!(code, 0);
+    assert!(
+        out.contains("1 skipped") && out.contains("skipped: expect mine"),
+        "{out}"
+    );
     assert_eq!(check(&[&path, "--require-all"]).0, 1);
     let program = folder.path().join("euler.awk");
     fs::write(&program, EULER).expect("written");
@@ -253,6 +269,26 @@ fn a_program_is_held_to_what_it_claims() {
         "mine=symplectic_euler",
     ]);
     assert_eq!(code, 0, "{out}{err}");
+    assert!(
+        out.contains("scheme mine: steps as symplectic_euler"),
+        "{out}"
+    );
+    // Without a claim its scheme is said, and not judged.
+    let (code, out, _) = check(&[&path, "--external", &mine]);
+    assert_eq!(code, 0, "{out}");
+    let said = "skipped: scheme mine: claims no scheme, and steps as symplectic_euler";
+    assert!(out.contains(said), "{out}");
+    // A step of its own, whatever it is told: the same errors at every step.
+    let stuck = format!("mine=awk -v h=0.01 -f {}", word(&program));
+    let (code, out, _) = check(&[
+        &path,
+        "--external",
+        &stuck,
+        "--claims",
+        "mine=symplectic_euler",
+    ]);
+    assert_eq!(code, 1, "{out}");
+    assert!(out.contains("does not take the timestep"), "{out}");
     let (code, out, _) = check(&[
         &path,
         "--external",
@@ -282,6 +318,65 @@ fn a_program_is_held_to_what_it_claims() {
         check(&[&path, "--external", &mine, "--claims", "mine=rk5"]).0,
         2
     );
+}
+
+/// Velocity Verlet whose half kicks take drag at the velocity before them, on the scene above with drag; `twice` is how
+/// often gravity acts.
+const DAMPED: &str =
+    "BEGIN { CONVFMT = OFMT = \"%.17g\"; x = 0.5; y = 0; v = 0; w = 0; print \"t,id,x,y,vx,vy\"
+n = int(2 / h + 0.5)
+for (i = 0; i <= n; i++) {
+  print i * h \",0,0,0,0,0\"; print i * h \",1,\" x \",\" y \",\" v \",\" w
+  v = v + h / 2 * (-50 * x - 0.7 * v); w = w + h / 2 * (-50 * y - 0.7 * w)
+  x = x + h * v; y = y + h * w
+  v = v + h / 2 * (-50 * x - 0.7 * v); w = w + h / 2 * (-50 * y - 0.7 * w) } }";
+
+#[cfg(unix)]
+#[test]
+fn a_scheme_that_is_no_integrator_here_can_be_claimed_by_a_program_of_a_plane() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), "a.yml", "");
+    let text = fs::read_to_string(&path).expect("read");
+    let damped = text.replace("mass: 1}", "mass: 1, drag: 0.7}");
+    assert_ne!(damped, text);
+    fs::write(&path, damped).expect("written");
+    let program = folder.path().join("verlet.awk");
+    fs::write(&program, DAMPED).expect("written");
+    let mine = format!("mine=awk -v h={{timestep}} -f {}", word(&program));
+    let claims = |scheme: &str| {
+        let claim = format!("mine={scheme}");
+        check(&[
+            &path,
+            "--external",
+            &mine,
+            "--axes",
+            "xy",
+            "--claims",
+            &claim,
+        ])
+    };
+    let explicit = "velocity_verlet_explicit_damping";
+    let (code, out, err) = claims(explicit);
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(
+        out.contains(&format!("scheme mine: steps as {explicit}")),
+        "{out}"
+    );
+    assert!(out.contains("no order is stated"), "{out}");
+    let (code, out, _) = claims("velocity_verlet");
+    assert_eq!(code, 1, "{out}");
+    assert!(
+        out.contains(&format!("steps as {explicit}, not as velocity_verlet")),
+        "{out}"
+    );
+    for wrong in ["velocity_verlet_explicit_dampin", "rk4/0", "rk4/x"] {
+        let (code, _, err) = claims(wrong);
+        assert_eq!(code, 2, "{wrong}: {err}");
+    }
+    // Without its axes its rows are refused, with the flag that reads them.
+    let (code, out, _) = check(&[&path, "--external", &mine]);
+    assert_eq!(code, 1, "{out}");
+    assert!(out.contains("--axes"), "{out}");
 }
 
 #[cfg(unix)]
@@ -338,7 +433,12 @@ fn every_check_is_explained_and_listed() {
         "springs",
         "midpoint_end_velocity",
         "linearized_implicit",
-    ] {
+        "bounded",
+        "few samples",
+    ]
+    .into_iter()
+    .chain(springcheck::verbs::scheme::ids())
+    {
         assert_eq!(output(&["explain", id]).0, 0, "{id}");
     }
     let (code, _, err) = output(&["explain", "ordr"]);

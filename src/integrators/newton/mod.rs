@@ -18,15 +18,12 @@ mod solver;
 #[cfg(test)]
 mod tests;
 
-use super::{StepError, fit, largest, worst_particle};
+use super::{Settings, StepError, fit, largest, worst_particle};
 use crate::physics::{Derivative, Jacobian, Linearization, Power, State, System};
 use matrix::Matrix;
 use search::{Merit, StageEquation, Trial};
 use solver::LinearSolver;
 
-/// Quadratic convergence takes four to six iterations, a path around maxima of Φ a few dozen, and one along a
-/// curved valley hundreds. With more the iteration does not converge.
-const MAX_ITERATIONS: u32 = 2_000;
 /// The number of roundings that a residual may consist of when it stops shrinking.
 const ROUNDING: f64 = 8.0;
 /// The largest relative residual of linear systems that are solved by iteration.
@@ -43,7 +40,7 @@ const GROWTH: f64 = 4.0;
 const SHIFTS: u32 = 30;
 
 pub(super) struct Newton {
-    tolerance: f64,
+    settings: Settings,
     solver: LinearSolver,
     matrix: Matrix,
     jacobian: Jacobian,
@@ -60,9 +57,9 @@ pub(super) struct Newton {
 }
 
 impl Newton {
-    pub(super) fn new(tolerance: f64) -> Self {
+    pub(super) fn new(settings: Settings) -> Self {
         Self {
-            tolerance,
+            settings,
             solver: LinearSolver::default(),
             matrix: Matrix::default(),
             jacobian: Jacobian::in_blocks(),
@@ -121,11 +118,11 @@ impl Newton {
         let mut before = f64::INFINITY;
         let mut merit = Merit::Potential;
         let mut full_step_below = LINEAR;
-        for iteration in 0..MAX_ITERATIONS {
+        for iteration in 0..self.settings.iterations {
             seen(&self.at);
             // A guess is not a solution, however loose the tolerance.
-            let solved =
-                self.at.norm == 0.0 || (iteration > 0 && self.at.relative <= self.tolerance);
+            let solved = self.at.norm == 0.0
+                || (iteration > 0 && self.at.relative <= self.settings.tolerance);
             // Newton squares a small residual in each iteration until only rounding is left.
             let stalled = self.at.relative >= 0.5 * before;
             if solved || (stalled && self.at.norm <= self.floor(stage)) {
@@ -136,7 +133,7 @@ impl Newton {
             // The linear solve is as precise as Newton's squaring of the residual needs, and no more precise
             // than the tolerance.
             let wanted = (0.1 * self.at.relative).min(FORCING);
-            let left = 0.25 * self.tolerance / self.at.relative;
+            let left = 0.25 * self.settings.tolerance / self.at.relative;
             let precise = wanted.max(left).min(0.1);
             let own = self.direction(stage, Linearization::Exact, precise)?;
             if !own {
@@ -159,14 +156,14 @@ impl Newton {
             }
             std::mem::swap(&mut self.at, &mut self.next);
         }
-        Err(self.not_converged(MAX_ITERATIONS))
+        Err(self.not_converged(self.settings.iterations))
     }
 
     fn not_converged(&self, iterations: u32) -> StepError {
         StepError::NotConverged {
             iterations,
             residual: self.at.relative,
-            tolerance: self.tolerance,
+            tolerance: self.settings.tolerance,
             particle: self.at.particle(),
         }
     }

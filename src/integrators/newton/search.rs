@@ -214,7 +214,7 @@ impl Newton {
                 alpha *= 0.1;
                 continue;
             }
-            if self.next.relative <= self.tolerance {
+            if self.next.relative <= self.settings.tolerance {
                 return true;
             }
             let line = line.get_or_insert_with(|| self.line(stage));

@@ -100,7 +100,7 @@ enum Rule {
 /// Φ at every iterate up to convergence, or the reason there was none.
 fn descent(scene: &Scene, h: f64, rule: Rule) -> Result<Vec<f64>, String> {
     with_stage(scene, h, |stage, start| {
-        let mut newton = Newton::new(1e-12);
+        let mut newton = Newton::new(Settings::default());
         let mut seen = Vec::new();
         if rule == Rule::Ours {
             newton
@@ -113,7 +113,7 @@ fn descent(scene: &Scene, h: f64, rule: Rule) -> Result<Vec<f64>, String> {
         }
         fit(&mut newton.d, start.v.len());
         newton.at.u.extend_from_slice(&start.v);
-        for _ in 0..MAX_ITERATIONS {
+        for _ in 0..Settings::default().iterations {
             newton.at.evaluate(stage);
             seen.push(incremental_potential(stage, &newton.at));
             if newton.at.relative <= 1e-12 {
@@ -193,7 +193,7 @@ fn the_incremental_potential_never_rises() {
 /// The velocities and iterations of a solve of the equation with a given linear algorithm.
 fn solved_by(scene: &Scene, h: f64, kind: Option<Algorithm>) -> Result<(Vec<f64>, u64), StepError> {
     with_stage(scene, h, |stage, start| {
-        let mut newton = Newton::new(1e-12);
+        let mut newton = Newton::new(Settings::default());
         newton.solver.forced = kind;
         newton.iterate(stage, &start.v, |_| {})?;
         Ok((newton.at.u.clone(), newton.solves))
@@ -247,7 +247,7 @@ fn a_hundred_thousand_unknowns_are_solved_either_way() {
 /// A cloth's matrix at rest, k in N/m, masses of 10 g, h = 5 ms.
 fn matrix_of(n: usize, stiffness: f64) -> (Matrix, Vec<f64>) {
     with_stage(&cloth(n, stiffness, 0.01), 5e-3, |stage, start| {
-        let mut newton = Newton::new(1e-12);
+        let mut newton = Newton::new(Settings::default());
         newton.at.u.extend_from_slice(&start.v);
         newton.at.evaluate(stage);
         newton.assemble(stage, Linearization::Exact);
@@ -306,7 +306,7 @@ fn an_indefinite_matrix_is_refused() {
     let scene = chain(10.0, 1e3);
     for kind in ALL {
         with_stage(&scene, 0.1, |stage, start| {
-            let mut newton = Newton::new(1e-12);
+            let mut newton = Newton::new(Settings::default());
             newton.at.u.extend_from_slice(&start.v);
             newton.at.evaluate(stage);
             newton.solver.forced = Some(kind);

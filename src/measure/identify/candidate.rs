@@ -31,6 +31,8 @@ pub struct Candidate {
     step: Box<Step>,
     /// How the step is applied, where not to all particles at once.
     around: Option<Around>,
+    /// Whether it steps each particle alone, which takes an evaluation of all forces for each.
+    alone: bool,
     /// The step it begins with, where that is another.
     first: Option<Box<Step>>,
     scaling: Option<Scaling>,
@@ -81,6 +83,7 @@ impl Candidate {
             forces: Arc::clone(forces),
             step: Box::new(step),
             around: None,
+            alone: false,
             first: None,
             scaling: None,
         }
@@ -162,6 +165,15 @@ impl Candidate {
         Self { around, ..self }
     }
 
+    /// The same, one particle after the other.
+    pub(super) fn each_alone(self, around: Around) -> Self {
+        Self {
+            around: Some(around),
+            alone: true,
+            ..self
+        }
+    }
+
     /// The same, begun with another step.
     pub(super) fn begun(self, first: Option<Step>) -> Self {
         let first = first.map(Box::new);
@@ -193,6 +205,11 @@ impl Candidate {
     /// Whether its steps solve linear systems, which costs as much as many that do not.
     pub fn solves(&self) -> bool {
         self.step.solves()
+    }
+
+    /// Whether each particle takes its step alone.
+    pub(super) fn steps_each_alone(&self) -> bool {
+        self.alone
     }
 
     /// Whether its steps end when a residual is small, not when a formula is through.

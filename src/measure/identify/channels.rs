@@ -21,6 +21,8 @@ pub(super) enum Channel {
     All(Number),
     /// Multiplies it in one; where the scene has 0, the program has so many of its unit more than 1.
     One(Number, usize),
+    /// Multiplies all forces of one spring that has several.
+    Spring(usize),
     /// Gives all members one number, so many times their mean.
     Alike(Number),
     /// Turns gravity, or the wind, to an axis, and multiplies it.
@@ -30,7 +32,10 @@ pub(super) enum Channel {
     /// Multiplies velocities once a step.
     Velocity(ScaledAt),
 }
-use Channel::{Alike, All, Along, One, Timestep, Velocity};
+use Channel::{Alike, All, Along, One, Spring, Timestep, Velocity};
+
+/// The numbers that a spring's forces are linear in.
+const FORCES: [Number; 3] = [Number::Stiffness, Number::Cubic, Number::Damping];
 
 /// The number that a known mistake changes, if it is one.
 fn named(what: &str) -> Option<Number> {
@@ -100,7 +105,10 @@ pub(super) fn of_springs(springs: Vec<usize>) -> impl Iterator<Item = Channel> {
         Number::Damping,
         Number::Cubic,
     ];
-    let of = move |id| numbers.map(|number| One(number, id));
+    let of = move |id| {
+        let each = numbers.map(|number| One(number, id));
+        std::iter::once(Spring(id)).chain(each)
+    };
     springs.into_iter().flat_map(of)
 }
 
@@ -123,6 +131,7 @@ impl Channel {
         match self {
             All(number) | Alike(number) => number.is_in(scene),
             One(number, at) => number.value(scene, at) != 0.0,
+            Spring(id) => forces(scene, id) > 1,
             Along(number, axis) => {
                 let along = match (number, &scene.wind) {
                     (Number::Wind, Some(wind)) => {
@@ -146,6 +155,11 @@ impl Channel {
         match self {
             All(number) => number.change(scene, None, |value| number.times(value, factor)),
             One(number, at) => number.change(scene, Some(at), |value| found(number, value, factor)),
+            Spring(id) => {
+                for number in FORCES {
+                    number.change(scene, Some(id), |value| value * factor);
+                }
+            }
             Alike(number) => {
                 let value = number.times(number.mean(scene), factor);
                 number.change(scene, None, |_| value);
@@ -181,6 +195,7 @@ impl Channel {
         let (what, place) = match self {
             All(number) => (number.what(), None),
             One(number, at) => (number.what(), Some(member(number, at))),
+            Spring(id) => ("springs", Some(format!("spring {id}"))),
             Alike(number) => (number.what(), Some("all alike".to_owned())),
             Along(Number::Gravity, axis) => ("axis", Some(letter(axis))),
             Along(number, axis) => (number.what(), Some(letter(axis))),
@@ -193,6 +208,10 @@ impl Channel {
         };
         let sentence = match self {
             All(number) => number.sentence(scene, factor),
+            One(Number::Stiffness, id) if factor == 0.0 && forces(scene, id) == 1 => {
+                of_spring(scene, id, factor)
+            }
+            Spring(id) => of_spring(scene, id, factor),
             One(number, at) => {
                 format!(
                     "{} is {} the scene's",
@@ -253,6 +272,24 @@ impl Channel {
         };
         let (wrong, right) = (digits(wrong, 4), digits(right, 4));
         (wrong != right).then(|| format!("{name} is {wrong} {unit}, not {right}"))
+    }
+}
+
+/// How many forces a spring has: its linear and cubic pull, and its damper.
+fn forces(scene: &Scene, id: usize) -> usize {
+    let there = FORCES
+        .iter()
+        .filter(|number| number.value(scene, id) != 0.0);
+    there.count()
+}
+
+/// What is said of a program that has so many times the forces of one spring.
+fn of_spring(scene: &Scene, id: usize, factor: f64) -> String {
+    let spring = spring(scene, id);
+    match factor {
+        0.0 => format!("{spring} is missing"),
+        2.0 => format!("{spring} acts twice"),
+        _ => format!("{spring} acts with {} its force", times(factor)),
     }
 }
 

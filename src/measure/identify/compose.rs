@@ -16,7 +16,7 @@ use crate::integrators::{
 use crate::physics::{ForceKinds, ParticleSystem, State, System};
 use crate::scene::{Magnetic, Particle, Scene};
 use crate::trajectory::Rows;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 type Stepped = Result<(), StepError>;
 
@@ -252,7 +252,7 @@ pub fn composed(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
     }
     for (id, says, around) in ORDERS {
         let single = |step, name| {
-            let candidate = Candidate::new(&forces, step, name).around(Some(around));
+            let candidate = Candidate::new(&forces, step, name).each_alone(around);
             candidate.named(format!("{id}({name})"), says)
         };
         let methods = explicit(system.kinds());
@@ -262,30 +262,29 @@ pub fn composed(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
     all
 }
 
-/// The ids of all composed schemes that a scene may have.
-pub fn ids() -> Vec<String> {
-    // Drag and a magnetic field make room for all of them, and Boris' method has a place without drag alone.
-    let charged = |drag| Scene {
-        particles: vec![Particle {
-            drag,
+/// The composed schemes that a scene may have: id, and what it does.
+pub fn composed_schemes() -> &'static [(String, String)] {
+    static ALL: LazyLock<Vec<(String, String)>> = LazyLock::new(|| {
+        // Drag and a magnetic field make room for all of them.
+        let particle = Particle {
+            drag: 1.0,
             charge: 1.0,
             ..Particle::default()
-        }],
-        magnetic: Some(Magnetic {
-            field: [0.0, 0.0, 1.0],
-        }),
-        ..Scene::default()
-    };
-    let mut ids: Vec<String> = Vec::new();
-    for scene in [charged(1.0), charged(0.0)] {
-        let all = composed(&scene, &ParticleSystem::new(&scene));
-        for id in all.into_iter().map(|candidate| candidate.id) {
-            if !ids.contains(&id) {
-                ids.push(id);
-            }
-        }
-    }
-    ids
+        };
+        let scene = Scene {
+            particles: vec![particle],
+            magnetic: Some(Magnetic {
+                field: [0.0, 0.0, 1.0],
+            }),
+            ..Scene::default()
+        };
+        let all = composed(&scene, &ParticleSystem::new(&scene)).into_iter();
+        let named = all.map(|scheme| (scheme.id, scheme.says.unwrap_or_default().into_owned()));
+        let mut named: Vec<(String, String)> = named.collect();
+        named.dedup_by(|a, b| a.0 == b.0);
+        named
+    });
+    &ALL
 }
 
 /// The methods whose steps solve nothing, and are their own under forces of these kinds.

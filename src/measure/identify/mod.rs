@@ -30,7 +30,7 @@ mod words;
 
 pub use altered::{Around, OneStep};
 pub use candidate::{Candidate, Factor, Forces, Replayer, ScaledAt, Scaling};
-pub use compose::{composed, ids as composed_ids};
+pub use compose::{composed, composed_schemes};
 
 pub use explain::TRUTH;
 pub use fault::{first_departure, first_fault, moved_anchor};

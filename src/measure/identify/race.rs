@@ -100,7 +100,7 @@ impl Race<'_> {
         let (replay, probes, sample) = (self.replay, self.probes, self.sample);
         let kept = group.map_or(0, |_| self.budget / 2);
         // No single one may take what many could.
-        let most = group.map_or(self.budget, |_| self.budget / 20);
+        let most = group.map_or(self.budget, |_| self.budget / 8);
         let tried = self.afforded(new, group, probes, most, kept);
         let near: Vec<Vec<Defect>> = tried
             .par_iter()

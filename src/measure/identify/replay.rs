@@ -62,6 +62,9 @@ fn largest_ratio(a: &[f64], b: &[f64]) -> f64 {
 const DIFFERENCED: usize = 8;
 /// A velocity is found from positions in about this many tries.
 const FIND: u64 = 8;
+/// Newton's iterations that a replay may take. A wrong scheme, or one of altered forces, may have no solution near the
+/// rows, and would take ten times what all right ones do.
+const ITERATIONS: u32 = 100;
 /// A step that solves costs as much as this many that do not: 20 to 100, on a chain of 20.
 const SOLVE: u64 = 100;
 
@@ -115,7 +118,10 @@ impl<'a> Replay<'a> {
         let lengths = scene.springs.iter().map(|s| s.rest_length);
         shaped.then(|| Self {
             rows,
-            settings,
+            settings: Settings {
+                iterations: settings.iterations.min(ITERATIONS),
+                ..settings
+            },
             fixed: fixed.map(|(x, w)| (*w == 0.0).then_some(*x)).collect(),
             length: lengths.fold(0.0, f64::max),
             differenced: is_differenced(rows),
@@ -379,6 +385,8 @@ impl<'a> Replay<'a> {
         let particles = (self.rows.dim / 3).max(1) as u64;
         let each = if candidate.solves() {
             solve_effort(particles)
+        } else if candidate.steps_each_alone() {
+            particles
         } else {
             1
         };

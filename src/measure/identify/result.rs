@@ -46,10 +46,15 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Whether rounding explains it as this method at its own step, by name or among equals.
-    pub fn is(&self, method: &str) -> bool {
-        let named = self.method == method && self.substeps == 1;
-        let listed = self.equivalent.iter().any(|id| id == method);
+    /// The id, and after a slash the substeps if there are several.
+    pub fn label(&self) -> String {
+        super::candidate::label(&self.method, self.substeps)
+    }
+
+    /// Whether rounding explains it as the scheme of this label, by name or among equals.
+    pub fn is(&self, label: &str) -> bool {
+        let named = self.label() == label;
+        let listed = self.equivalent.iter().any(|id| id == label);
         (named || listed) && self.undecided != Some(Undecided::Near)
     }
 }

@@ -24,7 +24,7 @@ const MIN_SIZE: [f64; 2] = [240.0, 160.0];
 #[derive(Default)]
 pub struct Chart {
     pub title: String,
-    /// The entries below the title, in as many lines as they need.
+    /// The entries below the title, in as many lines as they need. One whose line or area is in no panel is not drawn.
     pub legend: Vec<LegendEntry>,
     /// The titles of x and y: at each panel of a single column, else once for all panels.
     pub titles: [String; 2],
@@ -62,6 +62,12 @@ pub struct Panel {
 impl Chart {
     /// The SVG file.
     pub fn draw(mut self) -> String {
+        self.legend
+            .retain(|key| self.panels.iter().any(|panel| panel.shows(key)));
+        for panel in &mut self.panels {
+            let keys = std::mem::take(&mut panel.keys);
+            panel.keys = keys.into_iter().filter(|key| panel.shows(key)).collect();
+        }
         let mut canvas = Canvas::default();
         canvas.text([LEFT, 24.0], Align::Start, 15.0, INK, &self.title);
         let mut top = self.legend(&mut canvas);
@@ -173,6 +179,19 @@ impl Panel {
             marks,
             keys: Vec::new(),
         }
+    }
+
+    /// Whether it has a mark of this look. A symbol stands for marks of any colour: who names it has seen to it.
+    fn shows(&self, key: &LegendEntry) -> bool {
+        self.marks.iter().any(|mark| match (key.look, mark) {
+            (Look::Remark | Look::Symbol(_), _) => true,
+            (Look::Line(stroke) | Look::Marked(stroke, _), Mark::Line(line)) => {
+                let alike = [line.stroke.colour, line.stroke.dash] == [stroke.colour, stroke.dash];
+                alike && !line.points.is_empty()
+            }
+            (Look::Fill(colour), Mark::Area(of, areas)) => *of == colour && !areas.is_empty(),
+            _ => false,
+        })
     }
 
     /// All labels beside the panel.
@@ -288,4 +307,33 @@ fn spread(wishes: &[f64], top: f64, bottom: f64) -> Vec<f64> {
         limit = *place - PITCH;
     }
     places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::canvas::Stroke;
+    use super::*;
+
+    #[test]
+    fn a_legend_names_nothing_that_is_not_drawn() {
+        let stroke = |colour| Stroke::new(colour, "", 1.5);
+        let axes = [ChartAxis::linear([0.0, 1.0]); 2];
+        let marks = vec![
+            Mark::line([[0.0, 0.0], [1.0, 1.0]], stroke("#111111")),
+            Mark::line([], stroke("#222222")),
+            Mark::Area("#333333", vec![[[0.0, 0.0], [1.0, 1.0]]]),
+            Mark::Area("#444444", Vec::new()),
+        ];
+        let lines = ["#111111", "#222222"].map(|c| LegendEntry::new(c, Look::Line(stroke(c))));
+        let areas = ["#333333", "#444444"].map(|c| LegendEntry::new(c, Look::Fill(c)));
+        let chart = Chart {
+            legend: lines.into_iter().chain(areas).collect(),
+            panels: vec![Panel::new(String::new(), 100.0, axes, marks)],
+            ..Chart::default()
+        };
+        let svg = chart.draw();
+        let named = |text: &str| svg.contains(&format!(">{text}<"));
+        let shown = ["#111111", "#222222", "#333333", "#444444"].map(named);
+        assert_eq!(shown, [true, false, true, false]);
+    }
 }

@@ -57,7 +57,7 @@ pub(super) const HALF: &str = "half a file? The program that wrote it may have s
 
 /// The help for data of a plane where no plane was named.
 pub(super) const PLANE: &str =
-    "data of a plane? `compare --axes xy` (or xz, yz) says which axes of the scene it has";
+    "data of a plane? `--axes xy` (or xz, yz) says which axes of the scene it has";
 
 /// The help for three coordinates where a plane was named.
 pub(super) const SPACE: &str = "there are three coordinates: leave --axes out";

@@ -6,16 +6,17 @@ use crate::report::github;
 use crate::report::json::Tool;
 use crate::scene::{Names, Scene};
 use crate::solvers::Solver;
-use crate::trajectory::{self, Expected};
+use crate::trajectory::{self, Plane};
 use crate::verbs::Report;
-use crate::verbs::cli::external::{self, External};
+use crate::verbs::cli::external::{self, External, Terms};
 use crate::verbs::cli::flags::{self, Time};
 use crate::verbs::cli::interrupt;
 use crate::verbs::cli::note::note;
 use crate::verbs::cli::output;
 use crate::verbs::cli::place::put;
 use crate::verbs::cli::terminal::{self, Terminal};
-use crate::verbs::compare::{Recorded, method, read};
+use crate::verbs::compare::{Recorded, read};
+use crate::verbs::run::Choice;
 use anyhow::{Context, bail};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -37,12 +38,17 @@ pub struct Args {
     #[arg(long, value_name = "TIME", default_value = "60s")]
     external_timeout: Time,
 
+    /// The axes that two-dimensional rows of programs have. Default: rows have all three.
+    #[arg(long, value_parser = flags::plane(), value_name = "AXES")]
+    axes: Option<Plane>,
+
     /// A trajectory that some program computed of the one scene that is checked; repeatable.
     #[arg(long, value_name = "NAME=FILE")]
     trajectory: Vec<Named<PathBuf>>,
 
-    /// The integrator that a program claims to be, such as mine=symplectic_euler; repeatable.
-    #[arg(long, value_name = "NAME=INTEGRATOR")]
+    /// The scheme that a program claims to be, such as mine=symplectic_euler, or any other that `compare` names;
+    /// repeatable.
+    #[arg(long, value_name = "NAME=SCHEME")]
     claims: Vec<Named<String>>,
 
     /// A program of the scenes' `externals` that is not given is a failure, not a skip.
@@ -129,6 +135,10 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let scenes: Vec<(&PathBuf, Scene)> = scenes.collect::<anyhow::Result<_>>()?;
     let claims = claimed(args)?;
     let trajectories = trajectories(args, &scenes)?;
+    let choices = scenes
+        .iter()
+        .map(|(path, scene)| choice(args, scene, path, &trajectories));
+    let choices: Vec<Choice> = choices.collect::<anyhow::Result<_>>()?;
     let baseline = args.baseline.as_deref().map(baseline).transpose()?;
     let accepted = match args.accept.as_deref() {
         Some(path) if path.exists() => Some(self::baseline(path)?),
@@ -139,11 +149,11 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let by_line = args.format == "jsonl";
     let rendered = |reports: &[Report]| output::rendered(&args.format, &Tool::this(), reports);
     let mut reports = Vec::new();
-    for (at, (path, scene)) in scenes.iter().enumerate() {
+    for (at, ((_, scene), choice)) in scenes.iter().zip(&choices).enumerate() {
         interrupt::unfinished(&files[at..]);
-        let mut report = one(args, quiet, scene, path, &trajectories, &claims)?;
+        let mut report = one(args, quiet, scene, choice, &claims)?;
         if let Some(baseline) = &baseline {
-            report.header.checks.extend(baseline.check(&report));
+            report.header.checks.extend(baseline.check(&report, scene));
         }
         if human {
             let text = text::human(&report, output::columns());
@@ -162,13 +172,17 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     for Named { name, value } in &args.write {
         let text = output::rendered(name, &Tool::this(), &reports)?;
+        // A file has no colours.
+        let text = anstream::adapter::strip_str(&text).to_string();
         put(value, text.as_bytes())?;
     }
     if args.format == "github" {
+        // A job's log shows a line that is no command as it is.
+        output::print(&format!("{}\n", text::closing(&reports)))?;
         summarise(&reports)?;
     }
     if let (Some(path), Some(mut accepted)) = (&args.accept, accepted) {
-        accepted.accept(&reports);
+        accepted.accept(reports.iter().zip(scenes.iter().map(|(_, scene)| scene)));
         put(path, accepted.text().as_bytes())?;
     }
     Ok(ExitCode::from(code(&reports, args.strict)))
@@ -207,7 +221,7 @@ fn names(args: &Args) -> anyhow::Result<Names> {
     Ok(names)
 }
 
-/// The methods that programs claim to be.
+/// The schemes that programs claim to be.
 fn claimed(args: &Args) -> anyhow::Result<Vec<Claim>> {
     let claim = |Named { name, value }: &Named<String>| -> anyhow::Result<Claim> {
         let command = args.external.iter().any(|e| e.name() == name);
@@ -216,7 +230,8 @@ fn claimed(args: &Args) -> anyhow::Result<Vec<Claim>> {
         }
         Ok(Claim {
             name: name.clone(),
-            method: method(value)
+            scheme: value
+                .parse()
                 .map_err(|why| anyhow::anyhow!("--claims {name}={value}: {why}"))?,
             repeats: command,
         })
@@ -235,7 +250,7 @@ fn trajectories(args: &Args, scenes: &[(&PathBuf, Scene)]) -> anyhow::Result<Vec
             scenes.len()
         );
     };
-    let expected = Expected::new(scene, scene.solver.timestep);
+    let expected = flags::expected(scene, scene.solver.timestep, args.axes)?;
     let solver = |Named { name, value }: &Named<PathBuf>| -> anyhow::Result<Solver> {
         let file = value.display().to_string();
         let bytes = read(value).with_context(|| format!("cannot read {file}"))?;
@@ -251,22 +266,32 @@ fn baseline(path: &Path) -> anyhow::Result<Baseline> {
     Baseline::read(&text).with_context(name)
 }
 
+/// The solvers of a scene's gate, with the programs of this command.
+fn choice(
+    args: &Args,
+    scene: &Scene,
+    path: &Path,
+    trajectories: &[Solver],
+) -> anyhow::Result<Choice> {
+    let mut choice = Gate::choice(scene);
+    let terms = Terms {
+        timeout: args.external_timeout,
+        axes: args.axes,
+    };
+    let programs = external::chosen(&args.external, scene, path, terms)?;
+    choice.solvers.extend(programs);
+    choice.solvers.extend(trajectories.iter().cloned());
+    Ok(choice)
+}
+
 fn one(
     args: &Args,
     quiet: bool,
     scene: &Scene,
-    path: &Path,
-    trajectories: &[Solver],
+    choice: &Choice,
     claims: &[Claim],
 ) -> anyhow::Result<Report> {
-    let mut choice = Gate::choice(scene);
-    choice.solvers.extend(external::chosen(
-        &args.external,
-        path,
-        args.external_timeout,
-    ));
-    choice.solvers.extend(trajectories.iter().cloned());
-    let mut gate = Gate::of(scene, &choice);
+    let mut gate = Gate::of(scene, choice);
     gate.claims = claims.to_vec();
     gate.require_all = args.require_all;
     let terminal = Terminal::new(quiet);

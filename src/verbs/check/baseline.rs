@@ -2,10 +2,12 @@
 
 use super::laws;
 use crate::measure::{Check, CheckStatus};
+use crate::scene::{self, Scene};
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
 /// The layout of the file.
@@ -21,6 +23,9 @@ const LISTED: usize = 3;
 pub struct Baseline {
     schema_version: u64,
     scenes: BTreeMap<String, Engines>,
+    /// What each scene was, as [`digest`].
+    #[serde(default)]
+    digests: BTreeMap<String, String>,
 }
 
 type Engines = BTreeMap<String, Figures>;
@@ -40,6 +45,7 @@ impl Default for Baseline {
         Self {
             schema_version: SCHEMA_VERSION,
             scenes: BTreeMap::new(),
+            digests: BTreeMap::new(),
         }
     }
 }
@@ -56,6 +62,22 @@ const KEPT: &[&str] = &[
     "identified.method",
     "identified.substeps",
 ];
+
+/// The SHA-256 of all that decides a scene's runs, in hexadecimal digits: what it is called, shows and expects does not.
+fn digest(scene: &Scene) -> String {
+    let mut bare = Scene {
+        name: String::new(),
+        description: None,
+        plot: None,
+        externals: Vec::new(),
+        expect: Vec::new(),
+        skip: Vec::new(),
+        ..scene.clone()
+    };
+    bare.file.clear();
+    let digest = Sha256::digest(scene::yaml(&bare));
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
 
 fn figures(outcome: &Outcome) -> Figures {
     let mut found = Figures::new();
@@ -127,8 +149,8 @@ impl Baseline {
 
     /// Takes in the figures of these runs. Numbers that are the same stay as they were, digit for digit, and so do
     /// scenes that did not run.
-    pub fn accept(&mut self, reports: &[Report]) {
-        for report in reports {
+    pub fn accept<'a>(&mut self, runs: impl Iterator<Item = (&'a Report, &'a Scene)>) {
+        for (report, scene) in runs {
             let mut engines = engines(report);
             let before = self
                 .scenes
@@ -144,13 +166,14 @@ impl Baseline {
                     }
                 }
             }
-            self.scenes
-                .insert(report.header.scene.file.clone(), engines);
+            let file = &report.header.scene.file;
+            self.scenes.insert(file.clone(), engines);
+            self.digests.insert(file.clone(), digest(scene));
         }
     }
 
     /// A check for each engine of a scene: what moved, and by how much.
-    pub fn check(&self, report: &Report) -> Vec<Check> {
+    pub fn check(&self, report: &Report, scene: &Scene) -> Vec<Check> {
         let Some(row) = laws::find("baseline") else {
             return Vec::new();
         };
@@ -158,6 +181,12 @@ impl Baseline {
             let message = "the baseline has no such scene: --accept takes it in".to_owned();
             return vec![row.with("scene", CheckStatus::Inconclusive, message)];
         };
+        let accepted = self.digests.get(&report.header.scene.file);
+        if accepted.is_some_and(|accepted| *accepted != digest(scene)) {
+            let message =
+                "the scene has changed since the run was accepted: other runs are not comparable";
+            return vec![row.of("scene", false, message.to_owned())];
+        }
         let now = engines(report);
         let mut names: Vec<&String> = before.keys().chain(now.keys()).collect();
         names.sort();
@@ -191,6 +220,13 @@ fn moved(before: &Figures, now: &Figures) -> Vec<String> {
     let mut keys: Vec<&String> = before.keys().chain(now.keys()).collect();
     keys.sort();
     keys.dedup();
+    // Words say more than numbers: what a run is, and whether it ended.
+    let words = |key: &&String| {
+        !now.get(*key)
+            .or(before.get(*key))
+            .is_some_and(Value::is_string)
+    };
+    keys.sort_by_key(words);
     let change = |key: &&String| match (before.get(*key), now.get(*key)) {
         (Some(before), Some(now)) if same(before, now) => None,
         (Some(before), Some(now)) => {

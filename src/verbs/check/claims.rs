@@ -1,27 +1,31 @@
-//! What another program claims to be: it is held to that method's row, its order over three steps among it.
+//! What another program claims to be: it is held to that scheme, and to the facts of an integrator's row, its order
+//! over three steps among them.
 
-use super::{Gate, laws};
-use crate::integrators::Method;
+use super::Gate;
+use super::laws::CLAIMED_ORDER;
 use crate::measure::{Check, CheckStatus};
 use crate::solvers::{Solver, Status};
 use crate::trajectory::SaveError;
 use crate::truth::TruthKind;
 use crate::verbs::Report;
 use crate::verbs::run::{Choice, Expectations, Orders, Plan};
+use crate::verbs::scheme::Scheme;
 use crate::verbs::session::Session;
 
-/// A program, or an integrator of the caller's own, and the method that it claims to be.
+/// A program, or an integrator of the caller's own, and the scheme that it claims to be.
 #[derive(Debug, Clone)]
 pub struct Claim {
     /// The solver's id.
     pub name: String,
-    pub method: &'static Method,
+    pub scheme: Scheme,
     /// Whether it can run again at other steps; a recorded trajectory cannot.
     pub repeats: bool,
 }
 
 /// Slopes of three errors may differ by this, and lie below the order by as much: they are not extrapolated.
 const TOLERANCE: f64 = 0.3;
+/// Slopes this small are of errors that do not depend on the step.
+const SAME: f64 = 1e-3;
 
 /// A check of the order that each claim shows over h, h/2 and h/4.
 pub(super) fn orders(
@@ -66,16 +70,7 @@ pub(super) fn orders(
 }
 
 fn order(claim: &Claim, errors: [Option<f64>; 3], bar: f64, damped: bool) -> Check {
-    let stated = if damped {
-        claim.method.order_damped
-    } else {
-        claim.method.order
-    };
-    let row = laws::find("claimed-order");
-    let with = |status, message: String| match row {
-        Some(row) => row.with(&claim.name, status, message),
-        None => Check::default(),
-    };
+    let with = |status, message: String| CLAIMED_ORDER.with(&claim.name, status, message);
     let [Some(a), Some(b), Some(c)] = errors else {
         let message = "it did not run at h, h/2 and h/4".to_owned();
         return with(CheckStatus::Fail, message);
@@ -88,11 +83,24 @@ fn order(claim: &Claim, errors: [Option<f64>; 3], bar: f64, damped: bool) -> Che
     }
     let slopes = [(a / b).log2(), (b / c).log2()];
     let settled = (slopes[0] - slopes[1]).abs() <= TOLERANCE;
+    let errors = format!("errors of {a:.2e}, {b:.2e} and {c:.2e} m at h, h/2 and h/4");
+    let label = &claim.scheme.label;
+    let Some(method) = claim.scheme.method else {
+        let message = format!(
+            "{errors} fall as h^{:.2}; of {label} no order is stated",
+            slopes[1]
+        );
+        return with(CheckStatus::Skip, message);
+    };
+    let stated = match damped {
+        true => method.order_damped,
+        false => method.order,
+    };
     let least = f64::from(stated) - TOLERANCE;
     let holds = slopes[1] >= least;
     let message = format!(
-        "errors of {a:.2e}, {b:.2e} and {c:.2e} m at h, h/2 and h/4 fall as h^{:.2}; {} states {stated}",
-        slopes[1], claim.method.id
+        "{errors} fall as h^{:.2}; {label} states {stated}",
+        slopes[1]
     );
     let status = match (holds, settled) {
         (true, _) => CheckStatus::Pass,
@@ -100,7 +108,12 @@ fn order(claim: &Claim, errors: [Option<f64>; 3], bar: f64, damped: bool) -> Che
         (false, false) => CheckStatus::Inconclusive,
     };
     let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+    // The same rows whatever the step: as close as two roundings of a number that is written in few digits.
+    let same = slopes.iter().all(|slope| slope.abs() < SAME);
+    let cause = "its errors are the same at every step: it does not take the timestep that it is given, \
+                 {timestep} in the command or `timestep` in {scene_json}";
     Check {
+        cause: Some(cause.to_owned()).filter(|_| !holds && same),
         measured: finite(slopes[1]),
         bound: Some(least),
         ..with(status, message)

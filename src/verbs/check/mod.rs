@@ -17,12 +17,12 @@ pub use claims::Claim;
 pub use laws::{CHECKS, Row, find};
 pub use text::{closing, human};
 
-use crate::integrators::Method;
 use crate::measure::{Check, CheckStatus, twin};
 use crate::scene::Scene;
 use crate::solvers::{Solver, SolverKind};
 use crate::trajectory::SaveError;
 use crate::verbs::run::{self, Case, Choice, Expectations, Outcome, Plan};
+use crate::verbs::scheme::Scheme;
 use crate::verbs::session::Session;
 use crate::verbs::{Body, Report, SeriesState};
 use laws::Ran;
@@ -77,15 +77,11 @@ impl<'a> Gate<'a> {
         choice
     }
 
-    /// The method that a case is, or claims to be.
-    fn method(&self, case: &Case) -> Option<&'static Method> {
-        let claimed = || {
-            self.claims
-                .iter()
-                .find(|claim| claim.name == case.solver.id)
-        };
-        let own = case.solver.as_method();
-        own.or_else(|| claimed().map(|claim| claim.method))
+    /// The scheme that a case is, or claims to be.
+    fn scheme(&self, case: &Case) -> Option<Scheme> {
+        let own = case.solver.as_method().map(Scheme::from);
+        let is = |claim: &&Claim| claim.name == case.solver.id;
+        own.or_else(|| Some(self.claims.iter().find(is)?.scheme.clone()))
     }
 
     /// Whether the scene expects something of an engine under this key.
@@ -143,9 +139,12 @@ impl<'a> Gate<'a> {
             check.status = CheckStatus::Skip;
         }
         let scene = self.plan.scene;
-        if self.require_all && check.id == run::expect::ID && check.status == CheckStatus::Skip {
-            let listed = |name: &String| check.subject == *name;
-            if scene.externals.iter().any(listed) {
+        let listed = |name: &String| check.subject == *name;
+        let missing = check.id == run::expect::ID && check.status == CheckStatus::Skip;
+        if missing && scene.externals.iter().any(listed) {
+            let name = &check.subject;
+            check.message = format!("it did not run: `--external {name}=COMMAND` says what it is");
+            if self.require_all {
                 check.status = CheckStatus::Fail;
             }
         }

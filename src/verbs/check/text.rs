@@ -1,12 +1,14 @@
 //! The gate for people: a line a scene, and details only of what needs them.
 
 use super::{Verdict, laws, verdict};
+use crate::integrators;
 use crate::measure::{Check, CheckStatus};
 use crate::report::terminal::{Tone, mark, paint, wrap};
 use crate::report::words::{one_line, plural, short};
-use crate::verbs::Report;
+use crate::verbs::{Report, run};
 
-/// A line for the scene, and below it what failed, what is open, and what its file skips, in so many columns.
+/// A line for the scene, and below it what failed, what is open, what is skipped though somebody asked for it, and what
+/// other programs were found to be, in so many columns.
 pub fn human(report: &Report, columns: usize) -> String {
     let checks = &report.header.checks;
     let count = |status| checks.iter().filter(|c| c.status == status).count() as u64;
@@ -19,11 +21,18 @@ pub fn human(report: &Report, columns: usize) -> String {
     let made =
         count(CheckStatus::Pass) + count(CheckStatus::Fail) + count(CheckStatus::Inconclusive);
     let wrong = count(CheckStatus::Fail);
-    let facts = if wrong > 0 {
+    let mut facts = if wrong > 0 {
         format!("{wrong} of {} failed", plural(made, "check"))
     } else {
         plural(made, "check")
     };
+    let asked = checks
+        .iter()
+        .filter(|c| c.status == CheckStatus::Skip && is_asked(c));
+    match asked.count() {
+        0 => {}
+        skipped => facts += &format!(", {skipped} skipped"),
+    }
     let mut lines = vec![format!(
         "{}  {}  {facts}",
         mark(tone, word),
@@ -31,8 +40,8 @@ pub fn human(report: &Report, columns: usize) -> String {
     )];
     let told = |check: &&Check| match check.status {
         CheckStatus::Fail | CheckStatus::Inconclusive => true,
-        CheckStatus::Skip => skipped_by_file(check),
-        CheckStatus::Pass => false,
+        CheckStatus::Skip => is_asked(check),
+        CheckStatus::Pass => is_claim(check),
     };
     let told: Vec<&Check> = checks.iter().filter(told).collect();
     for group in told.chunk_by(|a, b| a.id == b.id && a.derivation == b.derivation) {
@@ -41,18 +50,33 @@ pub fn human(report: &Report, columns: usize) -> String {
     paint(&(lines.join("\n") + "\n"))
 }
 
-fn skipped_by_file(check: &Check) -> bool {
+/// Whether the scene's file or the command line asked for what is skipped.
+fn is_asked(check: &Check) -> bool {
     let key = check.key.as_deref();
-    check.status == CheckStatus::Skip && key.is_some_and(|key| key.starts_with("expect.skip."))
+    let by_file = key.is_some_and(|key| key.starts_with("expect.skip."));
+    by_file || check.id == run::expect::ID || is_claim(check)
+}
+
+/// Whether it says what another program is.
+fn is_claim(check: &Check) -> bool {
+    let of_claims = [laws::SCHEME.id, laws::CLAIMED_ORDER.id].contains(&check.id.as_str());
+    of_claims && integrators::find(&check.subject).is_none()
 }
 
 /// What was measured of each subject, when it broke, and why; then the bound that they share, where it comes from,
 /// and what to do.
 fn details(group: &[&Check], columns: usize) -> Vec<String> {
     let mut lines = Vec::new();
+    let wrong =
+        |check: &&&Check| [CheckStatus::Fail, CheckStatus::Inconclusive].contains(&check.status);
     for check in group {
+        let word = match check.status {
+            CheckStatus::Inconclusive => "not decided: ",
+            CheckStatus::Skip => "skipped: ",
+            CheckStatus::Fail | CheckStatus::Pass => "",
+        };
         let head = format!(
-            "      {} {}: ",
+            "      {word}{} {}: ",
             one_line(&check.id),
             one_line(&check.subject)
         );
@@ -64,12 +88,12 @@ fn details(group: &[&Check], columns: usize) -> Vec<String> {
             .map(|t| format!(", first at t = {} s", short(t)));
         let text = head + &said + &first.unwrap_or_default();
         lines.extend(wrap(&text, columns, "        "));
-        if let Some(cause) = check.cause.as_ref().filter(|_| !skipped_by_file(check)) {
+        if let Some(cause) = check.cause.as_ref().filter(|_| wrong(&check)) {
             let text = format!("        likely: {}", one_line(cause));
             lines.extend(wrap(&text, columns, "          "));
         }
     }
-    let Some(check) = group.iter().find(|check| !skipped_by_file(check)) else {
+    let Some(check) = group.iter().find(wrong) else {
         return lines;
     };
     let bound = format!("the bound: {}", one_line(&check.derivation));

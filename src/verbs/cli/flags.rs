@@ -1,7 +1,7 @@
 //! Flags that several verbs have: the scene with its duration, `--truth`, lengths of time.
 
 use crate::scene::{self, Names, Scene};
-use crate::trajectory::Plane;
+use crate::trajectory::{Expected, Plane};
 use crate::truth::Demand;
 use crate::verbs;
 use anyhow::{Context, bail};
@@ -135,6 +135,24 @@ impl FromStr for Time {
         }
         Duration::try_from_secs_f64(seconds).map_or_else(|_| Err(wrong()), |t| Ok(Self(t)))
     }
+}
+
+/// What the data of a program has to fit, of a plane where `--axes` says so.
+///
+/// # Errors
+/// Fails where the scene moves particles along the third axis.
+pub fn expected(scene: &Scene, timestep: f64, plane: Option<Plane>) -> anyhow::Result<Expected> {
+    let expected = Expected::new(scene, timestep);
+    let Some(plane) = plane else {
+        return Ok(expected);
+    };
+    expected.in_plane(plane).map_err(|axis| {
+        anyhow::anyhow!(
+            "--axes {}: the scene moves particles along {axis} as well, so data of that plane alone \
+             cannot be of it; gravity acts along the scene's `up`",
+            plane.name()
+        )
+    })
 }
 
 #[cfg(test)]

@@ -1,20 +1,19 @@
 //! `springcheck compare FILE --scene SCENE` checks one trajectory that another program computed: its errors, and the
 //! scheme that it follows.
 
-use crate::integrators::{self, Method};
-use crate::measure::identify::Undecided;
+use crate::measure::identify::{Identity, Undecided};
 use crate::measure::{Check, CheckStatus};
-use crate::scene::Scene;
-use crate::scene::words::nearest;
 use crate::solvers::Solver;
 use crate::solvers::external::{Failure, Program, Recording, Task};
-use crate::trajectory::{self, Expected, Plane, Rows, SaveError, limits};
+use crate::trajectory::{self, Plane, Rows, SaveError, limits};
 use crate::truth::Demand;
+use crate::verbs::cli::cache::Cache;
 use crate::verbs::cli::flags::{self, demand, plane};
 use crate::verbs::cli::interrupt;
 use crate::verbs::cli::output::{self, Output};
-use crate::verbs::cli::terminal::Terminal;
+use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity};
+use crate::verbs::scheme::Scheme;
 use crate::verbs::session::Session;
 use crate::verbs::{Body, Report};
 use anyhow::{Context, bail};
@@ -47,9 +46,9 @@ pub struct Args {
     #[arg(long, default_value = "auto", value_parser = demand(), value_name = "KIND")]
     truth: Demand,
 
-    /// The integrator it has to be: anything else is a failed check.
-    #[arg(long, value_name = "INTEGRATOR", value_parser = method)]
-    expect: Option<&'static Method>,
+    /// The scheme it has to follow, as `compare` names it: anything else is a failed check.
+    #[arg(long, value_name = "SCHEME")]
+    expect: Option<Scheme>,
 
     /// The largest energy error it may have, in units of the scene's energy.
     #[arg(long, value_name = "PART", value_parser = positive)]
@@ -61,18 +60,6 @@ pub struct Args {
 
     #[command(flatten)]
     output: Output,
-}
-
-/// The integrator of this id.
-pub(in crate::verbs) fn method(id: &str) -> Result<&'static Method, String> {
-    let found = integrators::find(id).filter(|method| method.pair().is_none());
-    found.ok_or_else(|| {
-        let known = integrators::ids(integrators::fixed());
-        nearest(id, &known).map_or_else(
-            || format!("expected one of {}", known.join(", ")),
-            |near| format!("did you mean `{near}`?"),
-        )
-    })
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -95,7 +82,7 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     let name = args.file.display().to_string();
     let bytes = read(&args.file).with_context(|| format!("cannot read {name}"))?;
-    let expected = expected(&scene, timestep, args.axes)?;
+    let expected = flags::expected(&scene, timestep, args.axes)?;
     let rows = trajectory::read(&bytes, &name, None, &expected)?;
     drop(bytes);
     // The file determines the duration.
@@ -111,7 +98,13 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     interrupt::unfinished(std::slice::from_ref(&args.file));
     let terminal = Terminal::new(quiet);
-    let mut report = report(&scene, &Arc::new(rows), &name, args.truth, &terminal)?;
+    let rows = Arc::new(rows);
+    let choice = choice(&rows, &name, args.truth);
+    let plan = Plan::new(&scene, &choice).expecting(false, &Cache::new());
+    let estimates = plan.estimate();
+    let expected = terminal::expected(&estimates);
+    terminal.expect(plan.units(), expected, &estimates, "--truth closed");
+    let mut report = report(&plan, &rows, &terminal)?;
     report.header.checks.extend(wanted(args, &report));
     drop(terminal);
     let (report, saved) = output::written(report, place.as_ref());
@@ -144,11 +137,11 @@ fn wanted(args: &Args, report: &Report) -> Vec<Check> {
         .as_ref()
         .and_then(|energy| energy.relative_error_max);
     let error = outcome.position_error_m.as_ref().map(|error| error.max);
-    let scheme = args.expect.map(|method| {
+    let scheme = args.expect.as_ref().map(|scheme| {
         let found = outcome.identified.as_ref();
-        let holds = found.is_some_and(|found| found.is(method.id));
-        let name = found.map_or("no known scheme", |found| found.method.as_str());
-        let message = format!("it is to follow {}, and follows {name}", method.id);
+        let holds = found.is_some_and(|found| found.is(&scheme.label));
+        let name = found.map_or_else(|| "no known scheme".to_owned(), Identity::label);
+        let message = format!("it is to follow {}, and follows {name}", scheme.label);
         asked("--expect", holds, None, None, message)
     });
     let energy = at_most(
@@ -187,21 +180,6 @@ fn asked(
         message,
         ..Check::default()
     }
-}
-
-/// What the file has to fit.
-fn expected(scene: &Scene, timestep: f64, plane: Option<Plane>) -> anyhow::Result<Expected> {
-    let expected = Expected::new(scene, timestep);
-    let Some(plane) = plane else {
-        return Ok(expected);
-    };
-    expected.in_plane(plane).map_err(|axis| {
-        anyhow::anyhow!(
-            "--axes {}: the scene moves particles along {axis} as well, so data of that plane alone \
-             cannot be of it; gravity acts along the scene's `up`",
-            plane.name()
-        )
-    })
 }
 
 /// Reads the file, up to one byte more than the parser accepts.
@@ -253,28 +231,24 @@ impl Program for Recorded {
     }
 }
 
-/// The report, with one outcome of this name: errors, energy, identity over every step, and the first fault. The
-/// scene's duration must be that of the rows.
-fn report(
-    scene: &Scene,
-    rows: &Arc<Rows>,
-    name: &str,
-    truth: Demand,
-    session: &dyn Session,
-) -> Result<Report, SaveError> {
-    let choice = Choice {
+/// A plan of these rows alone, under this name. All their steps are replayed beside it, instead of some.
+fn choice(rows: &Arc<Rows>, name: &str, truth: Demand) -> Choice {
+    Choice {
         solvers: vec![Solver::program(name, Arc::new(Recorded(Arc::clone(rows))))],
         timesteps: vec![rows.timestep],
         truth,
         order: Orders::Never,
-        // All steps of the rows are replayed below, instead of some of those recorded.
         identify: false,
         prove: false,
         expectations: Expectations::Ignored,
-    };
-    let plan = Plan::new(scene, &choice);
+    }
+}
+
+/// The report, with one outcome: errors, energy, identity over every step, and the first fault. The scene's duration
+/// must be that of the rows.
+fn report(plan: &Plan, rows: &Rows, session: &dyn Session) -> Result<Report, SaveError> {
     let mut report = plan.execute(session)?;
-    let (found, fault) = identity::of_rows(&plan, rows);
+    let (found, fault) = identity::of_rows(plan, rows);
     let identified = found.identity;
     if let Body::Run { outcomes } = &mut report.body {
         let mut outcomes = std::mem::take(outcomes);

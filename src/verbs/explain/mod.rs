@@ -1,6 +1,8 @@
-//! `springcheck explain ID` says what an id means: a check, an integrator, an engine, an effect, a mistake.
+//! `springcheck explain ID` says what an id means: a check, an integrator, an engine, an effect, a mistake, a scheme, a
+//! word of the energy column.
 
-use crate::integrators;
+use crate::integrators::{self, Method, Stable};
+use crate::measure::Behaviour;
 use crate::measure::identify::MISTAKES;
 use crate::physics::effects;
 use crate::report::terminal::wrap;
@@ -8,12 +10,13 @@ use crate::scene::words::nearest;
 use crate::solvers::catalogue;
 use crate::verbs::check;
 use crate::verbs::cli::output;
+use crate::verbs::scheme;
 use anyhow::bail;
 use std::process::ExitCode;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The id of a check, an integrator, an engine, an effect or a mistake.
+    /// The id of a check, an integrator or another scheme, an engine, an effect or a mistake; a word such as `bounded`.
     #[arg(value_name = "ID")]
     id: String,
 }
@@ -62,7 +65,15 @@ fn facts(id: &str) -> Option<(&'static str, Facts)> {
             ("not to be confused with", method.not),
         ];
         let mut facts = owned(&facts);
-        facts.push(("order", method.order.to_string()));
+        let order = match (method.order, method.order_damped) {
+            (order, damped) if order == damped => order.to_string(),
+            (order, damped) => format!("{order}; {damped} with dampers or drag"),
+        };
+        facts.push(("order", order));
+        facts.push((
+            "stable for z = h times the angular frequency",
+            stable(method),
+        ));
         return Some(("an integrator", facts));
     }
     if let Some(solver) = catalogue().find(|solver| solver.id == id) {
@@ -74,8 +85,32 @@ fn facts(id: &str) -> Option<(&'static str, Facts)> {
             owned(&[("what", row.summary), ("formula", row.source)]),
         ));
     }
+    if let Some(says) = scheme::says(id) {
+        return Some((
+            "a scheme that programs follow",
+            owned(&[("what it does", says)]),
+        ));
+    }
+    if let Some(behaviour) = Behaviour::ALL.into_iter().find(|b| b.word() == id) {
+        return Some((
+            "what an energy does",
+            owned(&[("what it means", behaviour.says())]),
+        ));
+    }
     let mistake = MISTAKES.iter().find(|mistake| mistake.id == id)?;
     Some(("a known mistake", owned(&[("what is wrong", mistake.says)])))
+}
+
+/// Where an integrator is stable on an undamped oscillator.
+fn stable(method: &Method) -> String {
+    match method.oscillator.stable {
+        Stable::Never => "no step, without damping".to_owned(),
+        Stable::Below(z) => format!("z < {z:.4}"),
+        Stable::Always => "every step, where forces are linear".to_owned(),
+        Stable::AlwaysAlong { across } => {
+            format!("every step along a spring, z < {across} across it")
+        }
+    }
 }
 
 fn owned(facts: &[(&'static str, &str)]) -> Facts {
@@ -92,7 +127,11 @@ fn known() -> Vec<&'static str> {
     let effects = effects::REGISTRY.iter().map(|row| row.id);
     let mistakes = MISTAKES.iter().map(|mistake| mistake.id);
     let checks = check::ids().into_iter();
+    let schemes = scheme::ids().into_iter();
+    let words = Behaviour::ALL.map(Behaviour::word).into_iter();
     checks
+        .chain(schemes)
+        .chain(words)
         .chain(methods)
         .chain(engines)
         .chain(effects)

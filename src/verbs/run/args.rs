@@ -3,10 +3,11 @@
 use crate::measure::CheckStatus;
 use crate::report::json::Tool;
 use crate::scene::{self, Scene};
+use crate::trajectory::Plane;
 use crate::truth::Demand;
 use crate::verbs::Report;
 use crate::verbs::cli::cache::Cache;
-use crate::verbs::cli::external::{self, External};
+use crate::verbs::cli::external::{self, External, Terms};
 use crate::verbs::cli::flags::{self, Time, demand};
 use crate::verbs::cli::interrupt;
 use crate::verbs::cli::output::{self, Output};
@@ -53,6 +54,10 @@ pub struct Args {
         default_value = "60s"
     )]
     external_timeout: Time,
+
+    /// The axes that two-dimensional rows of programs have. Default: rows have all three.
+    #[arg(long, value_parser = flags::plane(), value_name = "AXES")]
+    axes: Option<Plane>,
 
     /// Timesteps in seconds, separated by commas: everything runs at each. Default: the scene's.
     #[arg(
@@ -245,7 +250,11 @@ fn choice(args: &Args, scene: &Scene, stated: f64, path: &Path) -> anyhow::Resul
     }
     let usual = &choice.solvers;
     choice.solvers = chosen(&args.integrators, &args.engines, &args.rapier, scene, usual)?;
-    let programs = external::chosen(&args.external, path, args.external_timeout);
+    let terms = Terms {
+        timeout: args.external_timeout,
+        axes: args.axes,
+    };
+    let programs = external::chosen(&args.external, scene, path, terms)?;
     choice.solvers.extend(programs);
     if !args.timestep.is_empty() {
         choice.timesteps.clear();

@@ -9,7 +9,7 @@ const HALF: &str = "help: half a file? The program that wrote it may have stoppe
 const HEADER: &str = "help: write `t,id,x,y,z` or `t,id,x,y,z,vx,vy,vz` above the numbers";
 const COLUMNS: &str = "help: the columns are t, id, x, y, z, vx, vy, vz: remove others";
 const PLANE: &str =
-    "help: data of a plane? `compare --axes xy` (or xz, yz) says which axes of the scene it has";
+    "help: data of a plane? `--axes xy` (or xz, yz) says which axes of the scene it has";
 const WIDE: &str =
     "help: write `t,x0,y0,z0,x1,...`, then `vx0,vy0,vz0,...` if wanted, or one particle a line";
 const ONCE: &str = "help: leave one of them out";

@@ -263,7 +263,7 @@ fn hard_steps_are_solved() {
 #[test]
 fn the_hard_law_kills_mutants() {
     for id in SOLVED {
-        let loose = || method(id).build(&Settings { tolerance: 1e-9 });
+        let loose = || method(id).build(&Settings::stated(Some(1e-9)));
         let (wrong, _) = hard_law(id, &loose);
         assert!(!wrong.is_empty(), "{id}");
         let (wrong, _) = hard_law(id, &own(method("linearized_implicit_at_start")));

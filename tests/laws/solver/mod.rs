@@ -199,7 +199,7 @@ fn a_predicted_step_is_that_of_another_program() {
 fn the_stage_law_kills_mutants() {
     for scene in networks() {
         for id in SOLVED {
-            let loose = || method(id).build(&Settings { tolerance: 1e-3 });
+            let loose = || method(id).build(&Settings::stated(Some(1e-3)));
             assert!(stage_law(id, &scene, &loose).is_err(), "{id}");
             // Another method solves another equation.
             for other in SOLVED.into_iter().chain(["linearized_implicit_at_start"]) {

@@ -54,7 +54,7 @@ fn a_trapezoidal_stage_and_a_backward_difference() {
         // are 2.6e-15.
         assert!(found < 4e-12, "{found:e}");
         // Loosely solved, and other methods of the second order.
-        let loose = Settings { tolerance: 1e-3 };
+        let loose = Settings::stated(Some(1e-3));
         let mutants = [
             method("tr_bdf2").build(&loose),
             own(method("trapezoidal"))(),

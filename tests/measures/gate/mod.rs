@@ -30,11 +30,9 @@ fn claiming(scene: &Scene, step: Step, method: &str) -> Report {
 
 fn judged(scene: &Scene, choice: &Choice, method: &str) -> Report {
     let mut gate = Gate::of(scene, choice);
-    let method = integrators::find(method).expect("a method");
-    let name = "mine".to_owned();
     gate.claims = vec![Claim {
-        name,
-        method,
+        name: "mine".to_owned(),
+        scheme: method.parse().expect("a scheme"),
         repeats: true,
     }];
     gate.run(&Quiet).expect("nothing is written")

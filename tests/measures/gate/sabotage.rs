@@ -3,8 +3,9 @@
 use super::*;
 use crate::testkit::mutants::{self, physics};
 use crate::testkit::{everything, part};
-use springcheck::physics::ParticleSystem;
+use springcheck::integrators::{Integrator, Settings, StepError};
 use springcheck::physics::effects::{self, Effect, EffectRow};
+use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::DampingModel;
 
 /// A scene in which everything moves: a net that swings from two anchors.
@@ -44,6 +45,73 @@ fn a_wrong_integrator_fails_by_its_name() {
         for check in failed {
             assert_eq!(check.subject, "mine", "{method}: {check:?}");
         }
+    }
+}
+
+/// A small fault that any integrator may have: it is made of its step from the state before to the state after.
+type Fault = fn(&State, &mut State);
+
+/// Each well above rounding, and too small to be seen.
+const FAULTS: [(&str, Fault); 3] = [
+    ("a millionth of the velocity is lost", |_, after| {
+        after.v.iter_mut().for_each(|v| *v *= 1.0 - 1e-6);
+    }),
+    ("a particle moves too far", |before, after| {
+        for (x, from) in after.x.iter_mut().zip(&before.x) {
+            *x += 1e-6 * (*x - from);
+        }
+    }),
+    ("positions are of single precision", |_, after| {
+        after.x.iter_mut().for_each(|x| *x = f64::from(*x as f32));
+    }),
+];
+
+/// An integrator of the registry with such a fault.
+struct Sabotaged {
+    inner: Box<dyn Integrator>,
+    fault: Fault,
+}
+
+impl Integrator for Sabotaged {
+    fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
+        let before = state.clone();
+        self.inner.step(system, h, state)?;
+        (self.fault)(&before, state);
+        Ok(())
+    }
+}
+
+#[test]
+fn every_integrator_of_the_registry_fails_by_its_name_once_it_is_sabotaged() {
+    let scene = net();
+    let cases: Vec<_> = integrators::fixed()
+        .iter()
+        .flat_map(|method| FAULTS.map(|fault| (method, fault)))
+        .collect();
+    // Four is no multiple of three: a plain run meets every fault.
+    for &(method, (what, fault)) in part(&cases, 4, 0) {
+        let own = move || -> Box<dyn Integrator> {
+            Box::new(Sabotaged {
+                inner: method.build(&Settings::default()),
+                fault,
+            })
+        };
+        let choice = Choice {
+            solvers: vec![Solver::own("mine", own)],
+            ..Gate::choice(&scene)
+        };
+        let report = judged(&scene, &choice, method.id);
+        let failed = failed(&report);
+        let named = |check: &&&Check| check.id == "scheme" && check.subject == "mine";
+        assert!(failed.iter().any(|c| named(&c)), "{}: {what}", method.id);
+        // Without the fault nothing fails.
+        let right = move || method.build(&Settings::default());
+        let choice = Choice {
+            solvers: vec![Solver::own("mine", right)],
+            ..Gate::choice(&scene)
+        };
+        let report = judged(&scene, &choice, method.id);
+        assert!(self::failed(&report).is_empty(), "{}", method.id);
     }
 }
 

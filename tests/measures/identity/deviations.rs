@@ -4,12 +4,12 @@
 use super::*;
 use crate::testkit::{cloth, everything};
 use springcheck::measure::identify::Deviation;
-use springcheck::scene::{Axis, DampingModel};
+use springcheck::scene::{Axis, DampingModel, Spring};
 
 /// A change, and what is to be said of it: what deviates, by which factor, where.
 type Case = (fn(&mut Scene), &'static str, f64, Option<&'static str>);
 
-const CASES: [Case; 9] = [
+const CASES: [Case; 11] = [
     (|s| s.solver.gravity = -9.8, "gravity", 9.8 / 9.81, None),
     (|s| s.solver.gravity = 0.0, "gravity", 0.0, None),
     (
@@ -49,12 +49,35 @@ const CASES: [Case; 9] = [
         Some("spring 1"),
     ),
     (
+        |s| times(&mut s.springs[1], 0.0),
+        "springs",
+        0.0,
+        Some("spring 1"),
+    ),
+    (
+        |s| times(&mut s.springs[1], 2.0),
+        "springs",
+        2.0,
+        Some("spring 1"),
+    ),
+    (
         |s| s.particles.iter_mut().for_each(|p| p.mass *= 2.0),
         "mass",
         2.0,
         None,
     ),
 ];
+
+/// A spring that acts so many times.
+fn times(spring: &mut Spring, factor: f64) {
+    for force in [
+        &mut spring.stiffness,
+        &mut spring.cubic,
+        &mut spring.damping,
+    ] {
+        *force *= factor;
+    }
+}
 
 /// What deviates in rows of a program that has the scene changed so.
 fn deviations(scene: &Scene, change: fn(&mut Scene), method: &str, budget: u64) -> Vec<Deviation> {

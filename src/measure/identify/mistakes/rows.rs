@@ -307,6 +307,12 @@ pub static MISTAKES: &[Mistake] = &[
         "only the second end of each spring feels it: the first feels the opposite force",
     ),
     physics(
+        "both_ends_alike",
+        springs::both_ends_alike,
+        &[("springs.second_end", -1.0)],
+        "springs push both their ends the same way: the force on the second end is the opposite of that on the first",
+    ),
+    physics(
         "mass_ignored",
         physics::mass_ignored,
         &[("mass", 1.0)],

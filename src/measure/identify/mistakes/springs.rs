@@ -89,6 +89,13 @@ pub(super) fn second_end_only(scene: &Scene) -> Option<ParticleSystem> {
     })
 }
 
+pub(super) fn both_ends_alike(scene: &Scene) -> Option<ParticleSystem> {
+    system(scene, |spring, model, ends| {
+        let [first, _] = pair(add(pull(spring, ends), damper(spring, model, ends)));
+        [first, first]
+    })
+}
+
 /// The linear spring's force on the first end.
 fn pull(spring: &Spring, ends: Ends) -> [f64; 3] {
     let size = spring.stiffness * (ends.length - spring.rest_length);

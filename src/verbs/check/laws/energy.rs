@@ -139,7 +139,8 @@ pub(super) const DISSIPATION: Row = Row {
         if !ran.system().kinds().damps() {
             return Vec::new();
         }
-        let whole = ran.whole().filter(|(_, _, method)| !goes_back(method));
+        let own = ran.whole().filter(|(subject, ..)| !subject.is_other());
+        let whole = own.filter(|(_, _, method)| !goes_back(method));
         let check = |(subject, run, _): (Subject, &Trajectory, &'static Method)| {
             let mut most = 0.0_f64;
             let instants = (0..run.len()).map(|k| {

@@ -1,54 +1,63 @@
 //! Runs that step as their method says, and come out the same twice.
 
 use super::{Ran, Row, Subject};
-use crate::measure::identify::{Explained, Identity, Undecided};
+use crate::measure::identify::{Explained, Undecided};
 use crate::measure::{Check, CheckStatus};
 use crate::solvers::SolverKind;
 use crate::trajectory::{Recorder, Trajectory};
 use rayon::prelude::*;
 
-pub(super) const SCHEME: Row = Row {
+pub(in crate::verbs::check) const SCHEME: Row = Row {
     id: "scheme",
     requires: "every recorded step is one that the method makes from the row before it",
     derivation: "one-step replay: what rounding of the data, the forces and the step explains, ten times at most",
-    remedy: "the message names what it steps like instead; `compare` finds the first step that leaves the method",
+    remedy: "where the message names another scheme, that is what the program does; `compare` finds the first step that \
+             leaves the method, where there is one",
     judge: Some(|ran| {
         let judged = |subject: &Subject| subject.record.trajectory.is_some();
         let subjects = ran.subjects().filter(judged);
-        subjects.filter_map(|subject| scheme(&subject)).collect()
+        subjects
+            .filter_map(|subject| scheme(ran, &subject))
+            .collect()
     }),
 };
 
-fn scheme(subject: &Subject) -> Option<Check> {
-    let (method, outcome) = (subject.method?, subject.outcome);
+fn scheme(ran: &Ran, subject: &Subject) -> Option<Check> {
+    let outcome = subject.outcome;
     let engine = &outcome.engine;
     let check = |status, message: String| SCHEME.with(engine, status, message);
-    let Some(found) = &outcome.identified else {
+    let found = outcome.identified.as_ref();
+    let Some(stated) = ran.gate.scheme(subject.case).map(|scheme| scheme.label) else {
+        let steps = found.map_or_else(String::new, |found| {
+            format!(", and steps as {}", found.label())
+        });
+        let message =
+            format!("claims no scheme{steps}: `--claims {engine}=SCHEME` holds it to one");
+        return subject
+            .is_other()
+            .then(|| check(CheckStatus::Skip, message));
+    };
+    let Some(found) = found else {
         let Some(explained) = &outcome.explained else {
             let message = "too few rows to replay, or too many steps to afford it".to_owned();
             return Some(check(CheckStatus::Skip, message));
         };
-        let message = format!("does not step as {}", method.id);
         return Some(Check {
             cause: cause(explained),
-            ..check(CheckStatus::Fail, message)
+            ..check(CheckStatus::Fail, format!("does not step as {stated}"))
         });
     };
     let near = found.undecided == Some(Undecided::Near);
-    let named = found.method == method.id && found.substeps == 1;
-    let holds = found.is(method.id);
-    let steps = scheme_label(found);
+    let holds = found.is(&stated);
+    let steps = found.label();
     let message = match (holds, near) {
-        (true, _) if named => format!("steps as {}", method.id),
-        (true, _) => format!(
-            "steps as {steps}, which cannot be told from {} here",
-            method.id
-        ),
+        (true, _) if steps == stated => format!("steps as {stated}"),
+        (true, _) => format!("steps as {steps}, which cannot be told from {stated} here"),
         (_, true) => format!(
             "is only near {steps}: off by {:.3e} of rounding",
             found.defect
         ),
-        _ => format!("steps as {steps}, not as {}", method.id),
+        _ => format!("steps as {steps}, not as {stated}"),
     };
     let status = if holds {
         CheckStatus::Pass
@@ -65,21 +74,16 @@ fn scheme(subject: &Subject) -> Option<Check> {
     })
 }
 
-fn scheme_label(found: &Identity) -> String {
-    match found.substeps {
-        1 => found.method.clone(),
-        n => format!("{} in {n} substeps", found.method),
-    }
-}
-
 /// What it deviates in, in words.
 fn cause(explained: &Explained) -> Option<String> {
     let scheme = explained.scheme.as_ref()?;
-    let sentences: Vec<&str> = explained
-        .deviations
-        .iter()
-        .map(|d| d.sentence.as_str())
-        .collect();
+    // A mistake that changes several numbers says the same of each.
+    let mut sentences: Vec<&str> = Vec::new();
+    for deviation in &explained.deviations {
+        if !sentences.contains(&deviation.sentence.as_str()) {
+            sentences.push(&deviation.sentence);
+        }
+    }
     (!sentences.is_empty()).then(|| format!("it is {scheme}, but {}", sentences.join(" and ")))
 }
 

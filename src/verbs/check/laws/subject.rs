@@ -4,7 +4,7 @@ use crate::integrators::{Coefficients, Method, Settings};
 use crate::measure::stability::{Limit, Linearised, Prediction};
 use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
-use crate::solvers::Status;
+use crate::solvers::{SolverKind, Status};
 use crate::trajectory::{Precision, Trajectory};
 use crate::verbs::Report;
 use crate::verbs::check::Gate;
@@ -32,6 +32,14 @@ pub(in crate::verbs::check) struct Subject<'a> {
     pub outcome: &'a Outcome,
     /// The method it is, or claims to be.
     pub method: Option<&'static Method>,
+}
+
+impl Subject<'_> {
+    /// Whether another program computed it, whose work is not its own account but that of the scene's forces along
+    /// its path.
+    pub fn is_other(&self) -> bool {
+        self.case.solver.kind == SolverKind::External
+    }
 }
 
 impl<'a> Ran<'a> {
@@ -71,7 +79,7 @@ impl<'a> Ran<'a> {
                 case,
                 record,
                 outcome,
-                method: self.gate.method(case),
+                method: self.gate.scheme(case).and_then(|scheme| scheme.method),
             })
     }
 

@@ -2,15 +2,16 @@
 
 mod process;
 
-use super::flags::Time;
+use super::flags::{self, Time};
 use super::interrupt;
 use crate::integrators;
+use crate::scene::Scene;
 use crate::scene::limits::external;
 use crate::solvers::external::{
     Command, CommandError, Failure, Flat, Placeholder, Program, Recording, Task,
 };
 use crate::solvers::{Solver, rapier};
-use crate::trajectory::{self, Expected, Layout};
+use crate::trajectory::{self, Expected, Layout, Plane};
 use anyhow::bail;
 use std::ffi::OsString;
 use std::fs::File;
@@ -18,7 +19,6 @@ use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
-use std::time::Duration;
 use tempfile::TempDir;
 
 /// The flag's value: the program's name in reports, and its command.
@@ -67,17 +67,36 @@ pub fn distinct(externals: &[External]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The programs, ready to run on this scene.
-pub fn chosen(externals: &[External], scene: &Path, timeout: Time) -> Vec<Solver> {
+/// How programs are run: what the flags beside `--external` say.
+#[derive(Debug, Clone, Copy)]
+pub struct Terms {
+    pub timeout: Time,
+    /// The axes that their rows have; None for all three.
+    pub axes: Option<Plane>,
+}
+
+/// The programs, ready to run on this scene, read from that path.
+///
+/// # Errors
+/// Fails where rows of these axes cannot be of the scene.
+pub fn chosen(
+    externals: &[External],
+    scene: &Scene,
+    path: &Path,
+    terms: Terms,
+) -> anyhow::Result<Vec<Solver>> {
+    if !externals.is_empty() {
+        flags::expected(scene, scene.solver.timestep, terms.axes)?;
+    }
     let ready = |external: &External| {
         let program = CommandProgram {
             command: external.command.clone(),
-            scene: std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned()),
-            timeout: timeout.0,
+            scene: std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
+            terms,
         };
         Solver::program(&external.name, Arc::new(program))
     };
-    externals.iter().map(ready).collect()
+    Ok(externals.iter().map(ready).collect())
 }
 
 /// The largest output taken from a program, bytes.
@@ -88,7 +107,7 @@ struct CommandProgram {
     command: Command,
     /// The scene file, absolute.
     scene: PathBuf,
-    timeout: Duration,
+    terms: Terms,
 }
 
 impl Program for CommandProgram {
@@ -111,8 +130,15 @@ impl Program for CommandProgram {
             Placeholder::Output => output.clone().into_os_string(),
         });
         let in_file = self.command.uses(Placeholder::Output);
-        let ended = process::run(&words, self.timeout, MAX_BYTES, !in_file)?;
+        let ended = process::run(&words, self.terms.timeout.0, MAX_BYTES, !in_file)?;
         let expected = Expected::new(task.scene, task.timestep);
+        // Axes that do not fit were refused before.
+        let plane = |plane| {
+            Expected::new(task.scene, task.timestep)
+                .in_plane(plane)
+                .ok()
+        };
+        let expected = self.terms.axes.and_then(plane).unwrap_or(expected);
         let rows = if in_file {
             let bytes = ended.within("its {output}", move || read(&output))?;
             trajectory::read(&bytes, "{output}", Some(Layout::Npz), &expected)?

@@ -71,12 +71,11 @@ fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
     let errors = placed().map(|(_, [_, error])| *error);
     let errors = errors.chain(targets.iter().copied());
     let axes = [axis(costs.chain(ended)), axis(errors)];
-    let legend = legend(diagram, &lines);
-
     let mut marks = levels(cost, &targets, axes, diagram);
     // The scene's own comes last, so that its line lies over the others.
     lines.sort_by_key(|line| report.header.is_own(&line.curve.engine));
     marks.extend(lines.iter().flat_map(|line| line.marks(axes, diagram)));
+    let legend = legend(diagram, &lines, &marks);
     let silent = silent.iter().map(|line| engine(&line.curve.engine));
     let silent: Vec<String> = silent.collect();
     let note = format!("without numbers for this: {}", silent.join(", "));
@@ -99,6 +98,9 @@ fn chart(report: &Report, diagram: Diagram) -> Option<Chart> {
         ..Chart::default()
     })
 }
+
+/// The width of the bars that show the spread of times, pixels: no other line is as thin.
+const WHISKER: f64 = 0.9;
 
 fn points(curve: &CostCurve, diagram: Diagram) -> Vec<(usize, [f64; 2])> {
     let points = curve.points.iter().enumerate();
@@ -160,7 +162,7 @@ impl EngineLine<'_> {
                 let ends = ends.map(|end| end.max(SMALLEST));
                 // A whisker shorter than the symbol would not show.
                 if x.place(ends[1]) - x.place(ends[0]) > 0.02 {
-                    let thin = Stroke::new(stroke.colour, "", 1.0);
+                    let thin = Stroke::new(stroke.colour, "", WHISKER);
                     marks.push(Mark::line(ends.map(|end| [end, point[1]]), thin));
                 }
             }
@@ -194,19 +196,35 @@ fn levels(cost: &Cost, targets: &[f64], [x, y]: [ChartAxis; 2], diagram: Diagram
     marks
 }
 
-/// The legend of the symbols.
-fn legend(diagram: Diagram, lines: &[EngineLine]) -> Vec<LegendEntry> {
+/// The legend of the symbols, of the whiskers and of the grey area.
+fn legend(diagram: Diagram, lines: &[EngineLine], marks: &[Mark]) -> Vec<LegendEntry> {
     let disc = |fill| Look::Symbol(Symbol::new(SymbolShape::Disc, fill, FAINT));
-    let front = "none of its settings beats it in error and evaluations";
-    let early = "diverged or failed, at what all its steps would cost";
+    let fills = |white: bool| {
+        let mut symbols = marks.iter().filter_map(|mark| match mark {
+            Mark::Symbols(symbol, points) if !points.is_empty() => Some(symbol),
+            _ => None,
+        });
+        symbols.any(|symbol| symbol.shape != SymbolShape::Cross && (symbol.fill == WHITE) == white)
+    };
+    let whisker = |mark: &Mark| matches!(mark, Mark::Line(line) if line.stroke.width == WHISKER);
     let mut legend = Vec::new();
-    if diagram.judged {
-        legend.push(LegendEntry::new(front, disc(FAINT)));
-        legend.push(LegendEntry::new("beaten", disc(WHITE)));
-    }
-    if lines.iter().any(|line| !line.ended.is_empty()) {
-        legend.push(LegendEntry::new(early, Look::Symbol(Symbol::cross(FAINT))));
-    }
+    let mut add = |shown: bool, text: &str, look| {
+        legend.extend(shown.then(|| LegendEntry::new(text, look)));
+    };
+    let front = "none of its settings beats it in error and evaluations";
+    add(diagram.judged && fills(false), front, disc(FAINT));
+    add(diagram.judged && fills(true), "beaten", disc(WHITE));
+    let early = lines.iter().any(|line| !line.ended.is_empty());
+    let cross = Look::Symbol(Symbol::cross(FAINT));
+    add(
+        early,
+        "diverged or failed, at what all its steps would cost",
+        cross,
+    );
+    let spread = "bars: from the shortest run to the median and its deviation";
+    add(marks.iter().any(whisker), spread, Look::Remark);
+    let below = Look::Fill(palette::BELOW_FLOOR);
+    add(true, "below the truth’s own error", below);
     legend
 }
 

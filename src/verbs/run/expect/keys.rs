@@ -1,9 +1,9 @@
 //! The table of outcome keys that a scene's `expect` may name.
 
 use crate::integrators;
-use crate::measure::identify::{MISTAKES, Wrong, composed_ids};
 use crate::scene::{KeyKind, Names, OutcomeKey};
 use crate::solvers::rapier;
+use crate::verbs::scheme;
 use std::sync::LazyLock;
 
 /// The methods, engines and keys that a scene file may refer to. [`verbs::names`](crate::verbs::names) has all names.
@@ -56,7 +56,7 @@ fn keys() -> Vec<OutcomeKey> {
         ("work.steps", KeyKind::Number),
         ("work.force_evaluations", KeyKind::Number),
         ("work.linear_solves", KeyKind::Number),
-        ("identified.method", word(&schemes())),
+        ("identified.method", word(&scheme::ids())),
         ("identified.substeps", KeyKind::Number),
         ("identified.defect", KeyKind::Number),
         ("identified.relative", KeyKind::Number),
@@ -82,16 +82,4 @@ fn keys() -> Vec<OutcomeKey> {
         }));
     }
     keys
-}
-
-/// The ids of methods, composed schemes and wrong steps.
-fn schemes() -> Vec<&'static str> {
-    let steps = MISTAKES
-        .iter()
-        .filter(|mistake| matches!(mistake.wrong, Wrong::Step { .. }));
-    integrators::ids(integrators::fixed())
-        .into_iter()
-        .chain(composed_ids().into_iter().map(|id| &*id.leak()))
-        .chain(steps.map(|mistake| mistake.id))
-        .collect()
 }

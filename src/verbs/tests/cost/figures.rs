@@ -85,7 +85,9 @@ fn targets_are_dashed_lines_and_the_floor_is_grey() {
     for label in [">1e-2 m<", ">1e-6 m<", ">1e-15 m<"] {
         assert_eq!(svg.matches(label).count(), 1, "{label}");
     }
-    assert_eq!(svg.matches(r##"fill="#efefef""##).count(), 1);
+    // The area, and its entry in the legend.
+    assert_eq!(svg.matches(r##"fill="#efefef""##).count(), 2);
+    assert_eq!(svg.matches("below the truth’s own error").count(), 1);
     // Neither is about energy.
     assert_eq!(count(&priced(), r#"stroke-dasharray="5 4""#), 0);
     assert_eq!(count(&priced(), "#efefef"), 0);
@@ -107,14 +109,16 @@ fn rapier_is_dashed_and_left_out_where_it_does_not_count() {
 fn wide_spreads_have_whiskers() {
     let mut report = priced();
     let whiskers = |report: &Report, file: &str| {
-        let look = r##"fill="none" stroke="#e69f00" stroke-width="1" "##;
+        let look = r##"fill="none" stroke="#e69f00" stroke-width="0.9" "##;
         figure(report, file).matches(look).count()
     };
     assert_eq!(whiskers(&report, "cost_time.svg"), 0);
+    assert!(!figure(&report, "cost_time.svg").contains("bars: from"));
     let point = &mut report.cost_mut().curves[3].points[4];
     let wall = point.wall_s.as_mut().unwrap();
     (wall.min, wall.mad) = (0.5 * wall.median, Some(wall.median));
     assert_eq!(whiskers(&report, "cost_time.svg"), 1);
+    assert!(figure(&report, "cost_time.svg").contains("bars: from the shortest run"));
     assert_eq!(whiskers(&report, "cost_evaluations.svg"), 0);
 }
 

@@ -72,7 +72,7 @@ pub const SABOTAGES: &[Row] = &[
 /// One step of this row; where it cannot take it, nothing moves.
 fn implicit(id: &str, tolerance: f64, system: &dyn System, h: f64, state: &mut State) {
     let t = state.t;
-    let mut own = method(id).build(&Settings { tolerance });
+    let mut own = method(id).build(&Settings::stated(Some(tolerance)));
     let _ = own.step(system, h, state);
     // The caller counts time.
     state.t = t;
