@@ -87,7 +87,7 @@ pub enum DampingTreatment {
     /// e^-z: Cayley's transform instead of the exponential. Of several at a particle, one acts after the other,
     /// there and back.
     ///
-    /// Systems that cannot be swept are damped by the exact flow.
+    /// Systems that cannot be swept are solved all together.
     Boris,
 }
 
@@ -229,7 +229,7 @@ impl Splitting {
         state.work.advance(power, h);
     }
 
-    /// Applies the flow of v' = a(x, v) at frozen x over h, and advances the work.
+    /// Applies the flow of v' = a(x, v) at frozen x over h, or its midpoint rule, and advances the work.
     fn kick_exactly(
         &mut self,
         system: &dyn System,
@@ -239,6 +239,12 @@ impl Splitting {
     ) -> Result<(), StepError> {
         self.evaluate(system, t, h, state);
         if system.kinds().depends_on_velocity() {
+            if self.damping == DampingTreatment::Boris {
+                self.push(system, t, 0.5 * h, state);
+                self.flow.midpoint(system, t, h, state)?;
+                self.push(system, t, 0.5 * h, state);
+                return Ok(());
+            }
             return self
                 .flow
                 .advance(system, t, h, &self.kept.a, state, HALVINGS);

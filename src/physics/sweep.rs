@@ -6,6 +6,7 @@
 //! the other they are the flow of all dampers together where no two share a particle, and to first
 //! order in h elsewhere; a sweep in the reverse order is then the adjoint.
 
+mod bend;
 mod turn;
 
 use crate::physics::System;

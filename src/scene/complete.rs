@@ -55,13 +55,17 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
         return Err(Problem::new(path, no_particle(number, count)));
     }
     for (at, spring) in scene.springs.iter_mut().enumerate() {
-        ends(spring.ends, count, &format_args!("springs[{at}]"))?;
+        ends(&spring.ends, count, &format_args!("springs[{at}]"))?;
         if spring.rest_length.is_nan() {
             spring.rest_length = distance(&scene.particles, spring.ends);
         }
     }
+    for (at, hinge) in scene.bending.iter().enumerate() {
+        ends(&hinge.particles, count, &format_args!("bending[{at}]"))?;
+        links(at, hinge.particles, &scene.particles)?;
+    }
     for (at, pair) in scene.gravitational.iter().enumerate() {
-        ends(pair.ends, count, &format_args!("gravitational[{at}]"))?;
+        ends(&pair.ends, count, &format_args!("gravitational[{at}]"))?;
         attraction(pair.ends, &scene.particles).map_err(|refusal| {
             Problem::new(format!("gravitational[{at}].particle_ids"), refusal)
         })?;
@@ -138,15 +142,31 @@ fn particles(particles: &[Particle]) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Checks that the two ends exist and differ.
-fn ends(ends: [usize; 2], count: usize, of: &impl Display) -> Result<(), Problem> {
+/// Checks that the ends, or corners, exist and differ.
+fn ends(ends: &[usize], count: usize, of: &impl Display) -> Result<(), Problem> {
     if let Some(index) = ends.iter().position(|&end| end >= count) {
         let refusal = no_particle(whole(ends[index]), count);
         return Err(Problem::new(format!("{of}.particle_ids[{index}]"), refusal));
     }
-    if ends[0] == ends[1] {
-        let message = format!("expected two different particles, found {} twice", ends[0]);
+    let twice = |(at, end): (usize, &usize)| ends[..at].contains(end);
+    if let Some((_, end)) = ends.iter().enumerate().find(|end| twice(*end)) {
+        let many = if ends.len() == 2 { "two" } else { "three" };
+        let message = format!("expected {many} different particles, found {end} twice");
         return Problem::because(format!("{of}.particle_ids"), message, "");
+    }
+    Ok(())
+}
+
+/// Checks that both links of a hinge have a direction at the start.
+fn links(at: usize, [a, b, c]: [usize; 3], particles: &[Particle]) -> Result<(), Problem> {
+    for link in [[a, b], [b, c]] {
+        if distance(particles, link) == 0.0 {
+            let [one, other] = link;
+            let message =
+                format!("expected neighbours apart, found {one} and {other} in one place");
+            let help = "the angle at the middle particle needs two directions";
+            return Problem::because(format!("bending[{at}].particle_ids"), message, help);
+        }
     }
     Ok(())
 }

@@ -26,8 +26,8 @@ pub use error::{Refusal, SceneError};
 pub(crate) use expectation::{ALL, REST, SKIP};
 pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
-    Axis, DampingModel, GravitationalPair, Magnetic, Particle, Plot, Scene, SolverSpec, Spring,
-    Wind, steps,
+    Axis, Bending, DampingModel, GravitationalPair, Magnetic, Particle, Plot, Scene, SolverSpec,
+    Spring, Wind, steps,
 };
 pub use table::Value;
 pub use write::yaml;

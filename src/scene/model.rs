@@ -18,8 +18,9 @@ use parry3d::math::Vector;
 use serde::Serialize;
 
 /// All parts: the mappings a file consists of.
-pub static PARTS: [&Part; 8] = [
+pub static PARTS: [&Part; 9] = [
     &SPRINGS,
+    &BENDING,
     &PARTICLES,
     &GRAVITATIONAL,
     &WIND,
@@ -90,8 +91,8 @@ pub enum ValueKind {
     Numbers(usize, Bounds),
     /// The id of a particle.
     Id,
-    /// A list of two particle ids.
-    Ids,
+    /// A list of this many particle ids.
+    Ids(usize),
     /// 0, 1 or 2 for x, y, z.
     Coordinate,
     /// `true` or `false`.
@@ -125,7 +126,7 @@ use Absent::{Derived, Required, Usual};
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    reserved ["air", "bending", "colliders", "driven", "objects", "rods", "strain_limit"];
+    reserved ["air", "colliders", "driven", "objects", "rods", "strain_limit"];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
@@ -157,6 +158,8 @@ declare! {
         "particles" => ValueKind::Part(&PARTICLES), Required(NO_PARTICLES), None;
     /// Springs with dampers.
     springs: Vec<Spring> = Vec::new(), "springs" => ValueKind::Part(&SPRINGS), Usual, None;
+    /// Hinges that resist bending.
+    bending: Vec<Bending> = Vec::new(), "bending" => ValueKind::Part(&BENDING), Usual, None;
     /// Attractions.
     gravitational: Vec<GravitationalPair> = Vec::new(),
         "gravitational" => ValueKind::Part(&GRAVITATIONAL), Usual, None;
@@ -236,7 +239,7 @@ declare! {
     reserved [];
 
     /// Two different particles.
-    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids,
+    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids(2),
         Required("name the two ends: `particle_ids: [0, 1]`"), Some("ids");
     /// k, N/m, not negative.
     stiffness: f64 = 0.0, "stiffness" => ValueKind::Number(limits::STIFFNESS),
@@ -253,13 +256,35 @@ declare! {
 }
 
 declare! {
+    /// A hinge at the middle of three particles, which resists bending.
+    BENDING: Bending, list bending, "a hinge: a mapping with `particle_ids` and `stiffness`",
+    reserved [];
+
+    /// Three different particles, in the order of the chain they form.
+    particles: [usize; 3] = [0, 1, 2], "particle_ids" => ValueKind::Ids(3),
+        Required("name three particles in a row: `particle_ids: [0, 1, 2]`"), Some("ids");
+    /// kb, N m/rad, not negative.
+    stiffness: f64 = 0.0,
+        "stiffness" => ValueKind::Number(Bounds::not_negative(1e18, "N m/rad")),
+        Required("a hinge needs its stiffness in N m/rad"), Some("stiffness");
+    /// θ0, rad, from 0 (straight) to π (folded back).
+    rest_angle: f64 = 0.0,
+        "rest_angle" => ValueKind::Number(Bounds::not_negative(std::f64::consts::PI, "rad")),
+        Usual, Some("rest_angles");
+    /// c, N m s/rad, not negative: resists the rate of the angle.
+    damping: f64 = 0.0,
+        "damping" => ValueKind::Number(Bounds::not_negative(1e18, "N m s/rad")),
+        Usual, Some("damping");
+}
+
+declare! {
     /// Attraction G m1 m2 / r² between two particles.
     GRAVITATIONAL: GravitationalPair, list gravitational,
     "a pair: a mapping with `particle_ids` and `G`",
     reserved [];
 
     /// Two different particles.
-    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids,
+    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids(2),
         Required("name the two particles: `particle_ids: [0, 1]`"), Some("ids");
     /// G, N m²/kg²; negative repels.
     g: f64 = 0.0, "G" => ValueKind::Number(Bounds::signed(1e30, "N m²/kg²")),

@@ -150,7 +150,7 @@ impl<'n> Entry<'_, 'n> {
     fn id(&mut self, component: usize, number: Number) -> usize {
         number.whole().unwrap_or_else(|| {
             let mut path = self.part.path(Some(self.at), self.row.key);
-            if let ValueKind::Ids = self.row.kind {
+            if let ValueKind::Ids(_) = self.row.kind {
                 path += &format!("[{component}]");
             }
             self.reading.no_id.get_or_insert((path, number));
@@ -170,7 +170,7 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
             ValueKind::Numbers(count, _) => {
                 from.deserialize_any(Numbers(count, |i, n| self.number(i, n)))
             }
-            ValueKind::Ids => from.deserialize_any(Numbers(2, |i, n| self.number(i, n))),
+            ValueKind::Ids(count) => from.deserialize_any(Numbers(count, |i, n| self.number(i, n))),
             ValueKind::Flag => {
                 let flag = from.deserialize_any(flag())?;
                 self.set(0, Value::Flag(flag));

@@ -58,7 +58,7 @@ fn value(row: &Row, scene: &Scene, at: usize) -> Option<String> {
         Value::Text(text) => self::text(text),
     });
     match row.kind {
-        ValueKind::Numbers(..) | ValueKind::Ids | ValueKind::Names(_) => {
+        ValueKind::Numbers(..) | ValueKind::Ids(_) | ValueKind::Names(_) => {
             let values: Vec<String> = values.collect();
             (!values.is_empty()).then(|| brackets(values))
         }

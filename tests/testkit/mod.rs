@@ -13,7 +13,7 @@ pub use springcheck::conformance::systems::{Oscillator, free_triangle, swinging_
 use springcheck::integrators::{Integrator, Method, Settings, fixed};
 use springcheck::physics::effects::Effect;
 use springcheck::physics::{ForceKinds, ParticleSystem, Power, State, System};
-use springcheck::scene::{DampingModel, GravitationalPair, Magnetic, Scene, Wind};
+use springcheck::scene::{Bending, DampingModel, GravitationalPair, Magnetic, Scene, Wind};
 
 /// All of these in a whole run, which `SPRINGCHECK_WHOLE=1` asks for as CI does; else one in `of`,
 /// beginning with number `at`: what lies in a loop over at least `of` cases that hands in its own number
@@ -37,6 +37,11 @@ pub fn crossed<'a, A, B>(rows: &'a [A], others: &'a [B]) -> Vec<(&'a A, &'a B)> 
 /// The row's own integrator.
 pub fn own(method: &'static Method) -> impl Fn() -> Box<dyn Integrator> {
     move || method.build(&Settings::default())
+}
+
+/// Whether a method has steps of its own on a scene, and is not another row's map there.
+pub fn is_its_own(scene: &Scene, method: &Method) -> bool {
+    method.is_its_own(ParticleSystem::new(scene).kinds())
 }
 
 pub fn method(id: &str) -> &'static Method {
@@ -130,6 +135,14 @@ pub fn everything(model: DampingModel) -> Scene {
     });
     for ends in [[1, 2], [2, 3], [0, 3]] {
         scene.gravitational.push(GravitationalPair { ends, g: 2.0 });
+    }
+    for (particles, rest_angle) in [([0, 1, 2], 0.0), ([1, 2, 3], 0.8)] {
+        scene.bending.push(Bending {
+            particles,
+            stiffness: 0.3,
+            rest_angle,
+            damping: 0.02,
+        });
     }
     scene.particles[1].charge = 0.8;
     scene.particles[2].charge = -0.5;

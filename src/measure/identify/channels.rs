@@ -5,7 +5,7 @@ use super::candidate::{Candidate, ScaledAt, Scaling};
 use super::numbers::{NUMBERS, Number};
 use super::result::Deviation;
 use super::words::{digits, seconds, times};
-use crate::scene::model::SPRINGS;
+use crate::scene::model::{BENDING, SPRINGS};
 use crate::scene::{Axis, Scene};
 
 /// "spring 3 (particles 1 and 2)".
@@ -110,6 +110,14 @@ pub(super) fn of_springs(springs: Vec<usize>) -> impl Iterator<Item = Channel> {
         std::iter::once(Spring(id)).chain(each)
     };
     springs.into_iter().flat_map(of)
+}
+
+/// The channels of the hinges at these particles.
+pub(super) fn of_hinges(scene: &Scene, particles: &[usize]) -> impl Iterator<Item = Channel> {
+    let numbers = [Number::Bend, Number::RestAngle, Number::BendDamping];
+    let hinges = scene.bending.iter().enumerate();
+    let at = hinges.filter(|(_, hinge)| hinge.particles.iter().any(|p| particles.contains(p)));
+    at.flat_map(move |(id, _)| numbers.map(|number| One(number, id)))
 }
 
 /// The channels of these particles; those that the scene has 0 of too, but charges only in a magnetic field.
@@ -304,6 +312,9 @@ fn found(number: Number, value: f64, factor: f64) -> f64 {
 
 /// "spring 3".
 fn member(number: Number, at: usize) -> String {
+    if number.part().key == BENDING.key {
+        return format!("hinge {at}");
+    }
     format!("{} {at}", number.part().key.trim_end_matches('s'))
 }
 

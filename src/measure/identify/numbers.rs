@@ -2,7 +2,9 @@
 //! say so.
 
 use super::words::{digits, times};
-use crate::scene::model::{GRAVITATIONAL, PARTICLES, Part, Row, SOLVER, SPRINGS, ValueKind, WIND};
+use crate::scene::model::{
+    BENDING, GRAVITATIONAL, PARTICLES, Part, Row, SOLVER, SPRINGS, ValueKind, WIND,
+};
 use crate::scene::{Scene, Value};
 
 /// A number of a scene, in one member of its part or in all.
@@ -13,6 +15,10 @@ pub(super) enum Number {
     Damping,
     RestLength,
     Cubic,
+    /// The stiffness of hinges.
+    Bend,
+    RestAngle,
+    BendDamping,
     Drag,
     Charge,
     Wind,
@@ -20,12 +26,25 @@ pub(super) enum Number {
     Mass,
 }
 use Number::{
-    Attraction, Charge, Cubic, Damping, Drag, Gravity, Mass, RestLength, Stiffness, Wind,
+    Attraction, Bend, BendDamping, Charge, Cubic, Damping, Drag, Gravity, Mass, RestAngle,
+    RestLength, Stiffness, Wind,
 };
 
 /// In the order in which they are suspected.
-pub(super) const NUMBERS: [Number; 10] = [
-    Gravity, Stiffness, Damping, RestLength, Cubic, Drag, Charge, Wind, Attraction, Mass,
+pub(super) const NUMBERS: [Number; 13] = [
+    Gravity,
+    Stiffness,
+    Damping,
+    RestLength,
+    Cubic,
+    Bend,
+    RestAngle,
+    BendDamping,
+    Drag,
+    Charge,
+    Wind,
+    Attraction,
+    Mass,
 ];
 
 impl Number {
@@ -37,6 +56,9 @@ impl Number {
             Damping => ("springs.damping", &SPRINGS, "damping"),
             RestLength => ("springs.rest_length", &SPRINGS, "rest_length"),
             Cubic => ("springs.cubic", &SPRINGS, "cubic"),
+            Bend => ("bending.stiffness", &BENDING, "stiffness"),
+            RestAngle => ("bending.rest_angle", &BENDING, "rest_angle"),
+            BendDamping => ("bending.damping", &BENDING, "damping"),
             Drag => ("drag", &PARTICLES, "drag"),
             Charge => ("charge", &PARTICLES, "charge"),
             Wind => ("wind", &WIND, "strength"),
@@ -118,6 +140,8 @@ impl Number {
             Gravity => "gravity".to_owned(),
             Cubic => "the cubic stiffness".to_owned(),
             Wind => "the strength of the wind".to_owned(),
+            Bend => "the bending stiffness".to_owned(),
+            BendDamping => "the bending damping".to_owned(),
             _ => format!("the {}", self.key().2.replace('_', " ")),
         }
     }
@@ -135,6 +159,13 @@ impl Number {
             (RestLength, _) => format!("springs have {times} their rest length"),
             (Cubic, 0.0) => "the cubic part of the springs is missing".to_owned(),
             (Cubic, _) => format!("the cubic part of the springs is {times} the scene's"),
+            (Bend, 0.0) => "hinges do not resist bending".to_owned(),
+            (Bend, -1.0) => "hinges push away from their rest angle".to_owned(),
+            (Bend, _) => format!("hinges act with {times} their bending stiffness"),
+            (BendDamping, 0.0) => "the hinges' dampers are missing".to_owned(),
+            (BendDamping, _) => format!("the hinges' dampers act with {times} their damping"),
+            (RestAngle, 0.0) => "the rest angle of hinges is taken for 0".to_owned(),
+            (RestAngle, _) => format!("hinges have {times} their rest angle"),
             (Charge, 0.0) => "the magnetic force is missing".to_owned(),
             (Charge, -1.0) => "the magnetic force has the wrong sign: it is q v x B".to_owned(),
             (Charge, _) => format!("the magnetic force is {times} the scene's"),

@@ -5,6 +5,7 @@
 //! second kind of row, which [`IntegratorEngine`](crate::solvers::IntegratorEngine) calls after its
 //! integrator, and will not implement this trait.
 
+mod bending;
 mod central;
 mod drag;
 mod gravity;
@@ -13,6 +14,7 @@ mod scaled;
 mod springs;
 mod wind;
 
+pub use bending::BendingForce;
 pub use central::Central;
 pub use drag::Drag;
 pub use gravity::Gravity;
@@ -128,6 +130,7 @@ pub static REGISTRY: &[EffectRow] = &[
     wind::ROW,
     central::GRAVITATIONAL,
     magnetic::ROW,
+    bending::ROW,
 ];
 
 fn boxed<E: Effect + 'static>(effect: E) -> Box<dyn Effect> {

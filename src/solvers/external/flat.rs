@@ -2,7 +2,7 @@
 
 use super::Task;
 use crate::scene::Scene;
-use crate::scene::model::{GRAVITATIONAL, PARTICLES, Part, Row, SPRINGS};
+use crate::scene::model::{BENDING, GRAVITATIONAL, PARTICLES, Part, Row, SPRINGS};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// The version of the keys and of their meaning.
@@ -35,6 +35,7 @@ impl Serialize for Flat<'_> {
         map.serialize_entry("particles", &scene.particles.len())?;
         arrays(&mut map, scene, &PARTICLES)?;
         map.serialize_entry("springs", &Arrays(scene, &SPRINGS))?;
+        map.serialize_entry("bending", &Arrays(scene, &BENDING))?;
         map.serialize_entry("damping_model", &scene.damping_model)?;
         map.serialize_entry("gravity", &gravity)?;
         map.serialize_entry("wind_force", &wind)?;

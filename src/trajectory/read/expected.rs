@@ -143,8 +143,17 @@ fn moves(scene: &Scene) -> [bool; 3] {
         .filter(|s| s.stiffness != 0.0 || s.cubic != 0.0 || s.damping != 0.0)
         .map(|s| s.ends);
     let pairs = scene.gravitational.iter().filter(|pair| pair.g != 0.0);
+    let hinges = scene.bending.iter();
+    let hinges = hinges.filter(|h| h.stiffness != 0.0 || h.damping != 0.0);
+    let hinges = hinges.flat_map(|h| {
+        [
+            [h.particles[0], h.particles[1]],
+            [h.particles[1], h.particles[2]],
+        ]
+    });
     let lines = springs
         .chain(pairs.map(|pair| pair.ends))
+        .chain(hinges)
         .map(|ends| ends.map(|end| &scene.particles[end]))
         .filter(|ends| ends.iter().any(|end| !end.fixed))
         .map(|[a, b]| [0, 1, 2].map(|axis| b.position[axis] - a.position[axis]));

@@ -89,7 +89,7 @@ fn value(row: &Row, names: &Names) -> Json {
         ValueKind::Number(bounds) => number(bounds),
         ValueKind::Numbers(count, bounds) => list(number(bounds), *count, *count),
         ValueKind::Id => id(),
-        ValueKind::Ids => list(id(), 2, 2),
+        ValueKind::Ids(count) => list(id(), *count, *count),
         ValueKind::Coordinate => json!({"enum": [0, 1, 2]}),
         ValueKind::Flag => json!({"type": "boolean"}),
         ValueKind::Word(words) => json!({"enum": words}),

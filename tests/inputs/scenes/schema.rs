@@ -36,8 +36,10 @@ pub fn full() -> Value {
     json!({
         "name": "all",
         "solver": {"type": "rk4", "timestep": 0.1},
-        "particles": [{"pos": [0, 0, 0], "mass": 1}, {"pos": [1, 0, 0], "mass": 2}],
+        "particles": [{"pos": [0, 0, 0], "mass": 1}, {"pos": [1, 0, 0], "mass": 2},
+                      {"pos": [1, 1, 0], "mass": 3}],
         "springs": [{"particle_ids": [0, 1], "stiffness": 20}],
+        "bending": [{"particle_ids": [0, 1, 2], "stiffness": 1}],
         "gravitational": [{"particle_ids": [0, 1], "G": 1}],
         "wind": {"direction": [1, 0, 0], "strength": 1},
         "magnetic": {"field": [0, 0, 1]},
@@ -91,10 +93,13 @@ fn inside_and_outside(row: &Row) -> (Vec<Value>, Vec<Value>) {
             (vec![json!(ascending)], outside)
         }
         ValueKind::Id => (vec![json!(0), json!(1)], vec![json!(-1), json!(0.5)]),
-        ValueKind::Ids => (
-            vec![json!([0, 1])],
-            vec![json!([0]), json!([0, 1, 1]), json!([0, -1])],
-        ),
+        ValueKind::Ids(count) => {
+            let ids: Vec<usize> = (0..*count).collect();
+            let (fewer, mut more, mut none) = (&ids[1..], ids.clone(), json!(ids));
+            more.push(1);
+            none[1] = json!(-1);
+            (vec![json!(ids)], vec![json!(fewer), json!(more), none])
+        }
         ValueKind::Coordinate => (vec![json!(0), json!(2)], vec![json!(3), json!(-1)]),
         ValueKind::Flag => (vec![json!(false)], vec![json!(0), json!("true")]),
         ValueKind::Word(words) => (
@@ -327,6 +332,6 @@ fn defaults_are_those_of_the_reader() {
             some += 1;
         }
     }
-    // duration, up, damping_model; gravity; vel, fixed, radius, drag, charge; cubic, damping.
-    assert_eq!(some, 11);
+    // duration, up, damping_model; gravity; vel, fixed, radius, drag, charge; cubic, damping; rest_angle, damping.
+    assert_eq!(some, 13);
 }

@@ -20,7 +20,7 @@ fn rows() -> impl Iterator<Item = (&'static Part, &'static Row)> {
 fn components(row: &Row) -> usize {
     match row.kind {
         ValueKind::Numbers(count, _) => count,
-        ValueKind::Ids => 2,
+        ValueKind::Ids(count) => count,
         _ => 1,
     }
 }
@@ -106,7 +106,7 @@ fn a_change_is_seen_by_whatever_depends_on_it() {
             let moves = row.flat.is_some();
             assert_eq!(key(&scene, 5.0) != key(&original, 5.0), moves, "{title}");
             let name = row.flat.map(|name| match part.key {
-                "springs" | "gravitational" => format!("{}.{name}", part.key),
+                "springs" | "bending" | "gravitational" => format!("{}.{name}", part.key),
                 _ => name.to_owned(),
             });
             let found = differences(&flat(&scene), &flat(&original));
@@ -142,8 +142,12 @@ fn every_number_that_moves_something_can_be_varied() {
 }
 
 /// The keys a scene has to have, with one member of every part, in the order of [`PARTS`].
-const REQUIRED: [(&str, &[(&str, &str)]); 8] = [
+const REQUIRED: [(&str, &[(&str, &str)]); 9] = [
     ("springs", &[("particle_ids", "[0, 1]"), ("stiffness", "1")]),
+    (
+        "bending",
+        &[("particle_ids", "[0, 1, 2]"), ("stiffness", "1")],
+    ),
     ("particles", &[("pos", "[1, 0, 0]"), ("mass", "1")]),
     ("gravitational", &[("particle_ids", "[0, 1]"), ("G", "1")]),
     ("wind", &[("direction", "[1, 0, 0]"), ("strength", "1")]),
@@ -171,7 +175,7 @@ fn written(changed: Option<(&Part, &Row, &str)>) -> String {
         text += &match *key {
             "file" => lines.join("\n"),
             "particles" => format!(
-                "particles: [{{pos: [0, 0, 1], mass: 1}}, {{{}}}]\n",
+                "particles: [{{pos: [0, 0, 1], mass: 1}}, {{pos: [0, 1, 0], mass: 1}}, {{{}}}]\n",
                 lines.join(", ")
             ),
             _ if part.list => format!("{key}: [{{{}}}]\n", lines.join(", ")),
@@ -236,8 +240,9 @@ fn numbers_are_read_at_their_bounds_and_refused_beyond() {
             numbers[count - 1] = value;
             let text = written(Some((part, row, &yaml(row, &numbers))));
             let error = parse(&text).expect_err(&text);
-            // The second particle, else the first member.
-            let mut path = part.path(Some(usize::from(part.key == "particles")), row.key);
+            // The last particle, else the first member.
+            let last = if part.key == "particles" { 2 } else { 0 };
+            let mut path = part.path(Some(last), row.key);
             if let ValueKind::Numbers(..) = row.kind {
                 path += &format!("[{}]", count - 1);
             }

@@ -3,7 +3,7 @@
 use crate::testkit::cloth::cloth;
 use springcheck::physics::ParticleSystem;
 use springcheck::physics::effects::{EffectRow, REGISTRY};
-use springcheck::scene::{DampingModel, GravitationalPair, Magnetic, Scene, Wind};
+use springcheck::scene::{Bending, DampingModel, GravitationalPair, Magnetic, Scene, Wind};
 
 /// The ids of what a system has to call.
 fn called(scene: &Scene) -> Vec<&'static str> {
@@ -15,7 +15,7 @@ fn called(scene: &Scene) -> Vec<&'static str> {
 type Call = fn(&mut Scene);
 
 /// What the scene calls for one by one, each on top of gravity and springs.
-const CALLS: [(&str, Call); 5] = [
+const CALLS: [(&str, Call); 6] = [
     ("cubic_springs", |scene| scene.springs[0].cubic = 1.0),
     ("drag", |scene| scene.particles[1].drag = 0.1),
     ("wind", |scene| {
@@ -28,6 +28,12 @@ const CALLS: [(&str, Call); 5] = [
         scene.gravitational.push(GravitationalPair {
             ends: [0, 1],
             g: 1.0,
+        });
+    }),
+    ("bending", |scene| {
+        scene.bending.push(Bending {
+            stiffness: 1.0,
+            ..Bending::default()
         });
     }),
     ("magnetic", |scene| {

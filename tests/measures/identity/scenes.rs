@@ -1,9 +1,9 @@
 //! Every method on every shipped scene: named, or said to be the same as others there.
 
 use super::*;
-use crate::testkit::part;
 use crate::testkit::scenes::{all_shipped, folders, shipped};
-use springcheck::integrators::fixed;
+use crate::testkit::{is_its_own, part};
+use springcheck::integrators::{Method, fixed};
 use springcheck::measure::identify::Undecided;
 use std::collections::BTreeSet;
 
@@ -27,8 +27,11 @@ fn class(scene: &Scene, method: &str) -> Result<BTreeSet<String>, String> {
     let settled = match identity.undecided {
         None => true,
         Some(Undecided::SameMap) => !identity.equivalent.is_empty(),
-        // The first Newton iterate can be within the tolerance of the solution.
-        Some(Undecided::DataTooCoarse) => class.iter().all(|id| iterate(id)),
+        // The first Newton iterate can be within the tolerance of the solution, and Boris' dampers are off from the exact
+        // ones by (c h)³/12 of the velocity, which weak ones hide.
+        Some(Undecided::DataTooCoarse) => {
+            class.iter().all(|id| iterate(id)) || class == set("position_verlet boris")
+        }
         Some(Undecided::Near) => false,
     };
     // The simplest of the class is named, and rounds otherwise than its equals: measured up to 1.
@@ -47,7 +50,8 @@ fn every_method_is_named_on_every_shipped_scene() {
     let mut folders = folders();
     folders.retain(|folder| folder != "hard");
     for (at, scene) in all_shipped(&folders).iter().enumerate() {
-        let methods = part(fixed(), 3, at);
+        let mut methods = part(fixed(), 3, at);
+        methods.retain(|method| is_its_own(scene, method));
         let classes: Vec<_> = methods
             .iter()
             .map(|method| class(scene, method.id).unwrap())
@@ -57,12 +61,21 @@ fn every_method_is_named_on_every_shipped_scene() {
                 let message = format!("{}: {} and {}", scene.name, method.id, other.id);
                 let iterates = iterate(method.id) && iterate(other.id);
                 assert!(
-                    iterates || own.contains(other.id) == (own == theirs),
+                    iterates
+                        || weak(method.id, other.id)
+                        || own.contains(other.id) == (own == theirs),
                     "{message}"
                 );
             }
         }
     }
+}
+
+/// Position Verlet and Boris, where dampers are weak.
+fn weak(method: &str, other: &str) -> bool {
+    [method, other]
+        .iter()
+        .all(|id| ["position_verlet", "boris"].contains(id))
 }
 
 fn set(ids: &str) -> BTreeSet<String> {
@@ -110,7 +123,8 @@ fn on_linear_forces_some_methods_are_one() {
         }
     }
     // A spring that turns is not linear: all are told apart.
-    for method in fixed().iter() {
+    let own = |method: &&Method| is_its_own(&course(5), method);
+    for method in fixed().iter().filter(own) {
         let class = class(&course(5), method.id).unwrap();
         let alone = class == set(method.id);
         assert!(alone || class.iter().all(|id| iterate(id)), "{class:?}");

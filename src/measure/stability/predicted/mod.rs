@@ -296,8 +296,17 @@ pub fn is_linear(scene: &Scene) -> bool {
     let isotropic = scene.damping_model == DampingModel::Isotropic;
     let springs = scene.springs.iter().filter(|spring| moves(&spring.ends));
     let attractions = scene.gravitational.iter().filter(|pair| moves(&pair.ends));
-    springs.into_iter().all(|s| {
-        let pulls_linearly = s.rest_length == 0.0 || s.stiffness == 0.0;
-        pulls_linearly && s.cubic == 0.0 && (s.damping == 0.0 || isotropic)
-    }) && attractions.into_iter().all(|pair| pair.g == 0.0)
+    let hinges = scene.bending.iter().filter(|hinge| {
+        let fixed = |&p: &usize| scene.particles.get(p).is_some_and(|p| p.fixed);
+        !hinge.particles.iter().all(fixed)
+    });
+    let bends = hinges
+        .into_iter()
+        .any(|hinge| hinge.stiffness != 0.0 || hinge.damping != 0.0);
+    !bends
+        && springs.into_iter().all(|s| {
+            let pulls_linearly = s.rest_length == 0.0 || s.stiffness == 0.0;
+            pulls_linearly && s.cubic == 0.0 && (s.damping == 0.0 || isotropic)
+        })
+        && attractions.into_iter().all(|pair| pair.g == 0.0)
 }
