@@ -85,7 +85,7 @@ fn each_once<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 
 /// The motion of one group.
 enum Part {
-    Modes(GroupMotion),
+    Modes(Box<GroupMotion>),
     Fall(Fall),
 }
 
@@ -95,7 +95,7 @@ impl Part {
         if group.bodies.iter().any(|body| body.quadratic != 0.0) {
             return Fall::of(group).map(Self::Fall);
         }
-        GroupMotion::of(group).map(Self::Modes)
+        GroupMotion::of(group).map(|motion| Self::Modes(Box::new(motion)))
     }
 
     /// Method and reason.
