@@ -19,6 +19,7 @@ mod read;
 mod table;
 mod text;
 mod values;
+mod vectors;
 pub(crate) mod words;
 mod write;
 

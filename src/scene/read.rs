@@ -12,10 +12,8 @@ use super::limits::{EXPECTED, known, method};
 use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
-use super::values::{
-    Any, Either, Key, Maybe, Number, NumberOrList, Numbers, Table, Texts, flag, index_of, number,
-    text, vectors,
-};
+use super::values::{Any, Key, Maybe, Number, Numbers, Table, Texts, flag, index_of, number, text};
+use super::vectors::{Either, NumberOrList, vectors};
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 

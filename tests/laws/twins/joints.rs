@@ -2,7 +2,7 @@
 
 use super::{apart, build, mutated, ours, scenes, swept, theirs};
 use springcheck::physics::ParticleSystem;
-use springcheck::scene::{DampingModel, Scene};
+use springcheck::scene::{DampingModel, Scene, Triangle};
 use springcheck::solvers::Setting;
 use springcheck::solvers::find;
 
@@ -52,6 +52,8 @@ fn mutants_fail() {
     fails("axial for isotropic", &scenes::isotropic(), axial);
     let still: fn(&mut Scene) = |s| s.particles.iter_mut().for_each(|p| p.drag = 0.0);
     fails("no drag", &scenes::drag_and_wind(), still);
+    let at_rest: fn(&mut Scene) = |s| s.air = None;
+    fails("air at rest", &scenes::moving_air(), at_rest);
     let calm: fn(&mut Scene) = |s| s.wind = None;
     fails("no wind", &scenes::drag_and_wind(), calm);
     let up: fn(&mut Scene) = |s| s.solver.gravity *= -1.0;
@@ -120,10 +122,19 @@ fn the_rest_is_unsupported() {
     });
     let faint = mutated(&scenes::course(1), |s| s.springs[0].stiffness = 1e-15);
     let heavy = mutated(&scenes::course(0), |s| s.particles[0].mass = 1e21);
+    let squared = mutated(&scenes::drag(), |s| s.particles[2].quadratic_drag = 1.0);
+    let sail = mutated(&scenes::drag(), |s| {
+        s.triangles.push(Triangle {
+            corners: [1, 2, 3],
+            air_drag: 1.0,
+        });
+    });
     let slight = mutated(&scenes::drag(), |s| s.particles[2].drag = 1e-18);
     for (scene, words) in [
         (scenes::gravitational(), "no native `gravitational`"),
         (scenes::cubic(), "no native `cubic_springs`"),
+        (squared, "no native `quadratic_drag`"),
+        (sail, "no native `air_drag`"),
         (coincident, "both ends in one place"),
         (faint, "so soft"),
         (heavy, "weighs"),

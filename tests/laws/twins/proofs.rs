@@ -80,7 +80,7 @@ fn what_rapier_lacks_is_skipped_with_its_reason() {
 #[test]
 fn mutants_fail() {
     type Mutation = fn(&mut Scene);
-    let mutants: [(&str, Scene, Mutation); 9] = [
+    let mutants: [(&str, Scene, Mutation); 10] = [
         ("mass", scenes::course(5), |s| {
             s.particles[1].mass *= 1.000_001
         }),
@@ -101,6 +101,9 @@ fn mutants_fail() {
         }),
         ("gravity", scenes::course(0), |s| s.solver.gravity = -9.8),
         ("drag", scenes::drag(), |s| s.particles[3].drag *= 1.001),
+        ("air", scenes::moving_air(), |s| {
+            s.air.iter_mut().for_each(|air| air.velocity[1] *= 1.001)
+        }),
         ("wind", scenes::wind(), |s| s.wind = None),
     ];
     for (name, scene, mutate) in mutants {

@@ -3,7 +3,7 @@
 use crate::testkit::scenes::{self, all_shipped, shipped, spring};
 pub use crate::testkit::scenes::{fixed, free};
 use springcheck::scene::{
-    DampingModel, GravitationalPair, Scene, SolverSpec, Spring, Vectors, Wind,
+    Air, DampingModel, GravitationalPair, Scene, SolverSpec, Spring, Vectors, Wind,
 };
 
 /// Nothing in it: gravity along z, a step of 5e-4 s, one second.
@@ -58,6 +58,19 @@ pub fn wind() -> Scene {
     scene.wind = Some(Wind {
         direction: [0.6, 0.0, 0.8],
         strength: 2.0,
+    });
+    scene
+}
+
+/// Drag in air that moves along no axis.
+pub fn moving_air() -> Scene {
+    let mut scene = Scene {
+        name: "moving air".to_owned(),
+        ..drag()
+    };
+    scene.air = Some(Air {
+        velocity: [4.0, -3.0, 2.0],
+        ..Air::default()
     });
     scene
 }
@@ -123,6 +136,7 @@ pub fn mirrored() -> Vec<Scene> {
         isotropic(),
         gravities(),
         drag(),
+        moving_air(),
         wind(),
         drag_and_wind(),
     ]);

@@ -28,9 +28,9 @@ fn states(scene: &Scene, times: &[f64]) -> States {
 
 /// Speed and way after so many seconds, and the terminal speed: computed elsewhere at 36 digits.
 const FALL: [(f64, f64, f64); 3] = [
-    (1.0, 8.4686385137803239, 4.5497212082596806),
-    (2.0, 12.403406112028349, 15.330358672185977),
-    (5.0, 13.981709474047688, 56.190925954858809),
+    (1.0, 8.468_638_513_780_324, 4.549_721_208_259_681),
+    (2.0, 12.403_406_112_028_35, 15.330_358_672_185_977),
+    (5.0, 13.981_709_474_047_688, 56.190_925_954_858_81),
 ];
 
 /// How far a fall is off, in roundings of the numbers published.
