@@ -17,7 +17,7 @@ pub fn energy_scale(scene: &Scene, system: &ParticleSystem, peak: Option<f64>) -
         .particles
         .iter()
         .filter(|p| !p.fixed)
-        .map(|p| p.mass * scene.solver.gravity.abs())
+        .map(|p| p.mass * gravity(scene))
         .sum();
     let rest = weight * scene.size();
     // A truth that stands still leaves only rounding, too.
@@ -36,12 +36,21 @@ pub fn divergence_limit(scene: &Scene, scale: Option<f64>) -> Option<f64> {
     (limit > 0.0 && limit.is_finite()).then_some(limit)
 }
 
-/// The energy gravity and wind give the free particles in a fall of t seconds, over t², J/s².
+/// The size of gravity, m/s²; exact along an axis.
+pub(crate) fn gravity(scene: &Scene) -> f64 {
+    let [x, y, z] = scene.gravity();
+    x.hypot(y).hypot(z)
+}
+
+/// The energy gravity, wind and the drag of moving air at rest give the free particles in t seconds, over t², J/s².
 pub(super) fn free_fall(scene: &Scene) -> f64 {
     let wind = scene.wind.as_ref().map_or(0.0, |wind| wind.strength.abs());
+    let [x, y, z] = scene.air().velocity;
+    let air = x.hypot(y).hypot(z);
     let free = scene.particles.iter().filter(|p| !p.fixed);
     let fall = free.map(|p| {
-        let a = scene.solver.gravity.abs() + wind / p.mass;
+        let blown = (p.drag.abs() + p.quadratic_drag.abs() * air) * air;
+        let a = gravity(scene) + (wind + blown) / p.mass;
         0.5 * p.mass * a * a
     });
     fall.sum()

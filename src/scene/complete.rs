@@ -5,7 +5,7 @@ use super::error::Refusal;
 use super::expect::engine;
 use super::expectation::{Names, Scope};
 use super::limits;
-use super::model::{NO_PARTICLES, Particle, Scene, Wind};
+use super::model::{NO_PARTICLES, Particle, Scene, Triangle, Wind};
 use super::place::Problem;
 use super::read::Reading;
 use super::values::Number;
@@ -63,6 +63,10 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
     for (at, hinge) in scene.bending.iter().enumerate() {
         ends(&hinge.particles, count, &format_args!("bending[{at}]"))?;
         links(at, hinge.particles, &scene.particles)?;
+    }
+    for (at, found) in scene.triangles.iter().enumerate() {
+        ends(&found.corners, count, &format_args!("triangles[{at}]"))?;
+        triangle(at, found, &scene.particles)?;
     }
     for (at, pair) in scene.gravitational.iter().enumerate() {
         ends(&pair.ends, count, &format_args!("gravitational[{at}]"))?;
@@ -166,6 +170,22 @@ fn links(at: usize, [a, b, c]: [usize; 3], particles: &[Particle]) -> Result<(),
                 format!("expected neighbours apart, found {one} and {other} in one place");
             let help = "the angle at the middle particle needs two directions";
             return Problem::because(format!("bending[{at}].particle_ids"), message, help);
+        }
+    }
+    Ok(())
+}
+
+/// Checks that no two corners start in one place.
+fn triangle(at: usize, triangle: &Triangle, particles: &[Particle]) -> Result<(), Problem> {
+    let [a, b, c] = triangle.corners;
+    for ends in [[a, b], [b, c], [a, c]] {
+        if distance(particles, ends) == 0.0 {
+            let message = format!(
+                "expected three corners apart, found {} and {} in one place",
+                ends[0], ends[1]
+            );
+            let help = "a triangle needs an area";
+            return Problem::because(format!("triangles[{at}].particle_ids"), message, help);
         }
     }
     Ok(())

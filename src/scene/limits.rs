@@ -81,6 +81,8 @@ impl Bounds {
 pub const POSITION: Bounds = Bounds::signed(1e12, "m");
 /// A spring's stiffness.
 pub const STIFFNESS: Bounds = Bounds::not_negative(1e18, "N/m");
+/// An acceleration of gravity, or a component of it.
+pub const GRAVITY: Bounds = Bounds::signed(1e12, "m/s²");
 /// The timestep.
 pub const TIMESTEP: Bounds = Bounds::from(1e-30, 1e12, "s");
 /// The simulated time.

@@ -26,10 +26,10 @@ pub use error::{Refusal, SceneError};
 pub(crate) use expectation::{ALL, REST, SKIP};
 pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
-    Axis, Bending, DampingModel, GravitationalPair, Magnetic, Particle, Plot, Scene, SolverSpec,
-    Spring, Wind, steps,
+    Air, Axis, Bending, DampingModel, GravitationalPair, Magnetic, Particle, Plot, Scene,
+    SolverSpec, Spring, Triangle, Wind, steps,
 };
-pub use table::Value;
+pub use table::{Value, Vectors};
 pub use write::yaml;
 
 use place::Problem;

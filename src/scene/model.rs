@@ -7,24 +7,28 @@
 //! /// What it is, and its unit.
 //! field: type = default, "key" => kind and bounds, meaning of an absent key, its flat array;
 //! ```
+//! A key that takes a number or vectors has two rows, the number's first; the one that is not given is 0 or empty.
+//!
 //! `Default` is the value of an absent key. Where the key is required, it is something harmless, such as
 //! a force of 0.
 
 use super::expectation::{Expectation, Scope, Skipped};
 use super::limits::{self, Bounds, Form};
-use super::table::{Field, Value, declare, members, words};
+use super::table::{Field, Value, Vectors, declare, members, words};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use serde::Serialize;
 
 /// All parts: the mappings a file consists of.
-pub static PARTS: [&Part; 9] = [
+pub static PARTS: [&Part; 11] = [
     &SPRINGS,
     &BENDING,
     &PARTICLES,
+    &TRIANGLES,
     &GRAVITATIONAL,
     &WIND,
     &MAGNETIC,
+    &AIR,
     &SOLVER,
     &PLOT,
     &SCENE,
@@ -89,6 +93,8 @@ pub enum ValueKind {
     Number(Bounds),
     /// A list of this many numbers.
     Numbers(usize, Bounds),
+    /// A list of three numbers, or a list of such lists.
+    Vectors(Bounds),
     /// The id of a particle.
     Id,
     /// A list of this many particle ids.
@@ -126,7 +132,7 @@ use Absent::{Derived, Required, Usual};
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    reserved ["air", "colliders", "driven", "objects", "rods", "strain_limit"];
+    reserved ["colliders", "driven", "objects", "rods", "strain_limit"];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
@@ -146,7 +152,7 @@ declare! {
         Required("add `solver: {type: symplectic_euler, timestep: 0.0005}`"), None;
     /// Seconds, at least one timestep.
     duration: f64 = 5.0, "duration" => ValueKind::Number(limits::DURATION), Usual, None;
-    /// The axis gravity acts along.
+    /// The axis that a number under `gravity` is along; vectors have axes of their own.
     up: Axis = Axis::Z, "up" => ValueKind::Word(Axis::WORDS), Usual, Some("gravity");
     /// The part of the ends' relative velocity that dampers resist.
     damping_model: DampingModel = DampingModel::Axial,
@@ -160,6 +166,9 @@ declare! {
     springs: Vec<Spring> = Vec::new(), "springs" => ValueKind::Part(&SPRINGS), Usual, None;
     /// Hinges that resist bending.
     bending: Vec<Bending> = Vec::new(), "bending" => ValueKind::Part(&BENDING), Usual, None;
+    /// Triangles of particles, which the air drags at.
+    triangles: Vec<Triangle> = Vec::new(),
+        "triangles" => ValueKind::Part(&TRIANGLES), Usual, None;
     /// Attractions.
     gravitational: Vec<GravitationalPair> = Vec::new(),
         "gravitational" => ValueKind::Part(&GRAVITATIONAL), Usual, None;
@@ -167,6 +176,8 @@ declare! {
     wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
     /// A uniform magnetic field.
     magnetic: Option<Magnetic> = None, "magnetic" => ValueKind::Part(&MAGNETIC), Usual, None;
+    /// The air that drag acts against; at rest, as at sea level, where the scene says nothing of it.
+    air: Option<Air> = None, "air" => ValueKind::Part(&AIR), Usual, None;
     /// Names of other programs that the file expects something of; the command line says what they are.
     externals: Vec<String> = Vec::new(),
         "externals" => ValueKind::Names(limits::EXTERNAL), Usual, None;
@@ -187,7 +198,10 @@ declare! {
         Required("give the step in seconds, as 0.0005"), None;
     /// Signed acceleration along `up`, m/s².
     gravity: f64 = -9.81,
-        "gravity" => ValueKind::Number(Bounds::signed(1e12, "m/s²")), Usual, Some("gravity");
+        "gravity" => ValueKind::Number(limits::GRAVITY), Usual, Some("gravity");
+    /// Or accelerations that add up, m/s², whatever `up` is.
+    gravities: Vectors = Vectors::default(),
+        "gravity" => ValueKind::Vectors(limits::GRAVITY), Usual, Some("gravity");
     /// Relative residual at which an implicit solve ends; the method's default if absent.
     tolerance: Option<f64> = None,
         "tolerance" => ValueKind::Number(Bounds::from(1e-300, 1.0, "relative")), Usual, None;
@@ -225,12 +239,15 @@ declare! {
         "mass" => ValueKind::Number(Bounds::from(1e-30, 1e30, "kg")), Derived, Some("masses");
     /// Metres; the radius of the ball where the scene has contact.
     radius: f64 = 0.1, "radius" => ValueKind::Number(Bounds::not_negative(1e12, "m")), Usual, None;
-    /// Linear drag coefficient b, N s/m.
+    /// Linear drag coefficient b, N s/m: the force is -b u, u the velocity relative to the air.
     drag: f64 = 0.0,
         "drag" => ValueKind::Number(Bounds::not_negative(1e18, "N s/m")), Usual, Some("drag");
     /// Charge q, coulombs; acts in a magnetic field alone. Charges do not attract or repel each other.
     charge: f64 = 0.0,
         "charge" => ValueKind::Number(Bounds::signed(1e12, "C")), Usual, Some("charges");
+    /// Quadratic drag coefficient c, N s²/m²: the force is -c |u| u.
+    quadratic_drag: f64 = 0.0, "quadratic_drag" =>
+        ValueKind::Number(Bounds::not_negative(1e18, "N s²/m²")), Usual, Some("quadratic_drag");
 }
 
 declare! {
@@ -278,6 +295,20 @@ declare! {
 }
 
 declare! {
+    /// A triangle of particles that the air drags at, such as a patch of cloth.
+    TRIANGLES: Triangle, list triangles, "a triangle: a mapping with `particle_ids` and `air_drag`",
+    reserved [];
+
+    /// Three different particles, in any order.
+    corners: [usize; 3] = [0, 1, 2], "particle_ids" => ValueKind::Ids(3),
+        Required("name the three corners: `particle_ids: [0, 1, 2]`"), Some("ids");
+    /// Drag coefficient C, a pure number: the force is -density C A |u·n| (u·n) n / 2.
+    air_drag: f64 = 0.0,
+        "air_drag" => ValueKind::Number(Bounds::not_negative(1e12, "a pure number")),
+        Required("give its drag coefficient, as 1.0"), Some("air_drag");
+}
+
+declare! {
     /// Attraction G m1 m2 / r² between two particles.
     GRAVITATIONAL: GravitationalPair, list gravitational,
     "a pair: a mapping with `particle_ids` and `G`",
@@ -294,7 +325,7 @@ declare! {
 declare! {
     /// A constant force on every free particle, whatever its mass. Not to be confused with moving air.
     WIND: Wind, maybe wind, "a mapping with `direction` and `strength`",
-    reserved ["velocity", "density", "profile"];
+    reserved ["profile"];
 
     /// Unit vector; in the file of any length but 0.
     direction: [f64; 3] = [1.0, 0.0, 0.0],
@@ -312,6 +343,19 @@ declare! {
     /// B, tesla: the force is q v x B.
     field: [f64; 3] = [0.0; 3], "field" => ValueKind::Numbers(3, Bounds::signed(1e12, "T")),
         Required("give the field in tesla: `field: [0, 0, 3]`"), Some("magnetic_field");
+}
+
+declare! {
+    /// The air, the same everywhere. Not to be confused with `wind`, which is a force and needs no drag.
+    AIR: Air, maybe air, "a mapping with `velocity` and `density`", reserved [];
+
+    /// Metres per second.
+    velocity: [f64; 3] = [0.0; 3],
+        "velocity" => ValueKind::Numbers(3, Bounds::signed(1e12, "m/s")), Usual,
+        Some("air_velocity");
+    /// Kilograms per cubic metre, by which triangles are dragged at.
+    density: f64 = 1.2, "density" => ValueKind::Number(Bounds::not_negative(1e12, "kg/m³")),
+        Usual, Some("air_density");
 }
 
 /// Expectations have a reader of their own, and no rows.
@@ -354,6 +398,23 @@ impl Scene {
     /// Number of steps that cover the duration: N = ceil(duration / h - 1e-9), at least 1.
     pub fn steps(&self, timestep: f64) -> u64 {
         steps(self.duration, timestep)
+    }
+
+    /// The acceleration of gravity, m/s²: the number along `up` and the vectors, of which a file has either.
+    pub fn gravity(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        sum[self.up.index()] = self.solver.gravity;
+        for vector in &self.solver.gravities.0 {
+            for (sum, part) in sum.iter_mut().zip(vector) {
+                *sum += part;
+            }
+        }
+        sum
+    }
+
+    /// The air, whether or not the scene says something of it.
+    pub fn air(&self) -> Air {
+        self.air.clone().unwrap_or_default()
     }
 
     /// The scene's size L in metres: the diagonal of the box around all initial positions plus the

@@ -12,7 +12,10 @@ use super::limits::{EXPECTED, known, method};
 use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
-use super::values::{Any, Key, Maybe, Number, Numbers, Texts, flag, index_of, number, text};
+use super::values::{
+    Any, Either, Key, Maybe, Number, NumberOrList, Numbers, Texts, flag, index_of, number, text,
+    vectors,
+};
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
@@ -136,9 +139,9 @@ impl<'n> Entry<'_, 'n> {
     /// Sets a number, or one of a list.
     fn number(&mut self, component: usize, number: Number) -> Result<(), Refusal> {
         let value = match self.row.kind {
-            ValueKind::Number(quantity) | ValueKind::Numbers(_, quantity) => {
-                Value::Number(quantity.judge(number)?)
-            }
+            ValueKind::Number(quantity)
+            | ValueKind::Numbers(_, quantity)
+            | ValueKind::Vectors(quantity) => Value::Number(quantity.judge(number)?),
             ValueKind::Coordinate => Value::Id(coordinate(number)?),
             _ => Value::Id(self.id(component, number)),
         };
@@ -164,6 +167,11 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
 
     fn deserialize<D: Deserializer<'de>>(mut self, from: D) -> Result<(), D::Error> {
         match self.row.kind {
+            ValueKind::Number(_) if self.vectors().is_some() => {
+                from.deserialize_any(NumberOrList(self)).map(|_| ())
+            }
+            // Its number's row reads it.
+            ValueKind::Vectors(_) => Ok(()),
             ValueKind::Number(_) | ValueKind::Id | ValueKind::Coordinate => {
                 from.deserialize_any(number(|n| self.number(0, n)))
             }
@@ -211,6 +219,27 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
                 problem: &mut self.reading.problem,
             }),
         }
+    }
+}
+
+impl Entry<'_, '_> {
+    /// The row that takes vectors in the place of this one's number.
+    fn vectors(&self) -> Option<&'static Row> {
+        let mut rows = self.part.rows.iter();
+        rows.find(|row| row.key == self.row.key && matches!(row.kind, ValueKind::Vectors(_)))
+    }
+}
+
+impl Either for Entry<'_, '_> {
+    fn number(&mut self, number: Number) -> Result<(), Refusal> {
+        Entry::number(self, 0, number)
+    }
+
+    /// Vectors stand in the place of the number, which is 0 then.
+    fn list<'de, A: SeqAccess<'de>>(mut self, list: A) -> Result<bool, A::Error> {
+        self.set(0, Value::Number(0.0));
+        self.row = self.vectors().unwrap_or(self.row);
+        vectors(list, |at, number| Entry::number(&mut self, at, number)).map(|()| true)
     }
 }
 

@@ -82,6 +82,23 @@ impl<T: Field + Default> Field for Vec<T> {
     }
 }
 
+/// Vectors that one key holds, of no fixed number; components follow one another.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Vectors(pub Vec<[f64; 3]>);
+
+impl Field for Vectors {
+    fn value(&self, component: usize) -> Option<Value<'_>> {
+        self.0.get(component / 3)?.value(component % 3)
+    }
+
+    /// Vectors up to this component that are not there yet are 0.
+    fn put(&mut self, component: usize, value: Value<'_>) {
+        let vectors = self.0.len().max(component / 3 + 1);
+        self.0.resize(vectors, [0.0; 3]);
+        self.0[component / 3].put(component % 3, value);
+    }
+}
+
 /// Gives an enum its words in a file, in the order in which messages list them.
 macro_rules! words {
     ($type:ident: $($word:literal => $variant:ident),+) => {

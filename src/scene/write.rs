@@ -44,9 +44,20 @@ pub fn yaml(scene: &Scene) -> String {
 
 /// One mapping of a part, on one line.
 fn member(part: &Part, scene: &Scene, at: usize) -> String {
-    let rows = part.rows.iter();
-    let entry = |row: &Row| value(row, scene, at).map(|value| format!("{}: {value}", row.key));
-    braces(rows.filter_map(entry))
+    let mut entries: Vec<(&str, String)> = Vec::new();
+    for row in part.rows {
+        let Some(value) = value(row, scene, at) else {
+            continue;
+        };
+        // Of two rows of a key the later one holds what is given in the number's place.
+        entries.pop_if(|(key, _)| *key == row.key);
+        entries.push((row.key, value));
+    }
+    braces(
+        entries
+            .into_iter()
+            .map(|(key, value)| format!("{key}: {value}")),
+    )
 }
 
 /// The value of a key; None where it has none.
@@ -61,6 +72,16 @@ fn value(row: &Row, scene: &Scene, at: usize) -> Option<String> {
         ValueKind::Numbers(..) | ValueKind::Ids(_) | ValueKind::Names(_) => {
             let values: Vec<String> = values.collect();
             (!values.is_empty()).then(|| brackets(values))
+        }
+        ValueKind::Vectors(_) => {
+            let values: Vec<String> = values.collect();
+            let vectors = values.chunks(3).map(|vector| brackets(vector.to_vec()));
+            let vectors: Vec<String> = vectors.collect();
+            match &vectors[..] {
+                [] => None,
+                [vector] => Some(vector.clone()),
+                _ => Some(brackets(vectors)),
+            }
         }
         _ => values.next(),
     }

@@ -15,6 +15,8 @@ pub use solver::{BuildIntegrator, Solver, SolverKind, catalogue, find, methods, 
 
 use crate::integrators::StepError;
 use crate::physics::{Refused, State};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A scene that advances step by step. Only a [`Run`] takes its steps.
 ///
@@ -53,6 +55,17 @@ pub struct Counts {
     pub damping_evaluations: Option<u64>,
     pub linear_solves: Option<u64>,
     pub newton_iterations: Option<u64>,
+    /// What a rapier world was built of.
+    pub world: Option<Built>,
+}
+
+/// What a scene called for in a rapier world.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Built {
+    /// Bodies: one a particle, and one for the air where drag is a joint.
+    pub bodies: u64,
+    /// Joints: one for each spring, damper and drag that rapier has itself.
+    pub joints: u64,
 }
 
 impl Counts {

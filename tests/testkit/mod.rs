@@ -13,7 +13,9 @@ pub use springcheck::conformance::systems::{Oscillator, free_triangle, swinging_
 use springcheck::integrators::{Integrator, Method, Settings, fixed};
 use springcheck::physics::effects::Effect;
 use springcheck::physics::{ForceKinds, ParticleSystem, Power, State, System};
-use springcheck::scene::{Bending, DampingModel, GravitationalPair, Magnetic, Scene, Wind};
+use springcheck::scene::{
+    Air, Bending, DampingModel, GravitationalPair, Magnetic, Scene, Triangle, Wind,
+};
 
 /// All of these in a whole run, which `SPRINGCHECK_WHOLE=1` asks for as CI does; else one in `of`,
 /// beginning with number `at`: what lies in a loop over at least `of` cases that hands in its own number
@@ -122,7 +124,7 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()))
 }
 
-/// A scene that calls for every effect of the registry.
+/// A scene that calls for every effect that every method takes.
 pub fn everything(model: DampingModel) -> Scene {
     let mut scene = swinging_triangle(0.7, model);
     scene.springs[1].cubic = 3.0;
@@ -149,6 +151,21 @@ pub fn everything(model: DampingModel) -> Scene {
     scene.magnetic = Some(Magnetic {
         field: [0.4, -0.3, 0.6],
     });
+    scene
+}
+
+/// A scene that calls for every effect of the registry, in moving air.
+pub fn all_effects(model: DampingModel) -> Scene {
+    let mut scene = everything(model);
+    scene.air = Some(Air {
+        velocity: [0.6, -0.3, 0.2],
+        density: 1.2,
+    });
+    scene.particles[1].quadratic_drag = 0.2;
+    scene.particles[2].quadratic_drag = 0.4;
+    for (corners, air_drag) in [([1, 2, 3], 1.0), ([0, 3, 1], 0.7)] {
+        scene.triangles.push(Triangle { corners, air_drag });
+    }
     scene
 }
 

@@ -6,7 +6,7 @@ use super::numbers::{NUMBERS, Number};
 use super::result::Deviation;
 use super::words::{digits, seconds, times};
 use crate::scene::model::{BENDING, SPRINGS};
-use crate::scene::{Axis, Scene};
+use crate::scene::{Axis, Scene, Vectors};
 
 /// "spring 3 (particles 1 and 2)".
 pub(super) fn spring(scene: &Scene, id: usize) -> String {
@@ -120,12 +120,25 @@ pub(super) fn of_hinges(scene: &Scene, particles: &[usize]) -> impl Iterator<Ite
     at.flat_map(move |(id, _)| numbers.map(|number| One(number, id)))
 }
 
-/// The channels of these particles; those that the scene has 0 of too, but charges only in a magnetic field.
-pub(super) fn of_particles(scene: &Scene, particles: &[usize]) -> impl Iterator<Item = Channel> {
-    let field = scene.magnetic.is_some();
-    let numbers = [Number::Mass, Number::Drag, Number::Charge].into_iter();
-    let numbers = numbers.filter(move |number| field || *number != Number::Charge);
-    (particles.iter()).flat_map(move |i| numbers.clone().map(|number| One(number, *i)))
+/// The channels of these particles; those that the scene has 0 of too.
+///
+/// Of quadratic drag, of charge and of the triangles at them only where the scene has some: nobody adds those by mistake.
+pub(super) fn of_particles(scene: &Scene, particles: &[usize]) -> Vec<Channel> {
+    let there = [Number::QuadraticDrag, Number::Charge]
+        .into_iter()
+        .filter(|number| number.is_in(scene));
+    let numbers = || {
+        [Number::Mass, Number::Drag]
+            .into_iter()
+            .chain(there.clone())
+    };
+    let own = particles
+        .iter()
+        .flat_map(|&i| numbers().map(move |number| One(number, i)));
+    let triangles = scene.triangles.iter().enumerate();
+    let at = triangles.filter(|(_, t)| t.corners.iter().any(|corner| particles.contains(corner)));
+    own.chain(at.map(|(id, _)| One(Number::AirDrag, id)))
+        .collect()
 }
 
 impl Channel {
@@ -141,14 +154,12 @@ impl Channel {
             One(number, at) => number.value(scene, at) != 0.0,
             Spring(id) => forces(scene, id) > 1,
             Along(number, axis) => {
-                let along = match (number, &scene.wind) {
-                    (Number::Wind, Some(wind)) => {
-                        let across = |at: usize| at != axis.index() && wind.direction[at] != 0.0;
-                        !(0..3).any(across)
-                    }
-                    _ => axis == scene.up,
+                let direction = match (number, &scene.wind) {
+                    (Number::Wind, Some(wind)) => wind.direction,
+                    _ => scene.gravity(),
                 };
-                number.is_in(scene) && !along
+                let across = |at: usize| at != axis.index() && direction[at] != 0.0;
+                number.is_in(scene) && (0..3).any(across)
             }
             Timestep | Velocity(_) => true,
         }
@@ -175,6 +186,8 @@ impl Channel {
             Along(number, axis) => {
                 number.change(scene, None, |value| value * factor);
                 if number == Number::Gravity {
+                    scene.solver.gravity = number.value(scene, 0);
+                    scene.solver.gravities = Vectors::default();
                     scene.up = axis;
                 } else if let Some(wind) = &mut scene.wind {
                     wind.direction = [0.0; 3];

@@ -295,6 +295,10 @@ fn explicit(kinds: ForceKinds) -> impl Iterator<Item = &'static Method> {
 
 /// Methods under all forces but drag, which multiplies velocities before the kick, after it or at the end.
 fn damped(scene: &Scene) -> Vec<Candidate> {
+    // Whoever multiplies velocities brings them to rest, and not to the velocity of the air.
+    if scene.air().velocity != [0.0; 3] {
+        return Vec::new();
+    }
     let Some(without) = channels::scaled(scene, &[("drag", 0.0)]) else {
         return Vec::new();
     };

@@ -3,11 +3,12 @@
 
 use super::words::{digits, times};
 use crate::scene::model::{
-    BENDING, GRAVITATIONAL, PARTICLES, Part, Row, SOLVER, SPRINGS, ValueKind, WIND,
+    AIR, BENDING, GRAVITATIONAL, PARTICLES, Part, Row, SOLVER, SPRINGS, TRIANGLES, ValueKind, WIND,
 };
 use crate::scene::{Scene, Value};
 
-/// A number of a scene, in one member of its part or in all.
+/// A number of a scene, in one member of its part or in all. Of a vector it is the length, with the sign of its
+/// largest component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Number {
     Gravity,
@@ -21,17 +22,20 @@ pub(super) enum Number {
     BendDamping,
     Drag,
     Charge,
+    QuadraticDrag,
+    AirDrag,
+    AirVelocity,
     Wind,
     Attraction,
     Mass,
 }
 use Number::{
-    Attraction, Bend, BendDamping, Charge, Cubic, Damping, Drag, Gravity, Mass, RestAngle,
-    RestLength, Stiffness, Wind,
+    AirDrag, AirVelocity, Attraction, Bend, BendDamping, Charge, Cubic, Damping, Drag, Gravity,
+    Mass, QuadraticDrag, RestAngle, RestLength, Stiffness, Wind,
 };
 
 /// In the order in which they are suspected.
-pub(super) const NUMBERS: [Number; 13] = [
+pub(super) const NUMBERS: [Number; 16] = [
     Gravity,
     Stiffness,
     Damping,
@@ -41,6 +45,9 @@ pub(super) const NUMBERS: [Number; 13] = [
     RestAngle,
     BendDamping,
     Drag,
+    QuadraticDrag,
+    AirDrag,
+    AirVelocity,
     Charge,
     Wind,
     Attraction,
@@ -61,6 +68,9 @@ impl Number {
             BendDamping => ("bending.damping", &BENDING, "damping"),
             Drag => ("drag", &PARTICLES, "drag"),
             Charge => ("charge", &PARTICLES, "charge"),
+            QuadraticDrag => ("quadratic_drag", &PARTICLES, "quadratic_drag"),
+            AirDrag => ("air_drag", &TRIANGLES, "air_drag"),
+            AirVelocity => ("air.velocity", &AIR, "velocity"),
             Wind => ("wind", &WIND, "strength"),
             Attraction => ("gravitational", &GRAVITATIONAL, "G"),
             Mass => ("mass", &PARTICLES, "mass"),
@@ -76,31 +86,49 @@ impl Number {
         self.key().1
     }
 
-    fn row(self) -> Option<&'static Row> {
+    /// Its rows: a second one where vectors may stand in the place of a number.
+    fn rows(self) -> impl Iterator<Item = &'static Row> {
         let (_, part, key) = self.key();
-        part.rows.iter().find(|row| row.key == key)
+        part.rows.iter().filter(move |row| row.key == key)
+    }
+
+    /// The row that holds it in this scene.
+    fn row(self, scene: &Scene, at: usize) -> Option<&'static Row> {
+        let given = |row: &&Row| (row.get)(scene, at, 0).is_some();
+        self.rows().filter(given).last()
     }
 
     /// The unit that its value is written in.
     pub(super) fn unit(self) -> &'static str {
-        match self.row().map(|row| &row.kind) {
-            Some(ValueKind::Number(bounds)) => bounds.unit,
+        match self.rows().next().map(|row| &row.kind) {
+            Some(ValueKind::Number(bounds) | ValueKind::Numbers(_, bounds)) => bounds.unit,
             _ => "",
         }
     }
 
     /// In the member of this index; 0 where there is none.
     pub(super) fn value(self, scene: &Scene, at: usize) -> f64 {
-        match self.row().and_then(|row| (row.get)(scene, at, 0)) {
-            Some(Value::Number(value)) => value,
-            _ => 0.0,
+        let Some(row) = self.row(scene, at) else {
+            return 0.0;
+        };
+        let mut sum = [0.0_f64; 3];
+        for (component, value) in row.values(scene, at).filter_map(number).enumerate() {
+            sum[component % 3] += value;
         }
+        let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+        let sign = sum.into_iter().fold(0.0, larger).signum();
+        sum[0].hypot(sum[1]).hypot(sum[2]) * sign
     }
 
     /// In every member that it acts on: a fixed particle has neither inertia nor drag.
     pub(super) fn values(self, scene: &Scene) -> Vec<f64> {
         let part = self.part();
-        let acts = |at: &usize| part.key != PARTICLES.key || !scene.particles[*at].fixed;
+        let acts = |at: &usize| match self {
+            AirVelocity => [Drag, QuadraticDrag, AirDrag]
+                .iter()
+                .any(|drag| drag.is_in(scene)),
+            _ => part.key != PARTICLES.key || !scene.particles[*at].fixed,
+        };
         let members = (0..(part.count)(scene)).filter(acts);
         members.map(|at| self.value(scene, at)).collect()
     }
@@ -119,10 +147,20 @@ impl Number {
 
     /// Replaces it in one member, or in all.
     pub(super) fn change(self, scene: &mut Scene, at: Option<usize>, to: impl Fn(f64) -> f64) {
-        let Some(row) = self.row() else { return };
         for at in at.map_or(0..(self.part().count)(scene), |at| at..at + 1) {
-            let value = to(self.value(scene, at));
-            (row.set)(scene, at, 0, Value::Number(value));
+            let Some(row) = self.row(scene, at).or_else(|| self.rows().next()) else {
+                return;
+            };
+            let (before, after) = (self.value(scene, at), to(self.value(scene, at)));
+            if let ValueKind::Number(_) = row.kind {
+                (row.set)(scene, at, 0, Value::Number(after));
+            } else if before != 0.0 {
+                let components: Vec<f64> = row.values(scene, at).filter_map(number).collect();
+                for (component, value) in components.into_iter().enumerate() {
+                    let value = Value::Number(value * (after / before));
+                    (row.set)(scene, at, component, value);
+                }
+            }
         }
     }
 
@@ -139,6 +177,9 @@ impl Number {
         match self {
             Gravity => "gravity".to_owned(),
             Cubic => "the cubic stiffness".to_owned(),
+            QuadraticDrag => "the quadratic drag".to_owned(),
+            AirDrag => "the drag of the air at triangles".to_owned(),
+            AirVelocity => "the velocity of the air".to_owned(),
             Wind => "the strength of the wind".to_owned(),
             Bend => "the bending stiffness".to_owned(),
             BendDamping => "the bending damping".to_owned(),
@@ -169,6 +210,11 @@ impl Number {
             (Charge, 0.0) => "the magnetic force is missing".to_owned(),
             (Charge, -1.0) => "the magnetic force has the wrong sign: it is q v x B".to_owned(),
             (Charge, _) => format!("the magnetic force is {times} the scene's"),
+            (AirVelocity, 0.0) => "drag acts as if the air were at rest".to_owned(),
+            (AirVelocity, -1.0) => "the air moves the other way".to_owned(),
+            (AirVelocity, _) => format!("the air moves with {}", self.beside(scene, factor)),
+            (QuadraticDrag | AirDrag, 0.0) => format!("{} is missing", self.noun()),
+            (QuadraticDrag | AirDrag, _) => format!("{} is {times} the scene's", self.noun()),
             (_, 0.0) => format!("{} is missing", self.what()),
             (Gravity, _) => format!("gravity acts with {}", self.beside(scene, factor)),
             _ => format!("the {} is {times} the scene's", self.what()),
@@ -181,5 +227,12 @@ impl Number {
         let [found, right] = [factor * value, value].map(|value| digits(value, 6));
         let (times, unit) = (times(factor), self.unit());
         format!("{times} the scene's: {found} for {right} {unit}")
+    }
+}
+
+fn number(value: Value) -> Option<f64> {
+    match value {
+        Value::Number(value) => Some(value),
+        _ => None,
     }
 }

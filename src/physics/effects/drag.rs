@@ -1,24 +1,28 @@
-//! Linear drag against still air.
+//! Linear drag against the air.
 
-use super::{Effect, EffectRow, boxed};
+use super::springs::dot;
+use super::{Effect, EffectRow, FEW_OPERATIONS, boxed};
 use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
 use crate::scene::Scene;
 
 pub(super) const ROW: EffectRow = EffectRow {
     id: "drag",
-    summary: "linear drag on particles with a `drag` coefficient",
-    source: "f = -b v (Stokes), dissipates b v²",
+    summary: "linear drag on particles with a `drag` coefficient, relative to the air",
+    source: "f = -b (v - w) (Stokes), w the velocity of the air; dissipates b v², injects b w·v",
     elastic: false,
     constant: false,
     build: |scene| Drag::new(scene).map(boxed),
 };
 
-/// f = -b v on each particle with b > 0.
+/// f = -b (v - w) on each particle with b > 0, w the velocity of the air.
 ///
+/// The force on what is at rest, b w, is what air that moves injects by; the rest, -b v, dissipates.
 /// Not to be confused with rapier's `linear_damping`, which scales the velocity once a step.
 pub struct Drag {
     /// Particle and its b, N s/m.
     coefficients: Vec<(usize, f64)>,
+    /// w, m/s.
+    air: [f64; 3],
 }
 
 impl Drag {
@@ -32,7 +36,10 @@ impl Drag {
             .filter(|(_, p)| !p.fixed && p.drag != 0.0)
             .map(|(i, p)| (i, p.drag))
             .collect();
-        (!coefficients.is_empty()).then_some(Self { coefficients })
+        (!coefficients.is_empty()).then(|| Self {
+            coefficients,
+            air: scene.air().velocity,
+        })
     }
 }
 
@@ -42,29 +49,42 @@ impl Effect for Drag {
     }
 
     fn kinds(&self) -> ForceKinds {
-        ForceKinds::union(
-            self.coefficients
-                .iter()
-                .map(|&(_, b)| ForceKinds::of_damper(b)),
-        )
+        let dampers = self.coefficients.iter();
+        let dampers = ForceKinds::union(dampers.map(|&(_, b)| ForceKinds::of_damper(b)));
+        dampers | moved_by(self.air)
     }
 
     fn add_force(&self, _t: f64, _x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
-        let mut dissipated = 0.0;
+        let mut power = Power::default();
         for &(i, b) in &self.coefficients {
-            for at in 3 * i..3 * i + 3 {
-                f[at] -= b * v[at];
-                dissipated += b * v[at] * v[at];
+            for (at, w) in (3 * i..3 * i + 3).zip(self.air) {
+                f[at] -= b * (v[at] - w);
+                power.dissipated += b * v[at] * v[at];
+                power.injected += b * w * v[at];
             }
         }
-        Power {
-            dissipated,
-            injected: 0.0,
+        power
+    }
+
+    fn add_rounding(&self, _t: f64, _x: &[f64], v: &[f64], f: &mut [f64]) {
+        for &(i, b) in &self.coefficients {
+            for (at, w) in (3 * i..3 * i + 3).zip(self.air) {
+                f[at] += FEW_OPERATIONS * b.abs() * (v[at].abs() + w.abs());
+            }
         }
     }
 
-    fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
-        self.add_force(0.0, x, w, f);
+    fn add_damping(&self, _x: &[f64], w: &[f64], f: &mut [f64]) {
+        for &(i, b) in &self.coefficients {
+            for at in 3 * i..3 * i + 3 {
+                f[at] -= b * w[at];
+            }
+        }
+    }
+
+    fn injected_power(&self, _t: f64, v: &[f64]) -> f64 {
+        let along = |&(i, b): &(usize, f64)| b * dot(self.air, velocity(v, i));
+        self.coefficients.iter().map(along).sum()
     }
 
     fn count_dampers(&self, at: &mut [u32]) -> bool {
@@ -95,4 +115,18 @@ impl Effect for Drag {
             }
         }
     }
+}
+
+/// The kind of a drag in air of this velocity, besides how it depends on velocity.
+pub(super) fn moved_by(air: [f64; 3]) -> ForceKinds {
+    if air == [0.0; 3] {
+        ForceKinds::NONE
+    } else {
+        ForceKinds::DRIVEN
+    }
+}
+
+/// The velocity of a particle.
+pub(super) fn velocity(v: &[f64], i: usize) -> [f64; 3] {
+    [v[3 * i], v[3 * i + 1], v[3 * i + 2]]
 }

@@ -6,40 +6,43 @@ use crate::scene::Scene;
 
 pub(super) const ROW: EffectRow = EffectRow {
     id: "gravity",
-    summary: "uniform gravity on every free particle, along `up`",
-    source: "f = m g, U = -m g x_up; zero at the origin",
+    summary: "uniform gravity on every free particle: a number along `up`, or vectors that add up",
+    source: "f = m g, U = -m g·x; zero at the origin",
     elastic: false,
     constant: true,
     build: |scene| Gravity::new(scene).map(boxed),
 };
 
-/// Weight of each free particle along one axis.
+/// Weight of each free particle.
 ///
 /// Not to be confused with `gravitational`, the attraction between two particles.
 pub struct Gravity {
-    /// Coordinate index 3 i + axis, and the force on it, N.
+    /// Coordinate index 3 i + axis, and the force on it, N; none along an axis without gravity.
     weights: Vec<(usize, f64)>,
+    /// Free particles.
+    members: usize,
 }
 
 impl Gravity {
-    /// None when the scene's gravity is 0.
+    /// None when the scene's gravity is 0, also where its vectors add up to that.
     pub fn new(scene: &Scene) -> Option<Self> {
-        let g = scene.solver.gravity;
-        (g != 0.0).then(|| Self {
-            weights: scene
-                .particles
-                .iter()
-                .enumerate()
-                .filter(|(_, p)| !p.fixed)
-                .map(|(i, p)| (3 * i + scene.up.index(), p.mass * g))
-                .collect(),
+        let g = scene.gravity();
+        let free = || scene.particles.iter().enumerate().filter(|(_, p)| !p.fixed);
+        let weight = |(i, axis): (usize, usize)| {
+            let weight = scene.particles[i].mass * g[axis];
+            (g[axis] != 0.0).then_some((3 * i + axis, weight))
+        };
+        let coordinates = free().flat_map(|(i, _)| [0, 1, 2].map(|axis| (i, axis)));
+        (g != [0.0; 3]).then(|| Self {
+            weights: coordinates.filter_map(weight).collect(),
+            members: free().count(),
         })
     }
 }
 
 impl Effect for Gravity {
     fn members(&self) -> usize {
-        self.weights.len()
+        self.members
     }
 
     fn kinds(&self) -> ForceKinds {

@@ -5,20 +5,24 @@
 //! second kind of row, which [`IntegratorEngine`](crate::solvers::IntegratorEngine) calls after its
 //! integrator, and will not implement this trait.
 
+mod air_drag;
 mod bending;
 mod central;
 mod drag;
 mod gravity;
 mod magnetic;
+mod quadratic_drag;
 mod scaled;
 mod springs;
 mod wind;
 
+pub use air_drag::AirDrag;
 pub use bending::BendingForce;
 pub use central::Central;
 pub use drag::Drag;
 pub use gravity::Gravity;
 pub use magnetic::MagneticForce;
+pub use quadratic_drag::QuadraticDrag;
 pub use scaled::Scaled;
 pub use springs::Springs;
 pub use wind::WindForce;
@@ -58,7 +62,8 @@ pub trait Effect: Send + Sync {
         0.0
     }
 
-    /// *Adds* the velocity-dependent part of its force at velocity `w`, N, to `f`.
+    /// *Adds* the velocity-dependent part of its force at velocity `w`, N, to `f`. Nobody asks it of a force that is
+    /// [not linear in v](ForceKinds::NON_LINEAR).
     fn add_damping(&self, _x: &[f64], _w: &[f64], _f: &mut [f64]) {}
 
     /// *Adds* the number of its dampers at each particle; false where [`sweep`](Self::sweep) does not apply them.
@@ -70,7 +75,8 @@ pub trait Effect: Send + Sync {
     /// count them is damped as a whole, by [`add_damping`](Self::add_damping).
     fn sweep(&self, _sweep: &mut Sweep) {}
 
-    /// The power of a [driven](ForceKinds::DRIVEN) force at velocity `v`, W.
+    /// The power at velocity `v` of a [driven](ForceKinds::DRIVEN) force on what is at rest, W. Nobody asks it of a force
+    /// that is not linear in v.
     fn injected_power(&self, _t: f64, _v: &[f64]) -> f64 {
         0.0
     }
@@ -127,6 +133,8 @@ pub static REGISTRY: &[EffectRow] = &[
     springs::ROW,
     central::CUBIC,
     drag::ROW,
+    quadratic_drag::ROW,
+    air_drag::ROW,
     wind::ROW,
     central::GRAVITATIONAL,
     magnetic::ROW,

@@ -2,7 +2,7 @@
 
 use super::Task;
 use crate::scene::Scene;
-use crate::scene::model::{BENDING, GRAVITATIONAL, PARTICLES, Part, Row, SPRINGS};
+use crate::scene::model::{BENDING, GRAVITATIONAL, PARTICLES, Part, Row, SPRINGS, TRIANGLES};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// The version of the keys and of their meaning.
@@ -24,8 +24,6 @@ impl Serialize for Flat<'_> {
             timestep,
             steps,
         } = *self.0;
-        let mut gravity = [0.0; 3];
-        gravity[scene.up.index()] = scene.solver.gravity;
         let wind = scene.wind.as_ref();
         let wind = wind.map_or([0.0; 3], |wind| wind.direction.map(|d| wind.strength * d));
         let effects: Vec<&str> = system.effects().iter().map(|(row, _)| row.id).collect();
@@ -37,13 +35,16 @@ impl Serialize for Flat<'_> {
         map.serialize_entry("springs", &Arrays(scene, &SPRINGS))?;
         map.serialize_entry("bending", &Arrays(scene, &BENDING))?;
         map.serialize_entry("damping_model", &scene.damping_model)?;
-        map.serialize_entry("gravity", &gravity)?;
+        map.serialize_entry("gravity", &scene.gravity())?;
         map.serialize_entry("wind_force", &wind)?;
         let field = scene
             .magnetic
             .as_ref()
             .map_or([0.0; 3], |magnetic| magnetic.field);
         map.serialize_entry("magnetic_field", &field)?;
+        map.serialize_entry("air_velocity", &scene.air().velocity)?;
+        map.serialize_entry("air_density", &scene.air().density)?;
+        map.serialize_entry("triangles", &Arrays(scene, &TRIANGLES))?;
         map.serialize_entry("gravitational", &Arrays(scene, &GRAVITATIONAL))?;
         map.serialize_entry("effects", &effects)?;
         map.serialize_entry("timestep", &timestep)?;

@@ -69,6 +69,7 @@ impl Engine for RapierForces {
     fn counts(&self) -> Counts {
         Counts {
             force_evaluations: Some(self.steps),
+            world: Some(self.world.built()),
             ..Counts::default()
         }
     }

@@ -84,6 +84,9 @@ impl Engine for RapierEngine {
 
     /// rapier reports neither force evaluations nor solves.
     fn counts(&self) -> Counts {
-        Counts::default()
+        Counts {
+            world: Some(self.world.built()),
+            ..Counts::default()
+        }
     }
 }

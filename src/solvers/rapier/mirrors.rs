@@ -22,7 +22,7 @@ static MIRRORS: &[Mirror] = &[
     Mirror {
         effect: "gravity",
         add: |scene, _, world| {
-            world.set_gravity(scene.up, scene.solver.gravity);
+            world.set_gravity(scene.gravity());
             Ok(())
         },
     },
@@ -80,7 +80,7 @@ fn springs(scene: &Scene, substep: f64, world: &mut World) -> Result<(), Unsuppo
             world.join(ends, spring_joint(spring, axial));
         }
         if isotropic && has_effect(id, 0.0, spring.damping, substep)? {
-            world.join(ends, velocity_motor(spring.damping));
+            world.join(ends, velocity_motor(spring.damping, [0.0; 3]));
         }
     }
     Ok(())
@@ -109,21 +109,23 @@ fn spring_joint(spring: &Spring, damping: f64) -> GenericJoint {
         .into()
 }
 
-/// A damper of the whole relative velocity, N s/m: three motors with target velocity 0. It is a joint of its
-/// own, since rapier ignores single-axis motors on the axes that a spring joint couples.
-fn velocity_motor(damping: f64) -> GenericJoint {
+/// A damper of the velocity of the second body relative to the first, less `target`, N s/m: three motors. It is a
+/// joint of its own, since rapier ignores single-axis motors on the axes that a spring joint couples.
+fn velocity_motor(damping: f64, target: [f64; 3]) -> GenericJoint {
     let axes = [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ];
     let start = GenericJointBuilder::new(JointAxesMask::empty()).contacts_enabled(false);
     axes.into_iter()
-        .fold(start, |joint, axis| {
+        .zip(target)
+        .fold(start, |joint, (axis, target)| {
             joint
                 .motor_model(axis, MotorModel::ForceBased)
-                .set_motor(axis, 0.0, 0.0, 0.0, damping)
+                .set_motor(axis, 0.0, target, 0.0, damping)
         })
         .into()
 }
 
-/// Adds motors that slow each particle relative to the air. Not to be confused with rapier's `linear_damping`,
+/// Adds motors that bring each particle to the velocity of the air. Their other end is a body at rest, and the air's
+/// velocity their target. Not to be confused with rapier's `linear_damping`,
 /// which scales the velocity once a step, for any number of substeps.
 fn drag(scene: &Scene, substep: f64, world: &mut World) -> Result<(), Unsupported> {
     for (i, particle) in scene.particles.iter().enumerate() {
@@ -136,7 +138,8 @@ fn drag(scene: &Scene, substep: f64, world: &mut World) -> Result<(), Unsupporte
                 particle.drag
             )));
         }
-        world.join([End::Air, End::Particle(i)], velocity_motor(particle.drag));
+        let motor = velocity_motor(particle.drag, scene.air().velocity);
+        world.join([End::Air, End::Particle(i)], motor);
     }
     Ok(())
 }

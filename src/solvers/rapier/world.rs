@@ -2,8 +2,8 @@
 
 use super::settings::RapierSettings;
 use crate::physics::State;
-use crate::scene::{Axis, Scene};
-use crate::solvers::Unsupported;
+use crate::scene::Scene;
+use crate::solvers::{Built, Unsupported};
 use rapier3d::dynamics::{GenericJoint, RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
@@ -29,7 +29,7 @@ pub(super) struct World {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum End {
     Particle(usize),
-    /// The air, at rest.
+    /// A body at rest, against which motors of drag push.
     Air,
 }
 
@@ -86,11 +86,9 @@ impl World {
         })
     }
 
-    /// Sets uniform gravity, m/s², signed along the axis.
-    pub(super) fn set_gravity(&mut self, up: Axis, gravity: f64) {
-        let mut g = [0.0; 3];
-        g[up.index()] = gravity;
-        self.inner.gravity = vector(g);
+    /// Sets uniform gravity, m/s².
+    pub(super) fn set_gravity(&mut self, gravity: [f64; 3]) {
+        self.inner.gravity = vector(gravity);
     }
 
     /// Adds a force, N, to every free particle. It acts until it is replaced.
@@ -127,6 +125,14 @@ impl World {
         *self
             .air
             .get_or_insert_with(|| inner.insert_body(RigidBodyBuilder::fixed()))
+    }
+
+    /// What it consists of.
+    pub(super) fn built(&self) -> Built {
+        Built {
+            bodies: self.inner.bodies.len() as u64,
+            joints: self.inner.impulse_joints.len() as u64,
+        }
     }
 
     /// Takes one step of rapier, and copies positions and velocities to `state`.

@@ -133,8 +133,9 @@ pub fn free_axis(scene: &Scene) -> Option<FreeAxis> {
     (others == 0).then_some(FreeAxis { particle, axis })
 }
 
-/// The axes on which free particles can move: where their velocities, gravity, wind, or their springs
-/// and attractions have a component, and where a magnetic field turns such motion.
+/// The axes on which free particles can move: where their velocities, gravity, wind, moving air, or
+/// their springs, hinges and attractions have a component, and where a magnetic field turns such motion; on all where the
+/// air drags at triangles, which turn.
 fn moves(scene: &Scene) -> [bool; 3] {
     // Effects of strength 0 pull nowhere.
     let springs = scene
@@ -157,15 +158,17 @@ fn moves(scene: &Scene) -> [bool; 3] {
         .map(|ends| ends.map(|end| &scene.particles[end]))
         .filter(|ends| ends.iter().any(|end| !end.fixed))
         .map(|[a, b]| [0, 1, 2].map(|axis| b.position[axis] - a.position[axis]));
-    let mut gravity = [0.0; 3];
-    gravity[scene.up.index()] = scene.solver.gravity;
     let wind = scene.wind.iter().filter(|wind| wind.strength != 0.0);
-    let velocities = scene.particles.iter().filter(|p| !p.fixed);
-    let mut moves = [false; 3];
+    let free = || scene.particles.iter().filter(|p| !p.fixed);
+    let velocities = free();
+    let dragged = free().any(|p| p.drag != 0.0 || p.quadratic_drag != 0.0);
+    let air = dragged.then(|| scene.air().velocity);
+    let mut moves = [scene.triangles.iter().any(|t| t.air_drag != 0.0); 3];
     for direction in lines
         .chain(wind.map(|wind| wind.direction))
         .chain(velocities.map(|p| p.velocity))
-        .chain([gravity])
+        .chain([scene.gravity()])
+        .chain(air)
     {
         for axis in 0..3 {
             moves[axis] |= direction[axis] != 0.0;

@@ -22,11 +22,15 @@ pub(super) struct Body {
     pub id: usize,
     pub mass: f64,
     pub drag: f64,
+    /// c of its quadratic drag, N s²/m².
+    pub quadratic: f64,
+    /// Velocity of the air, m/s.
+    pub air: Vector3<f64>,
     /// At the start: position, m, and velocity, m/s.
     pub position: Vector3<f64>,
     pub velocity: Vector3<f64>,
-    /// Acceleration under gravity and wind alone, m/s²: equal masses have the same bits, and
-    /// without wind all have.
+    /// Acceleration under gravity, wind and the linear drag of air that moves at what is at rest, m/s²: equal
+    /// masses and drags have the same bits, and under gravity alone all have.
     pub constant: Vector3<f64>,
     /// q B / m, 1/s: a magnetic field turns the velocity v by v x this a second.
     pub turning: Vector3<f64>,
@@ -60,8 +64,7 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
             parent[a.max(b)] = a.min(b);
         }
     }
-    let mut gravity = Vector3::zeros();
-    gravity[scene.up.index()] = scene.solver.gravity;
+    let gravity = Vector3::from(scene.gravity());
     let wind = scene.wind.as_ref().map_or(Vector3::zeros(), |wind| {
         wind.strength * Vector3::from(wind.direction)
     });
@@ -69,6 +72,7 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
         .magnetic
         .as_ref()
         .map_or(Vector3::zeros(), |magnetic| magnetic.field.into());
+    let air = Vector3::from(scene.air().velocity);
     let position = |i: usize| Vector3::from(scene.particles[i].position);
     let size = scene.size();
     let mut groups: Vec<Group> = Vec::new();
@@ -91,8 +95,10 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
             drag: particle.drag,
             position: position(i),
             velocity: Vector3::from_column_slice(&start.v[3 * i..3 * i + 3]),
-            constant: gravity + wind / particle.mass,
             turning: field * particle.charge / particle.mass,
+            quadratic: particle.quadratic_drag,
+            air,
+            constant: gravity + (wind + air * particle.drag) / particle.mass,
         });
     }
     for spring in springs {

@@ -3,10 +3,12 @@
 //! Particles that springs join form a group; a scene has a closed form if every group has one. A
 //! group has one where its forces stay linear: without springs, with springs of rest length 0, or
 //! moving on one line with lengths proven to stay above 0. Its modes are then decoupled, and each is
-//! one scalar equation. In a magnetic field a particle without springs goes round a helix. Forces here are read off the scene, not off the effects' code, so that
+//! one scalar equation. With quadratic drag a particle without springs has one on a line, and in a magnetic field it goes
+//! round a helix. Forces here are read off the scene, not off the effects' code, so that
 //! either would show a fault in the other.
 
 mod elliptic;
+mod fall;
 mod group;
 mod helix;
 mod lengths;
@@ -23,13 +25,21 @@ pub use pendulum::Pendulum;
 use super::{Motion, States, Truth, TruthKind};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
+use fall::Fall;
 use group::{Group, groups};
 use helix::Helix;
 use nalgebra::Vector3;
 use part::GroupMotion;
 
 /// Ids of the effects the forms account for. Any other effect in a scene means no closed form.
-const KNOWN: &[&str] = &["gravity", "springs", "drag", "wind", "magnetic"];
+const KNOWN: &[&str] = &[
+    "gravity",
+    "springs",
+    "drag",
+    "quadratic_drag",
+    "wind",
+    "magnetic",
+];
 
 /// The form that holds for this scene up to `until` seconds, if one does: what it is, such as
 /// `parabola`, and why it applies.
@@ -88,6 +98,7 @@ fn each_once<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 enum Part {
     Modes(GroupMotion),
     Helix(Helix),
+    Fall(Fall),
 }
 
 impl Part {
@@ -100,6 +111,9 @@ impl Part {
         {
             return Helix::of(group).map(Self::Helix);
         }
+        if group.bodies.iter().any(|body| body.quadratic != 0.0) {
+            return Fall::of(group).map(Self::Fall);
+        }
         GroupMotion::of(group).map(Self::Modes)
     }
 
@@ -108,6 +122,7 @@ impl Part {
         match self {
             Self::Modes(motion) => [&motion.method, &motion.reason],
             Self::Helix(helix) => helix.words(),
+            Self::Fall(_) => [fall::METHOD, fall::REASON],
         }
     }
 
@@ -115,6 +130,7 @@ impl Part {
         match self {
             Self::Modes(motion) => motion.add(t, x, v),
             Self::Helix(helix) => helix.add(t, x, v),
+            Self::Fall(fall) => fall.add(t, x, v),
         }
     }
 
@@ -122,6 +138,7 @@ impl Part {
         match self {
             Self::Modes(motion) => motion.error_bar(t),
             Self::Helix(helix) => helix.error_bar(t),
+            Self::Fall(fall) => fall.error_bar(t),
         }
     }
 }

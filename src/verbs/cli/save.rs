@@ -1,11 +1,11 @@
 //! `--save` writes every step of every engine to files beside the report.
 
-use super::temporary;
+use super::target::Target;
+use super::temporary::Temporary;
 use crate::physics::State;
 use crate::trajectory::{CsvWriter, NpzWriter, Observer, SaveError};
 use crate::verbs::session::{Label, Saver};
 use std::path::PathBuf;
-use tempfile::NamedTempFile;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum FileKind {
@@ -35,32 +35,37 @@ impl Files {
         } = case;
         let path = |extension| {
             let name = format!("{engine}@{timestep}.{extension}");
-            self.folder.join(name)
+            Target::of(&self.folder.join(name))
         };
-        let file = temporary::file(&self.folder)?;
         Ok(match self.kind {
-            FileKind::Csv => Box::new(Saving {
-                writer: CsvWriter::new(file, *steps, self.every, *timestep),
-                complete: CsvWriter::finish,
-                path: path("csv"),
-            }),
+            FileKind::Csv => {
+                let target = path("csv")?;
+                let file = target.begin()?;
+                Box::new(Saving {
+                    writer: CsvWriter::new(file, *steps, self.every, *timestep),
+                    complete: CsvWriter::finish,
+                    target,
+                })
+            }
             FileKind::Npz => {
+                let target = path("npz")?;
+                let file = target.begin()?;
                 let scratch = [tempfile::tempfile()?, tempfile::tempfile()?];
                 Box::new(Saving {
                     writer: NpzWriter::new(scratch, *particles, *steps, self.every, *timestep),
                     complete: |writer: NpzWriter<_>| writer.finish(file),
-                    path: path("npz"),
+                    target,
                 })
             }
         })
     }
 }
 
-/// A file that is being written: its writer, the function that completes it, and its final path.
+/// A file that is being written: its writer, the function that completes it, and where it goes.
 struct Saving<W, F> {
     writer: W,
     complete: F,
-    path: PathBuf,
+    target: Target,
 }
 
 impl<W: Observer, F> Observer for Saving<W, F> {
@@ -76,11 +81,10 @@ impl<W: Observer, F> Observer for Saving<W, F> {
 impl<W, F> Saver for Saving<W, F>
 where
     W: Observer,
-    F: FnOnce(W) -> Result<NamedTempFile, SaveError>,
+    F: FnOnce(W) -> Result<Temporary, SaveError>,
 {
     fn finish(self: Box<Self>) -> Result<(), SaveError> {
         let file = (self.complete)(self.writer)?;
-        file.persist(self.path).map_err(|error| error.error)?;
-        Ok(())
+        Ok(self.target.complete(file)?)
     }
 }

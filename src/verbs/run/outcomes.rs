@@ -50,6 +50,7 @@ pub fn all(
                 steps: record.steps,
                 force_evaluations: record.counts.all_force_passes(),
                 linear_solves: record.counts.linear_solves,
+                world: record.counts.world,
                 wall_s: record.wall.clone(),
             },
             identified: found.identity,

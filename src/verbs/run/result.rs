@@ -3,7 +3,7 @@
 
 use crate::measure::identify::{Explained, Identity};
 use crate::measure::{Deviation, Energy, ErrorSummary, Momentum};
-use crate::solvers::{SolverKind, Status};
+use crate::solvers::{Built, SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -55,6 +55,9 @@ pub struct WorkSummary {
     pub force_evaluations: Option<u64>,
     /// Linear systems solved; null where the engine does not report them.
     pub linear_solves: Option<u64>,
+    /// What a rapier world was built of; null for every other engine.
+    #[serde(default)]
+    pub world: Option<Built>,
     /// Wall time of a run, s; null where it was not timed.
     pub wall_s: Option<WallTime>,
 }

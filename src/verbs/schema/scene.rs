@@ -23,10 +23,15 @@ const LINE: &str = "expectations";
 
 /// One mapping of a part.
 fn part(part: &'static Part, names: &Names) -> Json {
-    let keys = part.rows.iter();
-    let properties: Map<String, Json> = keys
-        .map(|row| (row.key.to_owned(), key(part, row, names)))
-        .collect();
+    let mut properties: Map<String, Json> = Map::new();
+    for row in part.rows {
+        let schema = key(part, row, names);
+        let schema = match properties.remove(row.key) {
+            Some(number) => either(number, schema),
+            None => schema,
+        };
+        properties.insert(row.key.to_owned(), schema);
+    }
     let required = part.rows.iter().filter(|row| is_required(row));
     let required: Vec<&str> = required.map(|row| row.key).collect();
     let mut schema = mapping(properties);
@@ -47,7 +52,9 @@ fn mapping(properties: Map<String, Json>) -> Json {
 fn key(part: &'static Part, row: &'static Row, names: &Names) -> Json {
     let mut schema = value(row, names);
     let mut says = row.summary.trim().to_owned();
-    if let ValueKind::Number(bounds) | ValueKind::Numbers(_, bounds) = &row.kind {
+    if let ValueKind::Number(bounds) | ValueKind::Numbers(_, bounds) | ValueKind::Vectors(bounds) =
+        &row.kind
+    {
         let [low, high] = [bounds.low, bounds.high].map(short);
         says += &format!(" From {low} to {high} ({}).", bounds.unit);
     }
@@ -64,6 +71,19 @@ fn key(part: &'static Part, row: &'static Row, names: &Names) -> Json {
         }
     }
     schema
+}
+
+/// Of a key with two rows: what one of them takes.
+fn either(mut first: Json, mut second: Json) -> Json {
+    let mut take = |key: &str| [&mut first, &mut second].map(|of| of[key].take());
+    let ([says, also], [default, _]) = (take("description"), take("default"));
+    let says = [says, also].map(|says| says.as_str().unwrap_or_default().to_owned());
+    for schema in [&mut first, &mut second] {
+        if let Some(schema) = schema.as_object_mut() {
+            schema.retain(|_, value| !value.is_null());
+        }
+    }
+    json!({"anyOf": [first, second], "description": says.join(" "), "default": default})
 }
 
 /// The value that an absent key stands for, where it is the same in every scene.
@@ -88,6 +108,11 @@ fn value(row: &Row, names: &Names) -> Json {
     match &row.kind {
         ValueKind::Number(bounds) => number(bounds),
         ValueKind::Numbers(count, bounds) => list(number(bounds), *count, *count),
+        ValueKind::Vectors(bounds) => {
+            let vector = || list(number(bounds), 3, 3);
+            let several = json!({"type": "array", "items": vector(), "minItems": 1});
+            json!({"anyOf": [vector(), several]})
+        }
         ValueKind::Id => id(),
         ValueKind::Ids(count) => list(id(), *count, *count),
         ValueKind::Coordinate => json!({"enum": [0, 1, 2]}),

@@ -120,6 +120,9 @@ impl VariedKey {
                 refused(format!("particle {at} is fixed: it changes nothing"))
             }
             None if count == 0 => refused("the scene has none".into()),
+            _ if key.is_vector(scene) => {
+                refused("the scene gives vectors here: only a number can be varied".into())
+            }
             _ => Ok(key),
         }
     }
@@ -142,6 +145,13 @@ impl VariedKey {
                 known.join(", ")
             ))
         })
+    }
+
+    /// Whether the scene has vectors in the place of the number.
+    fn is_vector(&self, scene: &Scene) -> bool {
+        let other = |row: &&Row| row.key == self.row.key && !std::ptr::eq(*row, self.row);
+        let mut others = self.part.rows.iter().filter(other);
+        others.any(|row| (row.get)(scene, 0, 0).is_some())
     }
 
     /// The scene with this value, in the one member or in all that are free.

@@ -29,6 +29,7 @@ pub fn hostile() -> Report {
         steps: u64::MAX,
         force_evaluations: Some(u64::MAX),
         linear_solves: None,
+        world: None,
         wall_s: None,
     };
     let mut unsupported = outcome(&long, SolverKind::Rapier, f64::MIN_POSITIVE);

@@ -75,7 +75,13 @@ fn json_has_the_contract_s_keys() {
     );
     assert_eq!(
         keys(&outcome["work"]),
-        ["force_evaluations", "linear_solves", "steps", "wall_s"]
+        [
+            "force_evaluations",
+            "linear_solves",
+            "steps",
+            "wall_s",
+            "world"
+        ]
     );
     assert_eq!(keys(&outcome["work"]["wall_s"]), ["mad", "median", "min"]);
     assert_eq!(outcome["status"], "completed");

@@ -150,6 +150,7 @@ pub fn outcome(engine: &str, kind: SolverKind, timestep: f64) -> Outcome {
             steps: 100,
             force_evaluations: Some(100),
             linear_solves: Some(0),
+            world: None,
             wall_s: Some(WallTime {
                 min: 1.1e-3,
                 median: 1.234e-3,

@@ -24,6 +24,9 @@ fn a_small_scene_gets_its_defaults() {
         (Axis::Z, DampingModel::Axial)
     );
     assert!(scene.plot.is_none() && scene.wind.is_none() && scene.gravitational.is_empty());
+    assert!(scene.air.is_none() && scene.triangles.is_empty());
+    let air = scene.air();
+    assert_eq!((air.velocity, air.density), ([0.0; 3], 1.2));
     let [fixed, free] = &scene.particles[..] else {
         panic!()
     };
@@ -40,16 +43,33 @@ fn a_small_scene_gets_its_defaults() {
     assert_eq!(spring.cubic, 0.0);
 }
 
+/// A number along `up`; or vectors that add up, to which `up` does nothing.
+#[test]
+fn gravity_is_a_number_or_vectors() {
+    let gravity = |text: &str| {
+        let solver = format!("solver: {{type: rk4, timestep: 0.1, gravity: {text}}}\nup: x");
+        accepted(&solver).gravity()
+    };
+    assert_eq!(gravity("-2"), [-2.0, 0.0, 0.0]);
+    assert_eq!(gravity("[0, 0, -9.81]"), [0.0, 0.0, -9.81]);
+    assert_eq!(
+        gravity("[[0, 0, -9.81], [1, 2, 0.5]]"),
+        [1.0, 2.0, -9.81 + 0.5]
+    );
+    assert_eq!(gravity(""), [-9.81, 0.0, 0.0]);
+}
+
 #[test]
 fn every_key_is_read() {
     let scene = accepted(
         "name: All\ndescription: |\n  two\n  lines\nduration: 2\nup: y\ndamping_model: isotropic\n\
          solver: {type: rk4, timestep: 0.5, gravity: 1, tolerance: 1e-9}\n\
          plot: {particle_id: 1, dof: 2, y_range: [-1, 1]}\n\
-         particles: [{pos: [1, 2, 3], vel: [4, 5, 6], fixed: false, mass: 7, radius: 8, drag: 9},\n\
-         {pos: [0, 0, 0], fixed: true, mass: 0.1}]\n\
+         particles: [{pos: [1, 2, 3], vel: [4, 5, 6], fixed: false, mass: 7, radius: 8, drag: 9, quadratic_drag: 10},\n\
+         {pos: [0, 0, 0], fixed: true, mass: 0.1}, {pos: [0, 0, 1], mass: 1}]\n\
          springs: [{particle_ids: [0, 1], stiffness: 0, cubic: 2, damping: 3, rest_length: 0}]\n\
-         gravitational: [{particle_ids: [0, 1], G: -100.}]\nwind: {direction: [0, 3, 4], strength: -2}",
+         gravitational: [{particle_ids: [0, 1], G: -100.}]\nwind: {direction: [0, 3, 4], strength: -2}\n\
+         air: {velocity: [1, 2, 3], density: 4}\ntriangles: [{particle_ids: [2, 1, 0], air_drag: 5}]",
     );
     assert_eq!(scene.description.as_deref(), Some("two\nlines\n"));
     assert_eq!((scene.duration, scene.up), (2.0, Axis::Y));
@@ -58,7 +78,7 @@ fn every_key_is_read() {
         (scene.solver.gravity, scene.solver.tolerance),
         (1.0, Some(1e-9))
     );
-    let plot = scene.plot.unwrap();
+    let plot = scene.plot.as_ref().unwrap();
     assert_eq!(
         (plot.particle, plot.dof, plot.y_range),
         (1, 2, Some([-1.0, 1.0]))
@@ -66,6 +86,11 @@ fn every_key_is_read() {
     let p = &scene.particles[0];
     assert_eq!((p.position, p.velocity), ([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]));
     assert_eq!((p.mass, p.radius, p.drag), (7.0, 8.0, 9.0));
+    assert_eq!(p.quadratic_drag, 10.0);
+    let air = scene.air();
+    assert_eq!((air.velocity, air.density), ([1.0, 2.0, 3.0], 4.0));
+    let triangle = &scene.triangles[0];
+    assert_eq!((triangle.corners, triangle.air_drag), ([2, 1, 0], 5.0));
     assert_eq!(
         (scene.springs[0].stiffness, scene.springs[0].rest_length),
         (0.0, 0.0)
@@ -243,12 +268,9 @@ fn shipped_scenes_load() {
             scene::read(path, verbs::names()).unwrap_or_else(|error| panic!("{error}"))
         })
         .collect();
-    // The hard ones and those of one effect are counted by no one: there will be more.
-    let more = ["/hard/", "/effects/"];
-    let more = scenes
-        .iter()
-        .filter(|s| more.iter().any(|part| s.file.contains(part)));
-    assert_eq!(scenes.len() - more.count(), 21);
+    // The hard ones and those of effects are counted by no one: there will be more.
+    let open = |s: &&Scene| ["/hard/", "/effects/"].iter().any(|of| s.file.contains(of));
+    assert_eq!(scenes.len() - scenes.iter().filter(open).count(), 21);
     for scene in &scenes {
         assert!(scene.description.is_some() && !scene.name.is_empty());
         assert!(scene.file.ends_with(".yml"));

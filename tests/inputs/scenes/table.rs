@@ -2,7 +2,7 @@
 //! says reaches the truth's key, the flat arrays and `--vary`.
 
 use super::{NAMES, parse};
-use crate::testkit::everything;
+use crate::testkit::all_effects;
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::model::{Absent, PARTS, Part, Row, SCENE, ValueKind};
 use springcheck::scene::{DampingModel, Plot, Scene, Value};
@@ -21,13 +21,14 @@ fn components(row: &Row) -> usize {
     match row.kind {
         ValueKind::Numbers(count, _) => count,
         ValueKind::Ids(count) => count,
+        ValueKind::Vectors(_) => 3,
         _ => 1,
     }
 }
 
 /// A scene with a member of every part.
 fn full() -> Scene {
-    let mut scene = everything(DampingModel::Axial);
+    let mut scene = all_effects(DampingModel::Axial);
     scene.plot = Some(Plot::default());
     for part in PARTS {
         assert!((part.count)(&scene) > 0, "{}: no member", part.key);
@@ -95,7 +96,9 @@ fn a_change_is_seen_by_whatever_depends_on_it() {
                 (Some(Value::Id(id)), _) => Value::Id(id + 1),
                 (Some(Value::Flag(flag)), _) => Value::Flag(!flag),
                 (Some(Value::Text(_)), ValueKind::Word(words)) => Value::Text(words[1]),
-                (None, ValueKind::Number(_) | ValueKind::Numbers(..)) => Value::Number(0.25),
+                (None, ValueKind::Number(_) | ValueKind::Numbers(..) | ValueKind::Vectors(_)) => {
+                    Value::Number(0.25)
+                }
                 _ => Value::Text("other"),
             };
             let mut scene = original.clone();
@@ -106,7 +109,9 @@ fn a_change_is_seen_by_whatever_depends_on_it() {
             let moves = row.flat.is_some();
             assert_eq!(key(&scene, 5.0) != key(&original, 5.0), moves, "{title}");
             let name = row.flat.map(|name| match part.key {
-                "springs" | "bending" | "gravitational" => format!("{}.{name}", part.key),
+                "springs" | "bending" | "gravitational" | "triangles" => {
+                    format!("{}.{name}", part.key)
+                }
                 _ => name.to_owned(),
             });
             let found = differences(&flat(&scene), &flat(&original));
@@ -124,7 +129,8 @@ fn a_change_is_seen_by_whatever_depends_on_it() {
 #[test]
 fn every_number_that_moves_something_can_be_varied() {
     let scene = full();
-    for (part, row) in rows() {
+    // Where a number has vectors beside it, the number is what varies.
+    for (part, row) in rows().filter(|(_, row)| !matches!(row.kind, ValueKind::Vectors(_))) {
         let id = part.path(None, row.key);
         let vary = Vary::parse(&format!("{id}=0.25..0.5:2"), &scene);
         let number = matches!(row.kind, ValueKind::Number(_)) && row.flat.is_some();
@@ -142,16 +148,21 @@ fn every_number_that_moves_something_can_be_varied() {
 }
 
 /// The keys a scene has to have, with one member of every part, in the order of [`PARTS`].
-const REQUIRED: [(&str, &[(&str, &str)]); 9] = [
+const REQUIRED: [(&str, &[(&str, &str)]); 11] = [
     ("springs", &[("particle_ids", "[0, 1]"), ("stiffness", "1")]),
     (
         "bending",
         &[("particle_ids", "[0, 1, 2]"), ("stiffness", "1")],
     ),
     ("particles", &[("pos", "[1, 0, 0]"), ("mass", "1")]),
+    (
+        "triangles",
+        &[("particle_ids", "[0, 1, 2]"), ("air_drag", "1")],
+    ),
     ("gravitational", &[("particle_ids", "[0, 1]"), ("G", "1")]),
     ("wind", &[("direction", "[1, 0, 0]"), ("strength", "1")]),
     ("magnetic", &[("field", "[0, 0, 1]")]),
+    ("air", &[]),
     ("solver", &[("type", "midpoint"), ("timestep", "0.01")]),
     ("plot", &[("particle_id", "0"), ("dof", "0")]),
     ("file", &[]),
@@ -240,9 +251,8 @@ fn numbers_are_read_at_their_bounds_and_refused_beyond() {
             numbers[count - 1] = value;
             let text = written(Some((part, row, &yaml(row, &numbers))));
             let error = parse(&text).expect_err(&text);
-            // The last particle, else the first member.
-            let last = if part.key == "particles" { 2 } else { 0 };
-            let mut path = part.path(Some(last), row.key);
+            // The third particle, else the first member.
+            let mut path = part.path(Some(2 * usize::from(part.key == "particles")), row.key);
             if let ValueKind::Numbers(..) = row.kind {
                 path += &format!("[{}]", count - 1);
             }

@@ -70,11 +70,12 @@ const PIECES: &[&str] = &[
 
 /// Every key, small enough to be mutated often.
 const RICH: &str = "name: a\ndescription: 'b'\nduration: 2\nup: x\ndamping_model: axial\n\
-    solver: {type: rk4, timestep: 0.1, gravity: 0, tolerance: 1e-9}\n\
+    solver: {type: rk4, timestep: 0.1, gravity: [[0, 0, 1], [1, 2, 3]], tolerance: 1e-9}\n\
     plot: {particle_id: 1, dof: 2, y_range: [0, 1]}\n\
-    particles:\n- &p {pos: [0, 0, 0], fixed: true, mass: 1}\n- {pos: [1, 0, 0], vel: [0, 1, 0], mass: 1, radius: 1, drag: 1}\n- *p\n\
+    particles:\n- &p {pos: [0, 0, 0], fixed: true, mass: 1}\n- {pos: [1, 0, 0], vel: [0, 1, 0], mass: 1, radius: 1, drag: 1, quadratic_drag: 1}\n- *p\n- {pos: [0, 1, 0], mass: 1}\n\
     springs: [{particle_ids: [0, 1], stiffness: 1, cubic: 1, damping: 1, rest_length: 1}]\n\
     gravitational: [{particle_ids: [0, 1], G: 1}]\nwind: {direction: [1, 0, 0], strength: 1}\n\
+    air: {velocity: [1, 0, 0], density: 1}\ntriangles: [{particle_ids: [0, 1, 3], air_drag: 1}]\n\
     expect:\n  all: &e {status: [completed, failed], energy.drift_per_s: {above: -1, below: 1}}\n  \
     rest: *e\n  rapier: {reason: {contains: particle 1}, energy.class: growing}\n";
 
@@ -91,22 +92,31 @@ fn seeds() -> Vec<Vec<u8>> {
 fn assert_sound(scene: &Scene) {
     let count = scene.particles.len();
     let mut numbers = vec![scene.duration, scene.solver.timestep, scene.solver.gravity];
+    numbers.extend(scene.solver.gravities.0.iter().flatten());
     assert!(scene.solver.timestep > 0.0 && scene.solver.timestep <= scene.duration);
     assert!(integrators::find(&scene.solver.method).is_some());
     for p in &scene.particles {
-        numbers.extend(
-            p.position
-                .iter()
-                .chain(&p.velocity)
-                .chain([&p.radius, &p.drag]),
-        );
+        numbers.extend(p.position.iter().chain(&p.velocity).chain([
+            &p.radius,
+            &p.drag,
+            &p.quadratic_drag,
+        ]));
         assert!(p.mass > 0.0 && p.mass.is_finite() && p.radius >= 0.0 && p.drag >= 0.0);
+        assert!(p.quadratic_drag >= 0.0);
     }
     for s in &scene.springs {
         numbers.extend([s.stiffness, s.cubic, s.damping, s.rest_length]);
         assert!(s.stiffness >= 0.0 && s.cubic >= 0.0 && s.damping >= 0.0 && s.rest_length >= 0.0);
         assert!(s.ends[0] != s.ends[1] && s.ends.iter().all(|id| *id < count));
     }
+    for t in &scene.triangles {
+        numbers.push(t.air_drag);
+        let [a, b, c] = t.corners;
+        assert!(a != b && b != c && a != c && t.corners.iter().all(|id| *id < count));
+    }
+    let air = scene.air();
+    numbers.extend(air.velocity.into_iter().chain([air.density]));
+    assert!(air.density >= 0.0);
     for g in &scene.gravitational {
         numbers.push(g.g);
         assert!(g.ends[0] != g.ends[1] && g.ends.iter().all(|id| *id < count));

@@ -30,6 +30,7 @@ fn a_scene_written_out_is_the_same_scene() {
     odd["particles"][0]["pos"] = json!([1e-300, -1e12, 0.1 + 0.2]);
     odd["springs"][0]["stiffness"] = json!(1e18);
     odd["wind"]["direction"] = json!([2, 3, 7]);
+    odd["solver"]["gravity"] = json!([[0.1, 1e-300, -9.81], [1, 2, 3]]);
     odd["externals"] = json!(["mine", "1e3", "true", "null"]);
     odd["expect"] = json!({
         "1e3": {"identified.decisive": true, "reason": {"contains": "]: ,"}},
@@ -37,6 +38,8 @@ fn a_scene_written_out_is_the_same_scene() {
         "null": {"energy.final_j": {"above": -1e300, "below": 5e-324}},
         "skip": {"order": "- no"},
     });
+    same(&read(&odd).expect("a scene"));
+    odd["solver"]["gravity"] = json!([[0, 0, -9.81]]);
     same(&read(&odd).expect("a scene"));
 }
 
@@ -56,8 +59,8 @@ fn what_is_written_out_has_every_default() {
          up: z\n\
          damping_model: axial\n\
          particles:\n\
-         \x20 - {pos: [0.0, 0.0, 2.0], vel: [0.0, 0.0, 0.0], fixed: true, mass: 1.0, radius: 0.1, drag: 0.0, charge: 0.0}\n\
-         \x20 - {pos: [0.0, 0.0, 1.0], vel: [0.0, 0.0, 0.0], fixed: false, mass: 2.0, radius: 0.1, drag: 0.0, charge: 0.0}\n\
+         \x20 - {pos: [0.0, 0.0, 2.0], vel: [0.0, 0.0, 0.0], fixed: true, mass: 1.0, radius: 0.1, drag: 0.0, quadratic_drag: 0.0, charge: 0.0}\n\
+         \x20 - {pos: [0.0, 0.0, 1.0], vel: [0.0, 0.0, 0.0], fixed: false, mass: 2.0, radius: 0.1, drag: 0.0, quadratic_drag: 0.0, charge: 0.0}\n\
          springs:\n\
          \x20 - {particle_ids: [0, 1], stiffness: 20.0, cubic: 0.0, damping: 0.0, rest_length: 1.0}\n\
          expect:\n\

@@ -3,7 +3,10 @@
 use crate::testkit::cloth::cloth;
 use springcheck::physics::ParticleSystem;
 use springcheck::physics::effects::{EffectRow, REGISTRY};
-use springcheck::scene::{Bending, DampingModel, GravitationalPair, Magnetic, Scene, Wind};
+use springcheck::scene::{
+    Air, Bending, DampingModel, GravitationalPair, Magnetic, Scene, Triangle, Wind,
+};
+use springcheck::solvers::{self, Setting};
 
 /// The ids of what a system has to call.
 fn called(scene: &Scene) -> Vec<&'static str> {
@@ -15,9 +18,22 @@ fn called(scene: &Scene) -> Vec<&'static str> {
 type Call = fn(&mut Scene);
 
 /// What the scene calls for one by one, each on top of gravity and springs.
-const CALLS: [(&str, Call); 6] = [
+const CALLS: [(&str, Call); 8] = [
     ("cubic_springs", |scene| scene.springs[0].cubic = 1.0),
     ("drag", |scene| scene.particles[1].drag = 0.1),
+    ("quadratic_drag", |scene| {
+        scene.particles[1].quadratic_drag = 0.1;
+    }),
+    ("air_drag", |scene| {
+        scene.air = Some(Air {
+            density: 1.2,
+            ..Air::default()
+        });
+        scene.triangles.push(Triangle {
+            corners: [0, 1, 4],
+            air_drag: 1.0,
+        });
+    }),
     ("wind", |scene| {
         scene.wind = Some(Wind {
             direction: [1.0, 0.0, 0.0],
@@ -68,4 +84,36 @@ fn what_a_scene_does_not_call_for_is_never_called() {
     let mut weightless = plain.clone();
     weightless.solver.gravity = 0.0;
     assert_eq!(called(&weightless), ["springs"]);
+}
+
+/// What each rapier world of a scene consists of: bodies and joints.
+fn built(scene: &Scene, engine: &str) -> [u64; 2] {
+    let solver = solvers::find(engine).expect("an engine");
+    let timestep = scene.solver.timestep;
+    let setting = Setting::Steps { timestep, steps: 1 };
+    let system = ParticleSystem::new(scene);
+    let run = solver.start(scene, &system, &setting).expect("a run");
+    let world = run.counts().world.expect("a world");
+    [world.bodies, world.joints]
+}
+
+#[test]
+fn rapiers_world_has_a_body_a_particle_and_a_joint_only_where_the_scene_calls_for_one() {
+    let mut scene = cloth(3, 0.0, DampingModel::Axial);
+    let springs = scene.springs.len() as u64;
+    // Springs between fixed ends could do nothing.
+    let held =
+        |s: &&springcheck::scene::Spring| s.ends.iter().all(|end| scene.particles[*end].fixed);
+    let idle = scene.springs.iter().filter(held).count() as u64;
+    assert_eq!(built(&scene, "rapier"), [9, springs - idle]);
+    // Forces from outside need no joints at all.
+    assert_eq!(built(&scene, "rapier-forces"), [9, 0]);
+    // Drag is a joint to the air, which is one more body.
+    let free = scene.particles.iter().filter(|p| !p.fixed).count() as u64;
+    scene.particles.iter_mut().for_each(|p| p.drag = 0.1);
+    assert_eq!(built(&scene, "rapier"), [10, springs - idle + free]);
+    scene.springs.clear();
+    assert_eq!(built(&scene, "rapier"), [10, free]);
+    scene.particles.iter_mut().for_each(|p| p.drag = 0.0);
+    assert_eq!(built(&scene, "rapier"), [9, 0]);
 }

@@ -56,6 +56,8 @@ fn mutants_fail() {
     fails("no wind", &scenes::drag_and_wind(), calm);
     let up: fn(&mut Scene) = |s| s.solver.gravity *= -1.0;
     fails("gravity upward", &scenes::course(0), up);
+    let one: fn(&mut Scene) = |s| s.solver.gravities.0.truncate(1);
+    fails("one gravity of two", &scenes::gravities(), one);
     let unstretched: fn(&mut Scene) = |s| s.springs[0].rest_length *= 1.01;
     fails("rest length", &scenes::course(5), unstretched);
 }

@@ -2,7 +2,9 @@
 
 use crate::testkit::scenes::{self, all_shipped, shipped, spring};
 pub use crate::testkit::scenes::{fixed, free};
-use springcheck::scene::{DampingModel, GravitationalPair, Scene, SolverSpec, Spring, Wind};
+use springcheck::scene::{
+    DampingModel, GravitationalPair, Scene, SolverSpec, Spring, Vectors, Wind,
+};
 
 /// Nothing in it: gravity along z, a step of 5e-4 s, one second.
 pub fn empty(name: &str) -> Scene {
@@ -60,6 +62,14 @@ pub fn wind() -> Scene {
     scene
 }
 
+/// Gravity of two vectors, along no axis.
+pub fn gravities() -> Scene {
+    let mut scene = lively("gravities");
+    scene.solver.gravity = 0.0;
+    scene.solver.gravities = Vectors(vec![[0.0, 0.0, -9.81], [3.0, -2.0, 1.0]]);
+    scene
+}
+
 pub fn drag_and_wind() -> Scene {
     Scene {
         name: "drag and wind".to_owned(),
@@ -108,6 +118,13 @@ pub fn mirrored() -> Vec<Scene> {
     };
     let mut scenes = all_shipped(&["pa1", "oscillator"]);
     assert!(scenes.len() >= 14);
-    scenes.extend([stiff, isotropic(), drag(), wind(), drag_and_wind()]);
+    scenes.extend([
+        stiff,
+        isotropic(),
+        gravities(),
+        drag(),
+        wind(),
+        drag_and_wind(),
+    ]);
     scenes
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::testkit::Random;
-use crate::testkit::scenes::{empty, fixed, free, spring};
+use crate::testkit::scenes::{all_shipped, empty, fixed, free, spring};
 use springcheck::integrators::Method;
 use springcheck::measure::stability::{Effort, Limit, Linearised};
 use springcheck::physics::ParticleSystem;
@@ -127,4 +127,14 @@ fn random_scenes_raise_none() {
     }
     // Measured 2 in a thousand.
     assert!(100 * left <= many().max(100), "{left}");
+}
+
+/// Scenes of single effects hold what they expect, and every law.
+#[test]
+fn scenes_of_effects_raise_none() {
+    for scene in all_shipped(&["effects"]) {
+        let report = Gate::new(&scene).run(&Quiet).expect("nothing is written");
+        let alarms = failed(&report);
+        assert!(alarms.is_empty(), "{}: {alarms:#?}", scene.name);
+    }
 }

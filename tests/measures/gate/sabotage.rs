@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::testkit::mutants::{self, physics};
-use crate::testkit::{everything, part};
+use crate::testkit::{all_effects, part};
 use springcheck::integrators::{Integrator, Settings, StepError};
 use springcheck::physics::effects::{self, Effect, EffectRow};
 use springcheck::physics::{ParticleSystem, State, System};
@@ -168,7 +168,7 @@ impl Effect for TooStrong {
 
 #[test]
 fn an_effect_whose_force_is_not_its_energys_fails_by_its_name() {
-    let mut scene = everything(DampingModel::Axial);
+    let mut scene = all_effects(DampingModel::Axial);
     scene.duration = 100.0 * scene.solver.timestep;
     for row in effects::REGISTRY {
         let build = |other: &EffectRow| {

@@ -2,9 +2,9 @@
 //! scene that the rows are computed in.
 
 use super::*;
-use crate::testkit::{cloth, everything};
+use crate::testkit::{all_effects, cloth, everything};
 use springcheck::measure::identify::Deviation;
-use springcheck::scene::{Axis, DampingModel, Spring};
+use springcheck::scene::{Axis, DampingModel, Spring, Vectors};
 
 /// A change, and what is to be said of it: what deviates, by which factor, where.
 type Case = (fn(&mut Scene), &'static str, f64, Option<&'static str>);
@@ -126,6 +126,100 @@ fn is(found: &[Deviation], (_, what, factor, place): &Case) -> Result<(), String
 fn the_number_that_is_wrong_is_found() {
     let scene = everything(DampingModel::Axial);
     for case in &CASES {
+        for method in ["symplectic_euler", "rk4"] {
+            let found = deviations(&scene, case.0, method, u64::MAX);
+            is(&found, case).unwrap_or_else(|e| panic!("{method}: {e}"));
+        }
+    }
+}
+
+/// Gravity of vectors: all of it wrong by a factor, or one of the vectors left out.
+#[test]
+fn a_wrong_gravity_of_vectors_is_found() {
+    let mut scene = everything(DampingModel::Axial);
+    scene.solver.gravity = 0.0;
+    scene.solver.gravities = Vectors(vec![[0.0, 0.0, -9.81], [3.0, 4.0, 0.0]]);
+    let scaled = |s: &mut Scene, factor: f64| {
+        let vectors = s.solver.gravities.0.iter_mut();
+        vectors.flatten().for_each(|g| *g *= factor);
+    };
+    // Its length is 11.01 m/s²; the sign is that of the largest component.
+    let alone = 9.81 / (9.81_f64 * 9.81 + 25.0).sqrt();
+    let cases: [(&dyn Fn(&mut Scene), _, f64, _); 4] = [
+        (&|s| scaled(s, 0.5), "gravity", 0.5, None),
+        (&|s| scaled(s, -1.0), "gravity", -1.0, None),
+        (&|s| scaled(s, 0.0), "gravity", 0.0, None),
+        (
+            &|s| s.solver.gravities.0.truncate(1),
+            "axis",
+            alone,
+            Some("z"),
+        ),
+    ];
+    for (change, what, factor, place) in cases {
+        let mut wrong = scene.clone();
+        change(&mut wrong);
+        let rows = run(&wrong, "symplectic_euler", 1, 60);
+        let found = found_within(u64::MAX, &scene, &rows, None).explained;
+        let found = found.map_or_else(Vec::new, |e| e.deviations);
+        is(&found, &(|_| (), what, factor, place)).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+/// What the air does, left out, turned round or of another strength.
+#[test]
+fn a_wrong_drag_of_the_air_is_found() {
+    let cases: [Case; 7] = [
+        (|s| s.air = None, "air.velocity", 0.0, None),
+        (
+            |s| {
+                s.air
+                    .iter_mut()
+                    .flat_map(|a| &mut a.velocity)
+                    .for_each(|w| *w = -*w)
+            },
+            "air.velocity",
+            -1.0,
+            None,
+        ),
+        (
+            |s| s.particles.iter_mut().for_each(|p| p.quadratic_drag = 0.0),
+            "quadratic_drag",
+            0.0,
+            None,
+        ),
+        (
+            |s| {
+                s.particles
+                    .iter_mut()
+                    .for_each(|p| p.quadratic_drag *= -1.0)
+            },
+            "quadratic_drag",
+            -1.0,
+            None,
+        ),
+        (
+            |s| s.particles[2].quadratic_drag *= 2.0,
+            "quadratic_drag",
+            2.0,
+            Some("particle 2"),
+        ),
+        (
+            |s| s.triangles.iter_mut().for_each(|t| t.air_drag *= -1.0),
+            "air_drag",
+            -1.0,
+            None,
+        ),
+        // The density is in the same product.
+        (
+            |s| s.air.iter_mut().for_each(|air| air.density = 0.6),
+            "air_drag",
+            0.5,
+            None,
+        ),
+    ];
+    let scene = all_effects(DampingModel::Axial);
+    for case in &cases {
         for method in ["symplectic_euler", "rk4"] {
             let found = deviations(&scene, case.0, method, u64::MAX);
             is(&found, case).unwrap_or_else(|e| panic!("{method}: {e}"));

@@ -5,6 +5,7 @@ use crate::testkit::scenes::{all_shipped, folders, shipped};
 use crate::testkit::{is_its_own, part};
 use springcheck::integrators::{Method, fixed};
 use springcheck::measure::identify::Undecided;
+use springcheck::physics::ParticleSystem;
 use std::collections::BTreeSet;
 
 fn course(number: u32) -> Scene {
@@ -49,7 +50,17 @@ fn every_method_is_named_on_every_shipped_scene() {
     // On the hard ones few methods last long enough to be named.
     let mut folders = folders();
     folders.retain(|folder| folder != "hard");
-    for (at, scene) in all_shipped(&folders).iter().enumerate() {
+    // Nor does a motion that is over after a few steps, or none at all, tell one from another.
+    let over = [
+        "sail.yml",
+        "test_equation_smooth.yml",
+        "test_equation_beyond.yml",
+    ];
+    let lasts = |scene: &Scene| !over.iter().any(|file| scene.file.ends_with(file));
+    let scenes = all_shipped(&folders).into_iter().filter(lasts);
+    for (at, scene) in scenes.enumerate() {
+        let scene = &scene;
+        // Some methods take no force that is not linear in the velocity, and some are others under these.
         let mut methods = part(fixed(), 3, at);
         methods.retain(|method| is_its_own(scene, method));
         let classes: Vec<_> = methods

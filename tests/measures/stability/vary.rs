@@ -70,6 +70,10 @@ fn what_varies_nothing_is_refused_with_what_would() {
         let error = Vary::parse(text, &scene).expect_err(text).to_string();
         assert!(error.contains(says), "{text}: {error}");
     }
+    let mut tilted = scene.clone();
+    tilted.solver.gravities.0.push([0.0, 1.0, -9.81]);
+    let error = Vary::parse("solver.gravity=1..2", &tilted).expect_err("vectors");
+    assert!(error.to_string().contains("gives vectors"), "{error}");
     let mut none = scene;
     none.springs.clear();
     let error = Vary::parse("springs.damping=1..2", &none).expect_err("no spring");

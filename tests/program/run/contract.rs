@@ -80,7 +80,13 @@ fn the_json_has_exactly_the_contracts_keys() {
         );
         assert_eq!(
             keys(&outcome["work"]),
-            set(&["steps", "force_evaluations", "linear_solves", "wall_s"])
+            set(&[
+                "steps",
+                "force_evaluations",
+                "linear_solves",
+                "wall_s",
+                "world"
+            ])
         );
         assert_eq!(
             keys(&outcome["work"]["wall_s"]),

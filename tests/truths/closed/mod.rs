@@ -5,6 +5,7 @@ mod bars;
 mod choice;
 mod edges;
 mod exact;
+mod fall;
 mod families;
 mod gauss;
 mod motion;

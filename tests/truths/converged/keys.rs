@@ -1,7 +1,7 @@
 //! The cache's key depends on everything that decides the motion, and on nothing else.
 
-use crate::testkit::everything;
-use springcheck::scene::{Axis, DampingModel, Plot, Scene};
+use crate::testkit::all_effects;
+use springcheck::scene::{Axis, DampingModel, Plot, Scene, Vectors};
 use springcheck::truth::converged::key;
 
 /// What a key forgets: a field is set back to the original's.
@@ -13,6 +13,20 @@ type Change = fn(&mut Scene);
 /// Every field that decides the motion.
 const DECIDES: &[(&str, Change)] = &[
     ("gravity", |s| s.solver.gravity = -9.8),
+    ("gravity as a vector", |s| {
+        s.solver.gravities = Vectors(vec![[0.0, 0.0, -9.8]]);
+    }),
+    ("quadratic drag", |s| s.particles[2].quadratic_drag = 0.1),
+    ("corner", |s| s.triangles[0].corners = [1, 3, 2]),
+    ("air drag", |s| s.triangles[0].air_drag = 0.9),
+    ("velocity of the air", |s| {
+        s.air.iter_mut().for_each(|air| air.velocity[0] = 0.7)
+    }),
+    ("density of the air", |s| {
+        s.air.iter_mut().for_each(|air| air.density = 1.3)
+    }),
+    ("no air", |s| s.air = None),
+    ("a triangle less", |s| s.triangles.truncate(1)),
     ("up", |s| s.up = Axis::Y),
     ("damping_model", |s| {
         s.damping_model = DampingModel::Isotropic
@@ -84,7 +98,7 @@ const DOES_NOT: &[(&str, Change)] = &[
 /// All keys of the first table differ from the original's and from each other; those of the second
 /// are the original's.
 fn key_law(key: impl Fn(&Scene) -> String) -> Result<(), String> {
-    let scene = everything(DampingModel::Axial);
+    let scene = all_effects(DampingModel::Axial);
     let changed = |change: &Change| {
         let mut scene = scene.clone();
         change(&mut scene);
@@ -109,7 +123,7 @@ fn key_law(key: impl Fn(&Scene) -> String) -> Result<(), String> {
 #[test]
 fn the_key_is_of_what_decides_the_motion() {
     key_law(|scene| key(scene, 5.0)).unwrap();
-    let scene = everything(DampingModel::Axial);
+    let scene = all_effects(DampingModel::Axial);
     assert_ne!(key(&scene, 5.0), key(&scene, 5.0 + 1e-15));
     let digits = key(&scene, 5.0);
     assert_eq!(digits.len(), 64);
@@ -119,7 +133,7 @@ fn the_key_is_of_what_decides_the_motion() {
 #[test]
 fn a_key_that_forgets_any_field_is_found_out() {
     // Whatever a field is set back to before hashing no longer counts.
-    let original = everything(DampingModel::Axial);
+    let original = all_effects(DampingModel::Axial);
     let forgetful: &[(&str, Forget)] = &[
         ("gravity", |s, o| s.solver.gravity = o.solver.gravity),
         ("up", |s, o| s.up = o.up),

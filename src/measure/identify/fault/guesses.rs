@@ -6,7 +6,9 @@ use super::super::candidate::Candidate;
 use super::super::channels::{self, Channel};
 use super::super::fit::{Base, Model};
 use super::super::mistakes::{MISTAKES, Mistake, Wrong};
-use super::super::numbers::Number::{self, Cubic, Damping, Gravity, RestLength, Stiffness, Wind};
+use super::super::numbers::Number::{
+    self, AirVelocity, Cubic, Damping, Gravity, RestLength, Stiffness, Wind,
+};
 use super::spot::Spot;
 use crate::integrators;
 use crate::physics::ParticleSystem;
@@ -111,6 +113,11 @@ pub(super) fn numbers(spot: &Spot) -> Vec<Guess> {
     channels.push(Channel::One(Gravity, 0));
     channels.extend(channels::of_particles(scene, &[spot.worst]));
     channels.extend(scene.wind.as_ref().map(|_| Channel::One(Wind, 0)));
+    channels.extend(
+        AirVelocity
+            .is_in(scene)
+            .then_some(Channel::One(AirVelocity, 0)),
+    );
     channels.push(Channel::Timestep);
     let fitted = channels.into_iter().filter_map(|channel| {
         let fit = model.fit(&[&model.slope(channel)?])?;

@@ -2,7 +2,7 @@
 //! difference.
 
 use crate::physics::ParticleSystem;
-use crate::scene::{DampingModel, Scene, Wind};
+use crate::scene::{DampingModel, Scene, Vectors, Wind};
 
 /// The scene changed by `change`, if `there` is something to change.
 fn changed(scene: &Scene, there: bool, change: impl FnOnce(&mut Scene)) -> Option<ParticleSystem> {
@@ -13,15 +13,18 @@ fn changed(scene: &Scene, there: bool, change: impl FnOnce(&mut Scene)) -> Optio
     })
 }
 
-/// The same g newtons on every particle: what a wind along `up` would do.
+/// The same g newtons on every particle: what a wind would do.
 pub(super) fn gravity_without_mass(scene: &Scene) -> Option<ParticleSystem> {
     changed(scene, falls(scene) && weighs(scene), |wrong| {
         let mut force = match &scene.wind {
             Some(wind) => wind.direction.map(|d| d * wind.strength),
             None => [0.0; 3],
         };
-        force[scene.up.index()] += scene.solver.gravity;
+        for (force, g) in force.iter_mut().zip(scene.gravity()) {
+            *force += g;
+        }
         wrong.solver.gravity = 0.0;
+        wrong.solver.gravities = Vectors::default();
         wrong.wind = Some(Wind {
             direction: force,
             strength: 1.0,
@@ -62,7 +65,7 @@ pub(super) fn force_as_acceleration(scene: &Scene) -> Option<ParticleSystem> {
 }
 
 fn falls(scene: &Scene) -> bool {
-    scene.solver.gravity != 0.0
+    scene.gravity() != [0.0; 3]
 }
 
 /// Whether some free particle's mass is not 1.

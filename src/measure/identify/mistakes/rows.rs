@@ -222,12 +222,22 @@ pub static MISTAKES: &[Mistake] = &[
     ),
     scaled(
         "damping_sign",
-        &[("springs.damping", -1.0), ("drag", -1.0)],
+        &[
+            ("springs.damping", -1.0),
+            ("drag", -1.0),
+            ("quadratic_drag", -1.0),
+            ("air_drag", -1.0),
+        ],
         "damping has the wrong sign, so it drives: a damper's force opposes the velocity",
     ),
     scaled(
         "damping_forgotten",
-        &[("springs.damping", 0.0), ("drag", 0.0)],
+        &[
+            ("springs.damping", 0.0),
+            ("drag", 0.0),
+            ("quadratic_drag", 0.0),
+            ("air_drag", 0.0),
+        ],
         "damping is missing: add the springs' dampers and the drag to the forces",
     ),
     physics(

@@ -6,6 +6,7 @@ use super::perturbation::{Perturbation, Quadratic};
 use super::probe::{Budget, Probed, Runs, Watch, probe};
 use super::watched::{DifferenceEnergy, ExcessEnergy};
 use crate::measure::energy_scale;
+use crate::measure::scale::gravity;
 use crate::measure::stability::Limit;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
@@ -219,7 +220,7 @@ impl<'a> Experiment<'a> {
 
 /// One rounding of the weights' potential energy, J.
 fn rounding(scene: &Scene) -> f64 {
-    let gravity = scene.solver.gravity.abs();
+    let gravity = gravity(scene);
     let heights = scene.particles.iter().filter(|p| !p.fixed).map(|p| {
         let far = p.position.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
         p.mass * far

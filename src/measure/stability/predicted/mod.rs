@@ -309,4 +309,9 @@ pub fn is_linear(scene: &Scene) -> bool {
             pulls_linearly && s.cubic == 0.0 && (s.damping == 0.0 || isotropic)
         })
         && attractions.into_iter().all(|pair| pair.g == 0.0)
+        && (scene.particles.iter()).all(|p| p.fixed || p.quadratic_drag == 0.0)
+        && scene
+            .triangles
+            .iter()
+            .all(|triangle| triangle.air_drag == 0.0)
 }

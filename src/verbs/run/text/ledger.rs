@@ -1,10 +1,11 @@
-//! Two tables: the energy at the end, and the effects that ran.
+//! Two tables: the energy at the end, and the effects that ran, with the bodies and joints of rapier's worlds.
 
 use crate::measure::Energy;
 use crate::report::EffectUse;
 use crate::report::table::Table;
 use crate::report::terminal::clip;
 use crate::report::words::{self, escape};
+use crate::solvers::Built;
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
 
@@ -55,41 +56,84 @@ fn number(value: Option<f64>) -> Option<String> {
     value.map(words::short)
 }
 
-/// The table of the effects that ran: evaluations and time.
-pub fn effects(effects: &[EffectUse]) -> String {
+/// The table of the effects that ran: evaluations and time; and what rapier's worlds were built of.
+pub fn effects(report: &Report) -> String {
+    let effects = &report.header.scene.effects;
+    let mut text = worlds(report).map_or_else(String::new, |worlds| format!("{worlds}.\n"));
     if effects.is_empty() {
-        return String::new();
+        return text;
     }
     let mut table = Table::new(effects);
     table.markdown("effect", |effect| escape(&effect.id));
     table.markdown("acts on", |effect| effect.members.to_string());
     table.markdown("evaluations", |effect| words::count(effect.evaluations));
     table.markdown("time each", time_each);
-    table.in_markdown()
+    table.markdown("share of the forces' time", |effect| share(effect, effects));
+    if !text.is_empty() {
+        text.insert(0, '\n');
+    }
+    table.in_markdown() + &text
 }
 
-/// The effects for the terminal, one line each: label and text.
-pub fn lines(effects: &[EffectUse]) -> Vec<(&'static str, String)> {
-    let ids = effects.iter().map(|effect| words::one_line(&effect.id));
-    let lines = effects
-        .iter()
-        .zip(ids)
-        .enumerate()
-        .map(|(i, (effect, id))| {
-            let label = if i == 0 { "effects" } else { "" };
-            let id = clip(&id, 24);
-            let on = words::count(effect.members as u64);
-            let evaluations = words::count(effect.evaluations);
-            let cost = time_each(effect).map_or(String::new(), |time| format!(", {time} each"));
-            (
-                label,
-                format!("{id} on {on}: {evaluations} evaluations{cost}"),
-            )
-        });
-    lines.collect()
+/// The effects for the terminal, one line each, and rapier's worlds: label and text.
+pub fn lines(report: &Report) -> Vec<(&'static str, String)> {
+    let effects = &report.header.scene.effects;
+    let line = |(at, effect): (usize, &EffectUse)| {
+        let label = if at == 0 { "effects" } else { "" };
+        let id = clip(&words::one_line(&effect.id), 24);
+        let on = words::count(effect.members as u64);
+        let evaluations = words::count(effect.evaluations);
+        let each = time_each(effect).map(|time| format!("{time} each"));
+        // The share of a lone effect is all.
+        let share = share(effect, effects).filter(|_| effects.len() > 1);
+        let share = share.map(|share| format!("{share} of the time"));
+        let facts = [Some(format!("{evaluations} evaluations")), each, share];
+        let facts: Vec<String> = facts.into_iter().flatten().collect();
+        (label, format!("{id} on {on}: {}", facts.join(", ")))
+    };
+    let lines = effects.iter().enumerate().map(line);
+    let worlds = worlds(report).map(|worlds| ("worlds", worlds));
+    lines.chain(worlds).collect()
+}
+
+/// The bodies and joints of rapier's worlds, each size once; None where none was built.
+fn worlds(report: &Report) -> Option<String> {
+    let mut worlds: Vec<(Built, Vec<&str>)> = Vec::new();
+    for outcome in report.outcomes() {
+        let Some(built) = outcome.work.world else {
+            continue;
+        };
+        match worlds.iter_mut().find(|(other, _)| *other == built) {
+            Some((_, engines)) if engines.contains(&outcome.engine.as_str()) => {}
+            Some((_, engines)) => engines.push(&outcome.engine),
+            None => worlds.push((built, vec![&outcome.engine])),
+        }
+    }
+    let each = worlds.iter().map(|(Built { bodies, joints }, engines)| {
+        let joints = match joints {
+            0 => "no joints".to_owned(),
+            joints => words::plural(*joints, "joint"),
+        };
+        let bodies = match bodies {
+            1 => "1 body".to_owned(),
+            bodies => format!("{} bodies", words::count(*bodies)),
+        };
+        let engines = words::one_line(&engines.join(", "));
+        format!("{engines}: {bodies}, {joints}")
+    });
+    let each: Vec<String> = each.collect();
+    (!each.is_empty()).then(|| each.join("; "))
 }
 
 /// The wall time of one evaluation.
 fn time_each(effect: &EffectUse) -> Option<String> {
     effect.wall_ns.map(|ns| words::seconds(ns * 1e-9))
+}
+
+/// Its part of the time that all effects took.
+fn share(effect: &EffectUse, effects: &[EffectUse]) -> Option<String> {
+    let time = |effect: &EffectUse| Some(effect.wall_ns? * effect.evaluations as f64);
+    let whole: f64 = effects.iter().filter_map(time).sum();
+    let part = time(effect)? / whole;
+    part.is_finite().then(|| format!("{:.0} %", 100.0 * part))
 }

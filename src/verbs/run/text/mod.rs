@@ -39,7 +39,7 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome], columns: usize) -> Vie
     let mut facts = vec![("truth", words::truth(&report.header.truth))];
     // A comparison would count only the evaluations made to judge it.
     if let Body::Run { .. } = report.body {
-        facts.extend(ledger::lines(&report.header.scene.effects));
+        facts.extend(ledger::lines(report));
     }
     // The verdict of a comparison is the identity.
     let said = |outcome: &Outcome, sentence: &String| {
@@ -102,7 +102,7 @@ pub fn page(report: &Report, view: &View) -> String {
         findings(view),
         section("First fault", fault.collect()),
         section("Where the energy is at the end", ledger::energies(report)),
-        section("Effects that ran", ledger::effects(&scene.effects)),
+        section("Effects that ran", ledger::effects(report)),
         LEGEND.to_owned(),
     ]
     .concat()
