@@ -19,11 +19,14 @@ pub(super) struct Helix {
 }
 
 impl Helix {
-    /// None of a group that is not one charged particle without springs, in a field.
+    /// None of a group that is not one charged particle without springs and quadratic drag, in a field.
     pub fn of(group: &Group) -> Option<Self> {
         let ([body], []) = (&group.bodies[..], &group.links[..]) else {
             return None;
         };
+        if body.quadratic != 0.0 {
+            return None;
+        }
         Some(Self {
             along: unit(body.turning)?,
             rate: Complex::new(-body.drag / body.mass, norm(body.turning)),
