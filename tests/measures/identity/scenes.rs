@@ -5,7 +5,6 @@ use crate::testkit::scenes::{all_shipped, folders, shipped};
 use crate::testkit::{is_its_own, part};
 use springcheck::integrators::{Method, fixed};
 use springcheck::measure::identify::Undecided;
-use springcheck::physics::ParticleSystem;
 use std::collections::BTreeSet;
 
 fn course(number: u32) -> Scene {
