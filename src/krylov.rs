@@ -61,6 +61,11 @@ impl<D: Fn(&[f64], &[f64]) -> f64> Space<D> {
         })
     }
 
+    /// An entry of the matrix projected onto the space; its last column is that of the last image.
+    pub fn entry(&self, row: usize, column: usize) -> f64 {
+        self.columns[column].get(row).copied().unwrap_or(0.0)
+    }
+
     /// An entry of a self-adjoint matrix projected onto the space.
     pub fn tridiagonal(&self, row: usize, column: usize) -> f64 {
         match row.abs_diff(column) {

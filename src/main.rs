@@ -1,7 +1,7 @@
 //! The command line: verbs in, exit codes out.
 
 use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
-use springcheck::verbs::cli::{interrupt, note::note};
+use springcheck::verbs::cli::{interrupt, note, output};
 use springcheck::verbs::{
     check, compare, completions, cost, expand, explain, init, list, merge, run, schema, show,
     stability,
@@ -139,9 +139,10 @@ fn main() -> ExitCode {
         Err(error) => {
             // What the caller wrote may hold what a terminal acts on; help holds nothing of it.
             if error.use_stderr() {
-                note(error.render().to_string().trim_end());
-            } else {
-                let _ = error.print();
+                note::note(error.render().to_string().trim_end());
+            } else if let Err(error) = output::print(&error.render().ansi().to_string()) {
+                note::error(&error);
+                return ExitCode::from(USAGE);
             }
             // clap's own code is 2 for usage and 0 for --help.
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(USAGE));
@@ -172,19 +173,8 @@ fn main() -> ExitCode {
     match done {
         Ok(code) => code,
         Err(error) => {
-            note(&message(&error));
+            note::error(&error);
             ExitCode::from(USAGE)
         }
-    }
-}
-
-/// A scene error stands for itself; anything else is introduced, with its causes.
-fn message(error: &anyhow::Error) -> String {
-    let placed = error.is::<springcheck::scene::SceneError>()
-        || error.is::<springcheck::trajectory::ReadError>();
-    if placed {
-        error.to_string()
-    } else {
-        format!("error: {error:#}")
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{DampingTreatment, Stable, Stage, Tableau};
 use crate::physics::phi1;
-use nalgebra::Complex;
+use nalgebra::{Complex, DMatrix};
 
 /// The one-step map on x'' = -K x - C v.
 #[derive(Debug, Clone, Copy)]
@@ -277,6 +277,36 @@ impl DampingTreatment {
             Self::Explicit => (1.0 - step * c, step),
             // On one oscillator a sweep is the exact flow.
             Self::ExactFlow | Self::Sweeps => ((-step * c).exp(), step * phi1(-step * c)),
+            Self::Boris => {
+                let half = 0.5 * step * c;
+                ((1.0 - half) / (1.0 + half), step / (1.0 + half))
+            }
+        }
+    }
+}
+
+impl DampingTreatment {
+    /// As [`kick`](Self::kick), under a damping matrix c, n x n, that need not be symmetric. NaN where they do not
+    /// exist.
+    pub(crate) fn kick_matrices(self, step: f64, c: &DMatrix<f64>) -> [DMatrix<f64>; 2] {
+        let n = c.nrows();
+        let one = DMatrix::<f64>::identity(n, n);
+        match self {
+            Self::Explicit => [&one - c * step, one * step],
+            Self::ExactFlow | Self::Sweeps => {
+                // The exponential of [-step c, step; 0, 0] has e^(-step c) and step φ1(-step c) in its upper half.
+                let mut both = (c * -step).resize(2 * n, 2 * n, 0.0);
+                both.view_mut((0, n), (n, n)).copy_from(&(one * step));
+                let finite = both.iter().all(|entry| entry.is_finite());
+                let flow = if finite { both.exp() } else { both * f64::NAN };
+                [0, n].map(|from| flow.view((0, from), (n, n)).into_owned())
+            }
+            Self::Boris => {
+                let half = c * (0.5 * step);
+                let back = (&one + &half).try_inverse();
+                let back = back.unwrap_or_else(|| DMatrix::from_element(n, n, f64::NAN));
+                [&back * (&one - half), back * step]
+            }
         }
     }
 }

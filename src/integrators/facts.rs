@@ -140,7 +140,10 @@ fn of_composition(row: MethodRow, stages: &'static [Stage], damping: DampingTrea
             // Each kick has 1 - h b c for exp(-h b c). The product has order 2 only if the sum of all b² is 0.
             DampingTreatment::Explicit => order.min(1),
             DampingTreatment::ExactFlow => order_of_flows(stages, order),
-            DampingTreatment::Sweeps => order_of_sweeps(stages, order_of_flows(stages, order)),
+            // The midpoint rule is symmetric, as a sweep each way is: the exact flow but for a term of (c h)³.
+            DampingTreatment::Sweeps | DampingTreatment::Boris => {
+                order_of_sweeps(stages, order_of_flows(stages, order))
+            }
         },
         symplectic: true,
         reversible: stages.iter().eq(stages.iter().rev()),

@@ -25,11 +25,11 @@ pub enum ImplicitScheme {
 
 impl ImplicitScheme {
     /// The kinds of forces it accepts. One Newton step is of first order for any force. The line search of
-    /// Newton's iteration needs a symmetric D.
+    /// Newton's iteration needs a force linear in v.
     pub(super) const fn takes(self) -> ForceKinds {
         match self {
             Self::PredictedEuler | Self::LinearizedEuler(_) => ForceKinds::ANY,
-            _ => ForceKinds::SYMMETRIC,
+            _ => ForceKinds::LINEAR,
         }
     }
 

@@ -113,7 +113,7 @@ pub struct Method {
     pub name: &'static str,
     /// Order of the global error on smooth problems without damping.
     pub order: u32,
-    /// Order with dampers or drag.
+    /// Order with dampers, drag or a magnetic field.
     pub order_damped: u32,
     /// Whether it preserves the symplectic form on undamped problems.
     pub symplectic: bool,
@@ -155,6 +155,17 @@ impl Method {
             Coefficients::Composition(_, damping) => damping.takes(),
             Coefficients::Implicit(scheme) => scheme.takes(),
         }
+    }
+
+    /// Whether it has steps of its own under forces of these kinds: it takes them, and is not another row's map.
+    /// Boris' method is position Verlet where no force depends on velocity.
+    pub fn is_its_own(&self, kinds: ForceKinds) -> bool {
+        let treatment = match self.coefficients {
+            Coefficients::Composition(_, treatment) => Some(treatment),
+            _ => None,
+        };
+        let same = treatment == Some(DampingTreatment::Boris) && !kinds.depends_on_velocity();
+        kinds.without(self.takes()) == ForceKinds::NONE && !same
     }
 
     /// The adaptive pair; None for a method of fixed steps.
@@ -303,6 +314,7 @@ pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
         runge_kutta::RALSTON,
         splitting::VELOCITY_VERLET,
         splitting::POSITION_VERLET,
+        splitting::BORIS,
         runge_kutta::RK3,
         runge_kutta::SSPRK3,
         runge_kutta::RK4,

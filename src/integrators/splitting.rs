@@ -82,15 +82,22 @@ pub enum DampingTreatment {
     ///
     /// Systems that cannot be swept are damped by the exact flow.
     Sweeps,
+    /// Boris' kick: half of the acceleration at rest, the dampers and turns by the midpoint rule, the other half. A
+    /// magnetic field turns by 2 atan(w h/2) for its w h, and a damper multiplies by (1 - z/2)/(1 + z/2) for its
+    /// e^-z: Cayley's transform instead of the exponential. Of several at a particle, one acts after the other,
+    /// there and back.
+    ///
+    /// Systems that cannot be swept are solved all together.
+    Boris,
 }
 
 impl DampingTreatment {
-    /// The kinds of forces it accepts. An explicit kick is of first order for any force. The exact flow
-    /// splits the force into that at rest and D v, and needs a symmetric D.
+    /// The kinds of forces it accepts. An explicit kick is of first order for any force. Flows split the force
+    /// into that at rest and D v.
     pub(super) const fn takes(self) -> ForceKinds {
         match self {
             Self::Explicit => ForceKinds::ANY,
-            Self::ExactFlow | Self::Sweeps => ForceKinds::SYMMETRIC,
+            Self::ExactFlow | Self::Sweeps | Self::Boris => ForceKinds::LINEAR,
         }
     }
 }
@@ -153,6 +160,17 @@ pub(super) const PEFRL: MethodRow = MethodRow {
     not: "Forest-Ruth (yoshida4): one evaluation more, an error constant far smaller",
 };
 
+pub(super) const BORIS: MethodRow = MethodRow {
+    id: "boris",
+    name: "Boris (drift half, kick, drift half)",
+    coefficients: Coefficients::Composition(Stage::POSITION_VERLET, DampingTreatment::Boris),
+    energy: Some("[1, 1/(1 - z²/4)]"),
+    source: "Boris 1970, Proc. 4th Conf. Numerical Simulation of Plasmas; Birdsall & Langdon, Plasma Physics \
+             via Computer Simulation, 4-3; Qin et al. 2013, Phys. Plasmas 20",
+    not: "position_verlet, which turns by w h, damps by e^-z, and is the same where no force depends on velocity; \
+          Boris with velocities half a step from the positions, whose kick is the same",
+};
+
 /// The stepper that all compositions of kicks and drifts share.
 #[derive(Debug, Clone)]
 pub struct Splitting {
@@ -211,7 +229,7 @@ impl Splitting {
         state.work.advance(power, h);
     }
 
-    /// Applies the flow of v' = a(x, v) at frozen x over h, and advances the work.
+    /// Applies the flow of v' = a(x, v) at frozen x over h, or its midpoint rule, and advances the work.
     fn kick_exactly(
         &mut self,
         system: &dyn System,
@@ -222,6 +240,12 @@ impl Splitting {
         system.place(t, &mut state.x, &mut state.v);
         self.evaluate(system, t, h, state);
         if system.kinds().depends_on_velocity() {
+            if self.damping == DampingTreatment::Boris {
+                self.push(system, t, 0.5 * h, state);
+                self.flow.midpoint(system, t, h, state)?;
+                self.push(system, t, 0.5 * h, state);
+                return Ok(());
+            }
             return self
                 .flow
                 .advance(system, t, h, &self.kept.a, state, HALVINGS);
@@ -232,6 +256,7 @@ impl Splitting {
 
     /// Applies the dampers one after the other, and the force at rest; of several dampers at a particle, the `first`
     /// kick of a step sweeps before the force, the `last` one back after it, and any other both ways in its middle.
+    /// Boris' kicks have them all in the middle.
     fn kick_by_sweeps(
         &mut self,
         system: &dyn System,
@@ -241,24 +266,50 @@ impl Splitting {
         state: &mut State,
     ) {
         system.place(t, &mut state.x, &mut state.v);
-        if system.dampers() == Dampers::Apart {
+        let apart = system.dampers() == Dampers::Apart;
+        let midpoint = self.damping == DampingTreatment::Boris;
+        if apart && !midpoint {
             self.evaluate(system, t, h, state);
             self.kick_apart(system, t, h, state);
-        } else if first {
-            sweep(system, h, false, state);
+        } else if first && !midpoint {
+            self.sweep(system, h, false, state);
             self.evaluate(system, t, h, state);
             self.push(system, t, h, state);
-        } else if last {
+        } else if last && !midpoint {
             self.evaluate(system, t, h, state);
             self.push(system, t, h, state);
-            sweep(system, h, true, state);
+            self.sweep(system, h, true, state);
         } else {
             let half = 0.5 * h;
             self.evaluate(system, t, h, state);
             self.push(system, t, half, state);
-            sweep(system, half, true, state);
-            sweep(system, half, false, state);
+            if apart {
+                self.sweep(system, h, false, state);
+            } else {
+                self.sweep(system, half, true, state);
+                self.sweep(system, half, false, state);
+            }
             self.push(system, t, half, state);
+        }
+    }
+
+    /// Applies the dampers alone, one after the other, over h.
+    fn sweep(&self, system: &dyn System, h: f64, backward: bool, state: &mut State) {
+        let driven = system.kinds().has(ForceKinds::DRIVEN);
+        let before = if driven {
+            system.kinetic(&state.v)
+        } else {
+            0.0
+        };
+        let mut sweep = Sweep::new(system, &state.x, &mut state.v, h);
+        sweep.backward = backward;
+        sweep.midpoint = self.damping == DampingTreatment::Boris;
+        system.sweep(&mut sweep);
+        let dissipated = sweep.dissipated();
+        state.work.dissipated += dissipated;
+        if driven {
+            // Only what is driven gives dampers more than they take from what is free.
+            state.work.injected += system.kinetic(&state.v) - before + dissipated;
         }
     }
 
@@ -333,32 +384,15 @@ impl Splitting {
     }
 }
 
-/// Applies the dampers alone, one after the other, over h.
-fn sweep(system: &dyn System, h: f64, backward: bool, state: &mut State) {
-    let driven = system.kinds().has(ForceKinds::DRIVEN);
-    let before = if driven {
-        system.kinetic(&state.v)
-    } else {
-        0.0
-    };
-    let mut sweep = Sweep::new(system, &state.x, &mut state.v, h);
-    sweep.backward = backward;
-    system.sweep(&mut sweep);
-    let dissipated = sweep.dissipated();
-    state.work.dissipated += dissipated;
-    if driven {
-        // Only what is driven gives dampers more than they take from what is free.
-        state.work.injected += system.kinetic(&state.v) - before + dissipated;
-    }
-}
-
 impl Integrator for Splitting {
     fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
         refuse(self, system)?;
         let whole = match self.damping {
             DampingTreatment::Explicit => false,
             DampingTreatment::ExactFlow => true,
-            DampingTreatment::Sweeps => system.dampers() == Dampers::Whole,
+            DampingTreatment::Sweeps | DampingTreatment::Boris => {
+                system.dampers() == Dampers::Whole
+            }
         };
         if !(whole && system.kinds().depends_on_velocity()) {
             return self.compose(system, h, state);
@@ -408,11 +442,11 @@ impl Splitting {
                             }
                             self.kick_explicitly(system, t, c * h, drift, state);
                         }
-                        DampingTreatment::Sweeps if swept => {
+                        DampingTreatment::Sweeps | DampingTreatment::Boris if swept => {
                             let ends = [before == 0, rest.is_empty()].map(|end| halves && end);
                             self.kick_by_sweeps(system, t, c * h, ends, state);
                         }
-                        DampingTreatment::ExactFlow | DampingTreatment::Sweeps => {
+                        _ => {
                             self.kick_exactly(system, t, c * h, state)?;
                         }
                     }

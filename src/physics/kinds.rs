@@ -26,9 +26,8 @@ impl ForceKinds {
     pub const DRIVEN: Self = Self(16);
     /// All of them.
     pub const ANY: Self = Self(31);
-    /// All kinds that are compatible with a symmetric D: what a method accepts that needs D symmetric.
-    pub const SYMMETRIC: Self =
-        Self(Self::DISSIPATIVE.0 | Self::NEGATIVE_DAMPING.0 | Self::DRIVEN.0);
+    /// All kinds that are linear in v: what a method accepts that splits the force into that at rest and D v.
+    pub const LINEAR: Self = Self(Self::ANY.0 & !Self::NON_LINEAR.0);
 
     const WORDS: [(Self, &str); 5] = [
         (Self::DISSIPATIVE, "dissipative"),
@@ -45,6 +44,11 @@ impl ForceKinds {
 
     pub const fn depends_on_velocity(self) -> bool {
         self.has(Self(Self::ANY.0 & !Self::DRIVEN.0))
+    }
+
+    /// Whether a force depends on v otherwise than by turning it.
+    pub const fn damps(self) -> bool {
+        self.without(Self::GYROSCOPIC).depends_on_velocity()
     }
 
     /// Whether a force can do work that no potential accounts for.
@@ -101,9 +105,9 @@ impl fmt::Display for ForceKinds {
 /// The refusal of forces that a method does not accept: it would step, and be wrong.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{method} takes no force that is {kinds}{}: how it treats velocity needs forces linear in it by a \
-     symmetric matrix, as dampers and drag are; explicit Runge-Kutta methods (rk4), adaptive pairs and \
-     symplectic_euler take any",
+    "{method} takes no force that is {kinds}{}: how it treats velocity needs forces linear in it, as dampers, \
+     drag and magnetic fields are; explicit Runge-Kutta methods (rk4), adaptive pairs and symplectic_euler \
+     take any",
     list(effects)
 )]
 pub struct Refused {

@@ -26,7 +26,7 @@ pub(crate) use sweep::{phi1, phi2};
 /// acceleration 0.
 ///
 /// The system states how its force depends on v ([`kinds`](System::kinds)). Some methods treat the force
-/// as linear, f(t, x, v) = f(t, x, 0) + D(x) v with D symmetric, and refuse any other.
+/// as linear, f(t, x, v) = f(t, x, 0) + D(x) v, and refuse any other.
 pub trait System {
     /// 1/m of each coordinate, 1/kg; 0 for a fixed one.
     fn inverse_mass(&self) -> &[f64];

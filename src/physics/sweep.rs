@@ -2,8 +2,12 @@
 //!
 //! A damper of coefficient c between inverse masses w1 and w2 acts on one number at a time, the relative velocity u
 //! of its ends along a direction: u' = α - c (w1 + w2) u, and the momentum of the two is kept. Each such flow is
-//! exact. One after the other they are the flow of all dampers together where no two share a particle, and to first
+//! exact. A magnetic field turns one particle's velocity, which is exact too, and counts as a damper here. One after
+//! the other they are the flow of all dampers together where no two share a particle, and to first
 //! order in h elsewhere; a sweep in the reverse order is then the adjoint.
+
+mod bend;
+mod turn;
 
 use crate::physics::System;
 
@@ -26,6 +30,9 @@ pub struct Sweep<'a> {
     h: f64,
     /// Whether the dampers act in the reverse order.
     pub backward: bool,
+    /// Whether each flow is that of the midpoint rule and not the exact one, where damping acts alone: (1 - z/2)/(1 +
+    /// z/2) for e^-z, and a turn by 2 atan(w h/2) for one by w h.
+    pub midpoint: bool,
     /// The acceleration at rest, which `v` already has h times; None where only damping acts.
     a: Option<&'a [f64]>,
     /// The integral of the velocity: as without dampers, and corrected by each.
@@ -66,6 +73,7 @@ impl<'a> Sweep<'a> {
             inverse_mass: system.inverse_mass(),
             h,
             backward: false,
+            midpoint: false,
             a: None,
             moved: None,
             scale: 1.0,
@@ -102,6 +110,7 @@ impl<'a> Sweep<'a> {
             inverse_mass: self.inverse_mass,
             h: self.h,
             backward: self.backward,
+            midpoint: self.midpoint,
             a: self.a,
             moved: self.moved.as_deref_mut(),
             scale: self.scale,
@@ -237,7 +246,10 @@ impl<'a> Sweep<'a> {
                 kept: z.exp(),
                 ..Decay::default()
             };
-            if self.a.is_some() {
+            if self.midpoint {
+                self.decay.kept = (1.0 + 0.5 * z) / (1.0 - 0.5 * z);
+                self.decay.lost = -z / (1.0 - 0.5 * z) / w;
+            } else if self.a.is_some() {
                 self.decay.pushed = self.h * phi1(z);
                 self.decay.moved = self.h * self.h * phi2(z);
             }

@@ -1,6 +1,7 @@
 //! Checks as JUnit XML: one suite a scene, one case a check.
 
 use super::Header;
+use super::words::in_xml;
 use crate::measure::{Check, CheckStatus};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
@@ -8,7 +9,7 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 pub fn render<'a>(headers: impl Iterator<Item = &'a Header>) -> String {
     let mut report = Report::new("springcheck");
     for header in headers {
-        let mut suite = TestSuite::new(plain(&header.scene.file));
+        let mut suite = TestSuite::new(in_xml(&header.scene.file));
         suite.add_test_cases(
             header
                 .checks
@@ -32,7 +33,7 @@ fn case(check: &Check, file: &str) -> TestCase {
         CheckStatus::Skip => TestCaseStatus::skipped(),
     };
     if check.status != CheckStatus::Pass {
-        status.set_message(plain(&check.message));
+        status.set_message(in_xml(&check.message));
         let mut text = format!("{}\nthe bound: {}", check.message, check.derivation);
         if let Some(first) = check.first_s {
             text += &format!("\nfirst at t = {first} s");
@@ -40,15 +41,10 @@ fn case(check: &Check, file: &str) -> TestCase {
         if let Some(cause) = &check.cause {
             text += &format!("\nlikely: {cause}");
         }
-        status.set_description(plain(&text));
+        status.set_description(in_xml(&text));
     }
     let name = format!("{} {}", check.id, check.subject);
-    let mut case = TestCase::new(plain(name.trim_end()), status);
-    case.set_classname(plain(file));
+    let mut case = TestCase::new(in_xml(name.trim_end()), status);
+    case.set_classname(in_xml(file));
     case
-}
-
-/// The text without characters that XML forbids.
-fn plain(text: &str) -> String {
-    text.replace(|c: char| c.is_control() && c != '\n', "\u{fffd}")
 }

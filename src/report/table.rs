@@ -12,6 +12,8 @@ const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().f
 const GAP: usize = 2;
 /// An engine's name is not cut below this width while another column can be left out.
 const MIN_NAME_WIDTH: usize = 28;
+/// Nor below this width while there is any other column but one.
+const LEAST_NAME_WIDTH: usize = 12;
 
 /// Rows, and the columns declared over them.
 pub struct Table<'a, R> {
@@ -49,7 +51,7 @@ impl<'a, R> Table<'a, R> {
         });
     }
 
-    /// A column of words, which the terminal never leaves out.
+    /// A column of words, which the terminal leaves out last.
     pub fn left(
         &mut self,
         terminal: &str,
@@ -59,8 +61,8 @@ impl<'a, R> Table<'a, R> {
         self.add([terminal, markdown], CellAlignment::Left, 0, cell);
     }
 
-    /// A column of numbers. The terminal leaves out columns with the highest `drop_order` first, and never one
-    /// with 0.
+    /// A column of numbers. The terminal leaves out columns with the highest `drop_order` first, and one
+    /// with 0 only where names would be cut to nothing, the rightmost first.
     pub fn right<C: Into<Option<String>>>(
         &mut self,
         terminal: &str,
@@ -130,9 +132,14 @@ impl<'a, R> Table<'a, R> {
     fn fitted(&self, width: usize) -> (Vec<&Column>, Vec<String>) {
         let mut columns: Vec<&Column> = self.columns.iter().filter(|c| c.is_shown()).collect();
         let mut left_out = Vec::new();
-        while room(&columns, width) < columns[0].width().min(MIN_NAME_WIDTH)
-            && let Some(i) = (1..columns.len()).max_by_key(|&i| columns[i].drop_order)
-            && columns[i].drop_order > 0
+        // Of equal ones the last.
+        while let Some(i) = (1..columns.len()).max_by_key(|&i| columns[i].drop_order)
+            && let least = match columns[i].drop_order {
+                0 if columns.len() > 2 => LEAST_NAME_WIDTH,
+                0 => 0,
+                _ => MIN_NAME_WIDTH,
+            }
+            && room(&columns, width) < columns[0].width().min(least)
         {
             let [header, _] = &columns.remove(i).headers;
             left_out.push(header.replace("-\n", "-").replace('\n', " "));

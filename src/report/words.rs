@@ -211,6 +211,13 @@ pub fn one_line(text: &str) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
+/// Text for XML. What XML 1.0 forbids, and what acts on the text around it instead of being shown, is replaced by
+/// U+FFFD.
+pub fn in_xml(text: &str) -> String {
+    let wrong = |c: char| c != '\n' && (acts(c) || matches!(c, '\u{fffe}' | '\u{ffff}'));
+    text.replace(wrong, "\u{fffd}")
+}
+
 /// The timesteps of the outcomes: `0.0005 s`, or `several, the file's 0.0005 s`; `own` is the file's.
 pub fn timestep(own: f64, steps: &[f64]) -> String {
     match steps {

@@ -68,6 +68,10 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
         ends(&found.corners, count, &format_args!("triangles[{at}]"))?;
         triangle(at, found, &starts)?;
     }
+    for (at, hinge) in scene.bending.iter().enumerate() {
+        ends(&hinge.particles, count, &format_args!("bending[{at}]"))?;
+        links(at, hinge.particles, &starts)?;
+    }
     for (at, pair) in scene.gravitational.iter().enumerate() {
         ends(&pair.ends, count, &format_args!("gravitational[{at}]"))?;
         attraction(pair.ends, &scene.particles, &starts).map_err(|refusal| {
@@ -225,6 +229,20 @@ fn triangle(at: usize, triangle: &Triangle, starts: &[[f64; 3]]) -> Result<(), P
             );
             let help = "a triangle needs an area";
             return Problem::because(format!("triangles[{at}].particle_ids"), message, help);
+        }
+    }
+    Ok(())
+}
+
+/// Checks that both links of a hinge have a direction at the start.
+fn links(at: usize, [a, b, c]: [usize; 3], starts: &[[f64; 3]]) -> Result<(), Problem> {
+    for link in [[a, b], [b, c]] {
+        if distance(starts, link) == 0.0 {
+            let [one, other] = link;
+            let message =
+                format!("expected neighbours apart, found {one} and {other} in one place");
+            let help = "the angle at the middle particle needs two directions";
+            return Problem::because(format!("bending[{at}].particle_ids"), message, help);
         }
     }
     Ok(())

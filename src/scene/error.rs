@@ -1,6 +1,6 @@
 //! The error of this module: it says what is wrong, where, and what to do about it.
 
-use super::words::printable;
+use super::words::{in_line, printable};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use std::ops::Range;
 
@@ -148,7 +148,7 @@ impl SceneError {
         let Refusal {
             key, message, help, ..
         } = &*self.refusal;
-        let mut headline = self.file.clone();
+        let mut headline = in_line(&self.file);
         for number in [self.line, self.column].into_iter().flatten() {
             headline += &format!(":{number}");
         }

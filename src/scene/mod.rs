@@ -28,8 +28,8 @@ pub use error::{Refusal, SceneError};
 pub(crate) use expectation::{ALL, REST, SKIP};
 pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
-    Air, Axis, DampingModel, Driven, GravitationalPair, Knots, Particle, Plot, Scene, Sine,
-    SolverSpec, Spring, Triangle, Wind, steps,
+    Air, Axis, Bending, DampingModel, Driven, GravitationalPair, Knots, Magnetic, Particle, Plot,
+    Scene, Sine, SolverSpec, Spring, Triangle, Wind, steps,
 };
 pub use table::{Value, Vectors};
 pub use write::yaml;

@@ -20,8 +20,9 @@ use parry3d::math::Vector;
 use serde::Serialize;
 
 /// All parts: the mappings a file consists of.
-pub static PARTS: [&Part; 11] = [
+pub static PARTS: [&Part; 13] = [
     &SPRINGS,
+    &BENDING,
     &PARTICLES,
     &TRIANGLES,
     &GRAVITATIONAL,
@@ -29,6 +30,7 @@ pub static PARTS: [&Part; 11] = [
     &SINE,
     &WIND,
     &AIR,
+    &MAGNETIC,
     &SOLVER,
     &PLOT,
     &SCENE,
@@ -143,7 +145,7 @@ use Absent::{Derived, Required, Usual};
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    reserved ["bending", "colliders", "magnetic", "objects", "rods", "strain_limit"];
+    reserved ["colliders", "objects", "rods", "strain_limit"];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
@@ -178,6 +180,8 @@ declare! {
     /// Triangles of particles, which the air drags at.
     triangles: Vec<Triangle> = Vec::new(),
         "triangles" => ValueKind::Part(&TRIANGLES), Usual, None;
+    /// Hinges that resist bending.
+    bending: Vec<Bending> = Vec::new(), "bending" => ValueKind::Part(&BENDING), Usual, None;
     /// Attractions.
     gravitational: Vec<GravitationalPair> = Vec::new(),
         "gravitational" => ValueKind::Part(&GRAVITATIONAL), Usual, None;
@@ -187,6 +191,8 @@ declare! {
     wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
     /// The air that drag acts against; at rest, as at sea level, where the scene says nothing of it.
     air: Option<Air> = None, "air" => ValueKind::Part(&AIR), Usual, None;
+    /// A uniform magnetic field.
+    magnetic: Option<Magnetic> = None, "magnetic" => ValueKind::Part(&MAGNETIC), Usual, None;
     /// Names of other programs that the file expects something of; the command line says what they are.
     externals: Vec<String> = Vec::new(),
         "externals" => ValueKind::Names(limits::EXTERNAL), Usual, None;
@@ -254,6 +260,9 @@ declare! {
     /// Quadratic drag coefficient c, N s²/m²: the force is -c |u| u.
     quadratic_drag: f64 = 0.0, "quadratic_drag" =>
         ValueKind::Number(Bounds::not_negative(1e18, "N s²/m²")), Usual, Some("quadratic_drag");
+    /// Charge q, coulombs; acts in a magnetic field alone. Charges do not attract or repel each other.
+    charge: f64 = 0.0,
+        "charge" => ValueKind::Number(Bounds::signed(1e12, "C")), Usual, Some("charges");
 }
 
 declare! {
@@ -290,6 +299,28 @@ declare! {
     air_drag: f64 = 0.0,
         "air_drag" => ValueKind::Number(Bounds::not_negative(1e12, "a pure number")),
         Required("give its drag coefficient, as 1.0"), Some("air_drag");
+}
+
+declare! {
+    /// A hinge at the middle of three particles, which resists bending.
+    BENDING: Bending, list bending, "a hinge: a mapping with `particle_ids` and `stiffness`",
+    reserved [];
+
+    /// Three different particles, in the order of the chain they form.
+    particles: [usize; 3] = [0, 1, 2], "particle_ids" => ValueKind::Ids(3),
+        Required("name three particles in a row: `particle_ids: [0, 1, 2]`"), Some("ids");
+    /// kb, N m/rad, not negative.
+    stiffness: f64 = 0.0,
+        "stiffness" => ValueKind::Number(Bounds::not_negative(1e18, "N m/rad")),
+        Required("a hinge needs its stiffness in N m/rad"), Some("stiffness");
+    /// θ0, rad, from 0 (straight) to π (folded back).
+    rest_angle: f64 = 0.0,
+        "rest_angle" => ValueKind::Number(Bounds::not_negative(std::f64::consts::PI, "rad")),
+        Usual, Some("rest_angles");
+    /// c, N m s/rad, not negative: resists the rate of the angle.
+    damping: f64 = 0.0,
+        "damping" => ValueKind::Number(Bounds::not_negative(1e18, "N m s/rad")),
+        Usual, Some("damping");
 }
 
 declare! {
@@ -384,6 +415,15 @@ declare! {
     /// Kilograms per cubic metre, by which triangles are dragged at.
     density: f64 = 1.2, "density" => ValueKind::Number(Bounds::not_negative(1e12, "kg/m³")),
         Usual, Some("air_density");
+}
+
+declare! {
+    /// A uniform, constant magnetic field, which acts on charged particles.
+    MAGNETIC: Magnetic, maybe magnetic, "a mapping with `field`", reserved [];
+
+    /// B, tesla: the force is q v x B.
+    field: [f64; 3] = [0.0; 3], "field" => ValueKind::Numbers(3, Bounds::signed(1e12, "T")),
+        Required("give the field in tesla: `field: [0, 0, 3]`"), Some("magnetic_field");
 }
 
 /// Expectations have a reader of their own, and no rows.

@@ -27,6 +27,11 @@ pub(crate) fn printable(c: char) -> char {
     }
 }
 
+/// Text on one line in which every character is [`printable`], such as a path: its line ends are not those of a message.
+pub(crate) fn in_line(text: &str) -> String {
+    text.chars().map(printable).collect()
+}
+
 /// Text of several lines in which every other character is [`printable`].
 pub(crate) fn visible(text: &str) -> String {
     let shown = |c| if c == '\n' { c } else { printable(c) };
@@ -77,6 +82,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("velocity", "did you mean `vel`?"),
     ("dt", "did you mean `timestep`?"),
     ("h", "did you mean `timestep`?"),
+    ("velocity", "`velocity` stands under `air`"),
+    ("density", "`density` stands under `air`"),
     ("gravity", "`gravity` stands under `solver`"),
     ("timestep", "`timestep` stands under `solver`"),
     ("type", "`type` stands under `solver`"),

@@ -59,7 +59,12 @@ fn factor_blocks(scene: &Scene) -> Option<u64> {
     let n = scene.particles.len();
     let free = |p: usize| !scene.particles[p].fixed;
     let springs = scene.springs.iter().map(|spring| spring.ends);
+    let hinges = scene.bending.iter().flat_map(|hinge| {
+        let [a, b, c] = hinge.particles;
+        [[a, b], [b, c], [a, c]]
+    });
     let pairs = springs.chain(scene.gravitational.iter().map(|pair| pair.ends));
+    let pairs = pairs.chain(hinges);
     let coupled = pairs.filter(|[a, b]| a != b && free(*a) && free(*b));
     let mut places: Vec<(usize, usize)> = coupled
         .map(|[a, b]| (a.min(b), a.max(b)))

@@ -77,7 +77,7 @@ impl<S: Scratch> NpzWriter<S> {
             };
             Ok(step as f64 * self.timestep)
         };
-        let mut archive = zip::ZipWriter::new(out);
+        let mut archive = zip::ZipWriter::new(Stopping { out, failed: false });
         // The archive holds no date: two runs give the same bytes.
         let options = SimpleFileOptions::default()
             .compression_method(zip::CompressionMethod::Stored)
@@ -100,7 +100,39 @@ impl<S: Scratch> NpzWriter<S> {
                 doubles(BufReader::new(scratch), count),
             )?;
         }
-        Ok(archive.finish()?)
+        Ok(archive.finish()?.out)
+    }
+}
+
+/// A stream that takes no more after its first failure, and says nothing of that. An archive that is given up still
+/// completes itself, and prints it where that fails again.
+struct Stopping<W> {
+    out: W,
+    failed: bool,
+}
+
+impl<W: Write> Write for Stopping<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        if self.failed {
+            return Ok(bytes.len());
+        }
+        let written = self.out.write(bytes);
+        let again = |error: &std::io::Error| error.kind() == std::io::ErrorKind::Interrupted;
+        self.failed = written.as_ref().is_err_and(|error| !again(error));
+        written
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        match self.failed {
+            true => Ok(()),
+            false => self.out.flush(),
+        }
+    }
+}
+
+impl<W: Seek> Seek for Stopping<W> {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.out.seek(to)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{Body, Report, check, cost, run, stability};
 use crate::report::json::{self, Tool};
 use crate::report::svg::{Chart, Figure};
+use crate::report::words::one_line;
 use crate::report::{Note, View, github, junit, terminal, verdict};
 use crate::scene;
 use schemars::{JsonSchema, Schema};
@@ -26,7 +27,10 @@ pub const FORMATS: &[Format] = &[
         id: "human",
         extension: "txt",
         file: false,
-        render: |_, reports| joined(reports, |report| report.human(terminal::WIDTH)),
+        render: |_, reports| {
+            let texts = reports.iter().map(|report| report.human(terminal::WIDTH));
+            together(reports, texts, terminal::WIDTH)
+        },
     },
     Format {
         id: "json",
@@ -48,7 +52,13 @@ pub const FORMATS: &[Format] = &[
         id: "markdown",
         extension: "md",
         file: true,
-        render: |_, reports| joined(reports, Report::markdown),
+        render: |_, reports| {
+            reports
+                .iter()
+                .map(Report::markdown)
+                .collect::<Vec<_>>()
+                .join("\n")
+        },
     },
     Format {
         id: "junit",
@@ -103,9 +113,30 @@ pub fn format(id: &str) -> Option<&'static Format> {
     FORMATS.iter().find(|format| format.id == id)
 }
 
-fn joined(reports: &[Report], render: fn(&Report) -> String) -> String {
-    let texts: Vec<String> = reports.iter().map(render).collect();
-    texts.join("\n")
+/// The `texts` of the reports for people, one after the other, and what closes them. The gate's make one list.
+pub fn together(reports: &[Report], texts: impl Iterator<Item = String>, columns: usize) -> String {
+    let between = if is_gate(reports) { "" } else { "\n" };
+    let texts: Vec<String> = texts.collect();
+    texts.join(between) + &closing(reports, columns)
+}
+
+/// The end of the text of several reports: the gate's says how many scenes passed, also where there is one; that of
+/// others begins with an empty line and repeats the line of each.
+pub fn closing(reports: &[Report], columns: usize) -> String {
+    if is_gate(reports) {
+        return format!("{}\n", check::closing(reports));
+    }
+    let lines = reports.iter().map(|report| report.line(columns) + "\n");
+    match reports.len() {
+        0 | 1 => String::new(),
+        _ => format!("\n{}", lines.collect::<String>()),
+    }
+}
+
+/// Whether the gate made all these reports.
+pub fn is_gate(reports: &[Report]) -> bool {
+    let made = |report: &Report| matches!(report.body, Body::Check { .. });
+    !reports.is_empty() && reports.iter().all(made)
 }
 
 impl Report {
@@ -143,6 +174,17 @@ impl Report {
             Body::Check { .. } => check::human(self, columns),
             _ => terminal::render(self.view_in(columns)),
         }
+    }
+
+    /// The scene and its verdict on one line, where the verdict has forms that are short enough of so many columns.
+    pub fn line(&self, columns: usize) -> String {
+        if let Body::Check { .. } = &self.body {
+            let text = self.human(columns);
+            return text.lines().next().unwrap_or_default().to_owned();
+        }
+        let name = one_line(&self.header.scene.file);
+        let room = columns.saturating_sub(terminal::width(&name) + ": ".len());
+        format!("{name}: {}", verdict::within(&self.view_in(columns), room))
     }
 
     /// The whole page. It links its figures, which are files beside it.

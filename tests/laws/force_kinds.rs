@@ -291,8 +291,9 @@ fn a_method_is_right_to_its_order_or_refuses() {
     for id in explicit {
         assert_eq!(method(id).takes(), ForceKinds::ANY, "{id}");
     }
-    for id in ["velocity_verlet", "implicit_midpoint", "tr_bdf2"] {
-        assert!(!method(id).takes().has(ForceKinds::GYROSCOPIC), "{id}");
+    for id in ["velocity_verlet", "boris", "implicit_midpoint", "tr_bdf2"] {
+        assert!(method(id).takes().has(ForceKinds::GYROSCOPIC), "{id}");
+        assert!(!method(id).takes().has(ForceKinds::NON_LINEAR), "{id}");
     }
 }
 
@@ -376,10 +377,10 @@ fn a_run_shows_who_refused_what_and_why() {
         Solver::own("theirs", build("rk4")),
     ];
     let mut plan = Plan::new(&scene, &choice);
-    let gyroscopic = Magnetic(0.1, ForceKinds::GYROSCOPIC);
+    let quadratic = QuadraticDrag(0.1, ForceKinds::NON_LINEAR);
     plan.system = ParticleSystem::of(
         plan.system.inverse_mass().to_vec(),
-        vec![(&OWN, Box::new(gyroscopic))],
+        vec![(&OWN, Box::new(quadratic))],
     );
     let report = plan.execute(&Quiet).expect("nothing is saved");
     let outcome = |name: &str| {
@@ -392,9 +393,9 @@ fn a_run_shows_who_refused_what_and_why() {
     assert_eq!(
         mine.reason.as_deref(),
         Some(
-            "mine takes no force that is gyroscopic (of_velocity): how it treats velocity needs \
-             forces linear in it by a symmetric matrix, as dampers and drag are; explicit Runge-Kutta \
-             methods (rk4), adaptive pairs and symplectic_euler take any"
+            "mine takes no force that is non-linear in the velocity (of_velocity): how it treats \
+             velocity needs forces linear in it, as dampers, drag and magnetic fields are; explicit \
+             Runge-Kutta methods (rk4), adaptive pairs and symplectic_euler take any"
         )
     );
 }

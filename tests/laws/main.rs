@@ -4,6 +4,7 @@
 //! A new law, a new mutant of an integrator, a new hard scene and a new twin of rapier belong here.
 
 mod adaptive;
+mod bending;
 mod coincidence;
 mod conformance;
 mod damping_flow;
@@ -12,6 +13,7 @@ mod effects;
 mod force_kinds;
 mod hard;
 mod kernel;
+mod magnetic;
 mod momentum;
 mod order;
 mod oscillator;

@@ -154,6 +154,27 @@ fn junit_has_a_suite_a_scene_and_a_case_a_check() {
     }
 }
 
+/// XML 1.0, 2.2: the characters that a document may hold; beside those, what acts on a terminal is not in it either.
+#[test]
+fn junit_is_well_formed_whatever_names_and_programs_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let wrong: String =
+        "\u{1}\u{b}\u{1f}\u{7f}\u{9f}\u{202e}\u{fffe}\u{ffff}\u{10ffff}]]><&\"'".into();
+    let path = scene(folder.path(), &format!("a{wrong}.yml"), "");
+    let program = folder.path().join("p.sh");
+    fs::write(
+        &program,
+        format!("printf '%s' '{}'", wrong.replace('\'', "")),
+    )
+    .expect("written");
+    let mine = format!("m=sh '{}'", word(&program));
+    let (code, xml, err) = check(&[&path, "--external", &mine, "--format", "junit"]);
+    assert_eq!(code, 1, "{err}");
+    let may = |c: char| matches!(u32::from(c), 0x9 | 0xa | 0xd | 0x20..=0xd7ff | 0xe000..=0xfffd | 0x1_0000..);
+    assert!(xml.chars().all(may) && !xml.contains('\u{202e}'), "{xml:?}");
+    roxmltree::Document::parse(&xml).expect("well-formed");
+}
+
 #[test]
 fn parts_merge_into_the_bytes_of_the_whole() {
     let folder = tempfile::tempdir().expect("a folder");

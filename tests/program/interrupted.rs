@@ -155,12 +155,70 @@ fn what_a_killed_run_leaves_is_removed_by_the_next_and_nothing_else_is() {
     running.child.kill().expect("killed");
     running.child.wait().expect("it ends");
     assert_eq!(temporary(&running.place), held);
+    let notes = std::fs::read_to_string(&running.notes).expect("notes");
+    let notes: Vec<&str> = notes.lines().collect();
+    let given = Path::new(notes[2]);
+    assert!(given.exists());
     next();
     assert_eq!(temporary(&running.place), Vec::<String>::new());
+    // What programs were given, and the folder of it, goes with the next that is started.
+    let (_, _, err) = output(&[
+        "run",
+        "scenes/oscillator/circle.yml",
+        "--integrators",
+        "rk4",
+        "--engines",
+        "none",
+        "--no-files",
+        "--external",
+        "p=true {scene_json}",
+    ]);
+    assert!(!given.parent().expect("a folder").exists(), "{err}");
     // Nobody tidies the programs of a run that was killed.
-    let notes = std::fs::read_to_string(&running.notes).expect("notes");
-    notes
-        .lines()
-        .take(2)
-        .for_each(|process| send("KILL", process));
+    notes[..2].iter().for_each(|process| send("KILL", process));
+}
+
+/// A program that has ended, while what it left in the background is still to write {output}.
+#[test]
+fn a_signal_while_output_is_read_ends_what_the_program_left() {
+    if !tools() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let id = folder.path().join("id");
+    let script = "mkfifo \"$1\"; (exec >/dev/null 2>&1; exec sleep 1000 >\"$1\") & \
+                  echo $! > \"$0.x\"; mv \"$0.x\" \"$0\"";
+    let script = script.replace('\'', "'\\''");
+    let external = format!("p=sh -c '{script}' '{}' {{output}}", id.display());
+    let child = Command::new(springcheck_path())
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(["run", "scenes/oscillator/circle.yml", "--no-files"])
+        .args(["--integrators", "rk4", "--engines", "none"])
+        .args(["--external", &external])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    // The pipe is open on both sides as soon as `sh` has become `sleep`: then it is being read.
+    let begun = Instant::now();
+    let left = loop {
+        assert!(begun.elapsed() < LONG, "it does not begin");
+        std::thread::sleep(Duration::from_millis(10));
+        let id = std::fs::read_to_string(&id).unwrap_or_default();
+        let mut ps = Command::new("ps");
+        let named = ps.args(["-o", "comm=", "-p", id.trim()]).output();
+        let named = named.expect("ps runs").stdout;
+        if String::from_utf8_lossy(&named).trim() == "sleep" {
+            break id.trim().to_owned();
+        }
+    };
+    send("INT", &child.id().to_string());
+    let ended = child.wait_with_output().expect("it ends");
+    assert_eq!(ended.status.code(), Some(130));
+    // The system may take a moment to end it.
+    let begun = Instant::now();
+    while lives(&left) {
+        assert!(begun.elapsed() < LONG, "it lives on");
+        std::thread::sleep(Duration::from_millis(10));
+    }
 }

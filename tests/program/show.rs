@@ -168,7 +168,9 @@ fn several_reports_and_lost_series() {
     let singly =
         ["oscillator/circle", "pa1/scene01"].map(|scene| out.join(scene).join("report.json"));
     let tables = singly.clone().map(|file| show(&file, &[]).0);
-    assert_eq!(show(&both, &[]).0, tables.join("\n"));
+    // They end with the lines that alone are shown with `--quiet`.
+    let lines = show(&both, &["--quiet"]).0;
+    assert_eq!(show(&both, &[]).0, tables.join("\n") + "\n" + &lines);
     // The series lie beside the single reports only.
     let elsewhere = folder.path().join("elsewhere");
     let (_, err) = show(&both, &["--output", word(&elsewhere)]);
@@ -188,6 +190,53 @@ fn several_reports_and_lost_series() {
     refuse_all(&out, &["two of its reports would be written to"]);
 }
 
+/// What several scenes print as one list or one after the other, and its end, is shown again.
+#[test]
+fn several_scenes_of_the_gate_and_of_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("stored.json");
+    let few = [&FEW[..], &["--engines", "none", "--no-files"]].concat();
+    let scenes = [CIRCLE, "scenes/oscillator/oscillator.yml"];
+    for (verb, more) in [("check", &[][..]), ("run", &few)] {
+        for scenes in [&scenes[..1], &scenes] {
+            let call = [&[verb], scenes, more].concat();
+            let json: Vec<&str> = [&call[..], &["--format", "json"]].concat();
+            let json: Vec<&str> = json
+                .into_iter()
+                .filter(|word| *word != "--no-files")
+                .collect();
+            std::fs::write(&file, output(&json).1).expect("written");
+            for more in [&[][..], &["--quiet"]] {
+                let (_, printed, _) = output(&[&call[..], more].concat());
+                let (code, shown, err) = output(&[&["show", word(&file)], more].concat());
+                assert_eq!((code, err.as_str()), (0, ""));
+                // Times are another run's.
+                let words = |text: &str| -> Vec<String> {
+                    let timed =
+                        |line: &str| [" ns", " µs", " ms"].iter().any(|unit| line.contains(unit));
+                    let first = |line: &str| line.split_whitespace().next().map(str::to_owned);
+                    let word = |line: &str| timed(line).then(|| first(line)).flatten();
+                    let lines = said(text);
+                    let lines = lines
+                        .lines()
+                        .map(|line| word(line).unwrap_or(line.to_owned()));
+                    lines.collect()
+                };
+                assert_eq!(words(&shown), words(&printed), "{verb} {more:?}");
+            }
+            if verb == "check" {
+                let (_, printed, _) = output(&call);
+                let merged = output(&["merge", word(&file), "--format", "human"]);
+                assert_eq!(merged.1, printed);
+                let text = folder.path().join("text");
+                let also = format!("human={}", word(&text));
+                output(&[&call[..], &["--quiet", "--write", &also]].concat());
+                assert_eq!(std::fs::read_to_string(&text).expect("written"), printed);
+            }
+        }
+    }
+}
+
 #[test]
 fn what_is_no_report_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -201,6 +250,10 @@ fn what_is_no_report_is_refused() {
         ("{\"schema_version\": 1}", "run it again"),
         ("[{\"schema_version\": 1}]", "run it again"),
         ("{\"schema_version\": 3}", "a later version"),
+        (
+            "{\"schema_version\": 2, \"tool\": {\"name\": \"a\", \"version\": \"b\", \"platform\": \"c\"}, \"reports\": []}",
+            "no report",
+        ),
         (
             "{\"schema_version\": 2}",
             "`schema_version`, `tool` and `reports`",

@@ -14,7 +14,7 @@ use springcheck::integrators::{Integrator, Method, Settings, fixed};
 use springcheck::physics::effects::Effect;
 use springcheck::physics::{ForceKinds, ParticleSystem, Power, State, System};
 use springcheck::scene::{
-    Air, DampingModel, Driven, GravitationalPair, Scene, Sine, Triangle, Wind,
+    Air, Bending, DampingModel, Driven, GravitationalPair, Magnetic, Scene, Sine, Triangle, Wind,
 };
 
 /// All of these in a whole run, which `SPRINGCHECK_WHOLE=1` asks for as CI does; else one in `of`,
@@ -39,6 +39,11 @@ pub fn crossed<'a, A, B>(rows: &'a [A], others: &'a [B]) -> Vec<(&'a A, &'a B)> 
 /// The row's own integrator.
 pub fn own(method: &'static Method) -> impl Fn() -> Box<dyn Integrator> {
     move || method.build(&Settings::default())
+}
+
+/// Whether a method has steps of its own on a scene, and is not another row's map there.
+pub fn is_its_own(scene: &Scene, method: &Method) -> bool {
+    method.is_its_own(ParticleSystem::new(scene).kinds())
 }
 
 pub fn method(id: &str) -> &'static Method {
@@ -133,6 +138,19 @@ pub fn everything(model: DampingModel) -> Scene {
     for ends in [[1, 2], [2, 3], [0, 3]] {
         scene.gravitational.push(GravitationalPair { ends, g: 2.0 });
     }
+    for (particles, rest_angle) in [([0, 1, 2], 0.0), ([1, 2, 3], 0.8)] {
+        scene.bending.push(Bending {
+            particles,
+            stiffness: 0.3,
+            rest_angle,
+            damping: 0.02,
+        });
+    }
+    scene.particles[1].charge = 0.8;
+    scene.particles[2].charge = -0.5;
+    scene.magnetic = Some(Magnetic {
+        field: [0.4, -0.3, 0.6],
+    });
     scene
 }
 
@@ -155,7 +173,7 @@ pub fn driven(mut scene: Scene) -> Scene {
 pub fn all_effects(model: DampingModel) -> Scene {
     let mut scene = driven(everything(model));
     scene.air = Some(Air {
-        velocity: [0.5, -0.3, 0.2],
+        velocity: [0.6, -0.3, 0.2],
         density: 1.2,
     });
     scene.particles[1].quadratic_drag = 0.2;

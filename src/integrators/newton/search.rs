@@ -6,7 +6,8 @@
 //! Φ(u) = ½ (u - b)ᵀ M (u - b) + U(y + γ u) - W(γ u) - ½ γ uᵀ D u, whose gradient is minus the
 //! residual. W is the work of forces without a potential and D(x) the damping, both taken where the search
 //! begins. Without dampers and driven forces Φ is the same in every iteration, so it never rises. With axial
-//! dampers D turns with x and no Φ exists, so a halved residual is accepted as well. (Armijo's rule; where
+//! dampers D turns with x, and with a magnetic field it is not symmetric: no Φ exists then, so its change is that
+//! along the line of the search alone, and a halved residual is accepted as well. (Armijo's rule; where
 //! rounding hides the decrease of Φ its slope decides, as in Hager & Zhang 2005, SIAM J. Optim. 16.)
 
 use super::{Newton, fit, worst_particle};
@@ -150,9 +151,11 @@ impl Line {
         if system.kinds().depends_on_velocity() {
             let mut damping = vec![0.0; d.len()];
             jacobian.add_product(Derivative::Velocity, gamma, d, &mut damping);
-            // D is symmetric, and d is 0 where a coordinate is fixed.
             curvature -= dot(&damping, d);
-            rest -= dot(&damping, &from.u);
+            // D need not be symmetric, and d is 0 where a coordinate is fixed.
+            damping.fill(0.0);
+            jacobian.add_product(Derivative::Velocity, gamma, &from.u, &mut damping);
+            rest -= dot(&damping, d);
         }
         if system.kinds().has(ForceKinds::DRIVEN) {
             let displacement: Vec<f64> = d.iter().map(|d| gamma * d).collect();

@@ -95,9 +95,12 @@ impl Candidate {
         Self::new(&forces, Step::Method(method), method.id).in_substeps(substeps)
     }
 
-    /// Every registry method in this many substeps, in the registry's order.
+    /// Every registry method that is one of its own here in this many substeps, in the registry's order.
     pub(super) fn plain(system: &ParticleSystem, substeps: u32) -> impl Iterator<Item = Self> {
-        let methods = fixed().iter();
+        let kinds = system.kinds();
+        let methods = fixed()
+            .iter()
+            .filter(move |method| method.is_its_own(kinds));
         methods.map(move |method| Self::method(system, method, substeps))
     }
 

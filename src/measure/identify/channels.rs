@@ -5,7 +5,7 @@ use super::candidate::{Candidate, ScaledAt, Scaling};
 use super::numbers::{NUMBERS, Number};
 use super::result::Deviation;
 use super::words::{digits, seconds, times};
-use crate::scene::model::SPRINGS;
+use crate::scene::model::{BENDING, SPRINGS};
 use crate::scene::{Axis, Scene, Vectors};
 
 /// "spring 3 (particles 1 and 2)".
@@ -112,12 +112,23 @@ pub(super) fn of_springs(springs: Vec<usize>) -> impl Iterator<Item = Channel> {
     springs.into_iter().flat_map(of)
 }
 
+/// The channels of the hinges at these particles.
+pub(super) fn of_hinges(scene: &Scene, particles: &[usize]) -> impl Iterator<Item = Channel> {
+    let numbers = [Number::Bend, Number::RestAngle, Number::BendDamping];
+    let hinges = scene.bending.iter().enumerate();
+    let at = hinges.filter(|(_, hinge)| hinge.particles.iter().any(|p| particles.contains(p)));
+    at.flat_map(move |(id, _)| numbers.map(|number| One(number, id)))
+}
+
 /// The channels of these particles; those that the scene has 0 of too.
 ///
-/// Of quadratic drag and of the triangles at them only where the scene has some: nobody adds those by mistake.
+/// Of quadratic drag, of charges and of the triangles at them only where the scene has some, or a field: nobody adds those
+/// by mistake.
 pub(super) fn of_particles(scene: &Scene, particles: &[usize]) -> Vec<Channel> {
     let squared = Some(Number::QuadraticDrag).filter(|number| number.is_in(scene));
-    let numbers = || [Number::Mass, Number::Drag].into_iter().chain(squared);
+    let charge = scene.magnetic.as_ref().map(|_| Number::Charge);
+    let numbers = [Some(Number::Mass), Some(Number::Drag), squared, charge];
+    let numbers = || numbers.into_iter().flatten();
     let own = particles
         .iter()
         .flat_map(|&i| numbers().map(move |number| One(number, i)));
@@ -311,6 +322,9 @@ fn found(number: Number, value: f64, factor: f64) -> f64 {
 
 /// "spring 3".
 fn member(number: Number, at: usize) -> String {
+    if number.part().key == BENDING.key {
+        return format!("hinge {at}");
+    }
     format!("{} {at}", number.part().key.trim_end_matches('s'))
 }
 

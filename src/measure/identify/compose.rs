@@ -10,9 +10,11 @@ use super::candidate::{Candidate, Factor, Forces, ScaledAt, Scaling};
 use super::channels;
 use super::replay::FIT;
 use super::step::{Step, acceleration, plus};
-use crate::integrators::{self, DampingTreatment::Explicit, Method, Stage, StepError, fixed};
-use crate::physics::{ParticleSystem, State, System};
-use crate::scene::{Particle, Scene};
+use crate::integrators::{
+    self, DampingTreatment, DampingTreatment::Explicit, Method, Stage, StepError, fixed,
+};
+use crate::physics::{ForceKinds, ParticleSystem, State, System};
+use crate::scene::{Magnetic, Particle, Scene};
 use crate::trajectory::Rows;
 use std::sync::{Arc, LazyLock};
 
@@ -182,15 +184,35 @@ const TREATED: [(&str, &str, &str, Step); 6] = [
     ),
 ];
 
+/// Boris' turn in other compositions, where there is a magnetic field.
+const TURNED: [(&str, &str, &str, Step); 2] = [
+    (
+        "boris_staggered",
+        "boris",
+        "velocities half a step behind positions, as Boris wrote it: kick with its turn, then drift",
+        Step::splitting(Stage::SYMPLECTIC_EULER, DampingTreatment::Boris),
+    ),
+    (
+        "boris_kick_first",
+        "boris",
+        "kick half, drift, kick half, with Boris' turn in each kick",
+        Step::splitting(Stage::VERLET, DampingTreatment::Boris),
+    ),
+];
+
 /// The splitting methods with other treatments of damping; none where nothing is damped.
 pub(super) fn treated(system: &ParticleSystem) -> Vec<Candidate> {
     if !system.kinds().depends_on_velocity() {
         return Vec::new();
     }
     let forces: Forces = Arc::new(system.clone());
-    let treated =
-        TREATED.map(|(id, meant, says, step)| Candidate::new(&forces, step, meant).named(id, says));
-    treated.to_vec()
+    let turned = TURNED
+        .iter()
+        .filter(|_| system.kinds().has(ForceKinds::GYROSCOPIC));
+    let treated = TREATED.iter().chain(turned);
+    treated
+        .map(|(id, meant, says, step)| Candidate::new(&forces, *step, meant).named(*id, *says))
+        .collect()
 }
 
 /// Every composed scheme in this scene, the likelier ones first.
@@ -233,7 +255,8 @@ pub fn composed(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
             let candidate = Candidate::new(&forces, step, name).each_alone(around);
             candidate.named(format!("{id}({name})"), says)
         };
-        all.extend(explicit().map(|method| single(Step::Method(method), method.id)));
+        let methods = explicit(system.kinds());
+        all.extend(methods.map(|method| single(Step::Method(method), method.id)));
         all.push(single(MIDPOINT_KICKED, "midpoint"));
     }
     all
@@ -242,13 +265,17 @@ pub fn composed(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
 /// The composed schemes that a scene may have: id, and what it does.
 pub fn composed_schemes() -> &'static [(String, String)] {
     static ALL: LazyLock<Vec<(String, String)>> = LazyLock::new(|| {
-        // Drag makes room for all of them.
-        let damped = Particle {
+        // Drag and a magnetic field make room for all of them.
+        let particle = Particle {
             drag: 1.0,
+            charge: 1.0,
             ..Particle::default()
         };
         let scene = Scene {
-            particles: vec![damped],
+            particles: vec![particle],
+            magnetic: Some(Magnetic {
+                field: [0.0, 0.0, 1.0],
+            }),
             ..Scene::default()
         };
         let all = composed(&scene, &ParticleSystem::new(&scene)).into_iter();
@@ -260,10 +287,10 @@ pub fn composed_schemes() -> &'static [(String, String)] {
     &ALL
 }
 
-/// The methods whose steps solve nothing.
-fn explicit() -> impl Iterator<Item = &'static Method> {
+/// The methods whose steps solve nothing, and are their own under forces of these kinds.
+fn explicit(kinds: ForceKinds) -> impl Iterator<Item = &'static Method> {
     let methods = fixed().iter();
-    methods.filter(|method| !Step::Method(method).solves())
+    methods.filter(move |method| method.is_its_own(kinds) && !Step::Method(method).solves())
 }
 
 /// Methods under all forces but drag, which multiplies velocities before the kick, after it or at the end.
@@ -275,11 +302,13 @@ fn damped(scene: &Scene) -> Vec<Candidate> {
     let Some(without) = channels::scaled(scene, &[("drag", 0.0)]) else {
         return Vec::new();
     };
-    let forces: Forces = Arc::new(ParticleSystem::new(&without));
+    let without = ParticleSystem::new(&without);
+    let kinds = without.kinds();
+    let forces: Forces = Arc::new(without);
     let rate = |p: &Particle| if p.fixed { 0.0 } else { p.drag / p.mass };
     let rates: Arc<[f64]> = scene.particles.iter().flat_map(|p| [rate(p); 3]).collect();
     let mut all = Vec::new();
-    for method in explicit() {
+    for method in explicit(kinds) {
         for (id, says, factor) in TREATMENTS {
             for at in [ScaledAt::Start, ScaledAt::Kick, ScaledAt::End] {
                 if at == ScaledAt::Kick && method.id != "symplectic_euler" {

@@ -331,7 +331,9 @@ fn of_one_member(model: &Model) -> Option<Explanation> {
     particles.sort_by(|&a, &b| off[b].total_cmp(&off[a]));
     particles.truncate(SUSPECTS);
     let springs = channels::of_springs(channels::springs_at(scene, &particles));
-    let members = springs.chain(channels::of_particles(scene, &particles));
+    let members = springs
+        .chain(channels::of_hinges(scene, &particles))
+        .chain(channels::of_particles(scene, &particles));
     let members: Vec<Channel> = members.filter(|channel| channel.is_in(scene)).collect();
     let fits = explanations(model, &model.slopes(&members)?, 1);
     fits.into_iter().find(Explanation::is_exact)

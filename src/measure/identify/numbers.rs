@@ -3,7 +3,7 @@
 
 use super::words::{digits, times};
 use crate::scene::model::{
-    AIR, GRAVITATIONAL, PARTICLES, Part, Row, SOLVER, SPRINGS, TRIANGLES, ValueKind, WIND,
+    AIR, BENDING, GRAVITATIONAL, PARTICLES, Part, Row, SOLVER, SPRINGS, TRIANGLES, ValueKind, WIND,
 };
 use crate::scene::{Scene, Value};
 
@@ -16,30 +16,39 @@ pub(super) enum Number {
     Damping,
     RestLength,
     Cubic,
+    /// The stiffness of hinges.
+    Bend,
+    RestAngle,
+    BendDamping,
     Drag,
     QuadraticDrag,
     AirDrag,
     AirVelocity,
+    Charge,
     Wind,
     Attraction,
     Mass,
 }
 use Number::{
-    AirDrag, AirVelocity, Attraction, Cubic, Damping, Drag, Gravity, Mass, QuadraticDrag,
-    RestLength, Stiffness, Wind,
+    AirDrag, AirVelocity, Attraction, Bend, BendDamping, Charge, Cubic, Damping, Drag, Gravity,
+    Mass, QuadraticDrag, RestAngle, RestLength, Stiffness, Wind,
 };
 
 /// In the order in which they are suspected.
-pub(super) const NUMBERS: [Number; 12] = [
+pub(super) const NUMBERS: [Number; 16] = [
     Gravity,
     Stiffness,
     Damping,
     RestLength,
     Cubic,
+    Bend,
+    RestAngle,
+    BendDamping,
     Drag,
     QuadraticDrag,
     AirDrag,
     AirVelocity,
+    Charge,
     Wind,
     Attraction,
     Mass,
@@ -54,10 +63,14 @@ impl Number {
             Damping => ("springs.damping", &SPRINGS, "damping"),
             RestLength => ("springs.rest_length", &SPRINGS, "rest_length"),
             Cubic => ("springs.cubic", &SPRINGS, "cubic"),
+            Bend => ("bending.stiffness", &BENDING, "stiffness"),
+            RestAngle => ("bending.rest_angle", &BENDING, "rest_angle"),
+            BendDamping => ("bending.damping", &BENDING, "damping"),
             Drag => ("drag", &PARTICLES, "drag"),
             QuadraticDrag => ("quadratic_drag", &PARTICLES, "quadratic_drag"),
             AirDrag => ("air_drag", &TRIANGLES, "air_drag"),
             AirVelocity => ("air.velocity", &AIR, "velocity"),
+            Charge => ("charge", &PARTICLES, "charge"),
             Wind => ("wind", &WIND, "strength"),
             Attraction => ("gravitational", &GRAVITATIONAL, "G"),
             Mass => ("mass", &PARTICLES, "mass"),
@@ -127,7 +140,9 @@ impl Number {
     }
 
     pub(super) fn is_in(self, scene: &Scene) -> bool {
-        self.values(scene).iter().any(|value| *value != 0.0)
+        // A charge does nothing without a field.
+        let acts = self != Charge || scene.magnetic.is_some();
+        acts && self.values(scene).iter().any(|value| *value != 0.0)
     }
 
     /// Replaces it in one member, or in all.
@@ -166,6 +181,8 @@ impl Number {
             AirDrag => "the drag of the air at triangles".to_owned(),
             AirVelocity => "the velocity of the air".to_owned(),
             Wind => "the strength of the wind".to_owned(),
+            Bend => "the bending stiffness".to_owned(),
+            BendDamping => "the bending damping".to_owned(),
             _ => format!("the {}", self.key().2.replace('_', " ")),
         }
     }
@@ -188,6 +205,16 @@ impl Number {
             (AirVelocity, _) => format!("the air moves with {}", self.beside(scene, factor)),
             (QuadraticDrag | AirDrag, 0.0) => format!("{} is missing", self.noun()),
             (QuadraticDrag | AirDrag, _) => format!("{} is {times} the scene's", self.noun()),
+            (Bend, 0.0) => "hinges do not resist bending".to_owned(),
+            (Bend, -1.0) => "hinges push away from their rest angle".to_owned(),
+            (Bend, _) => format!("hinges act with {times} their bending stiffness"),
+            (BendDamping, 0.0) => "the hinges' dampers are missing".to_owned(),
+            (BendDamping, _) => format!("the hinges' dampers act with {times} their damping"),
+            (RestAngle, 0.0) => "the rest angle of hinges is taken for 0".to_owned(),
+            (RestAngle, _) => format!("hinges have {times} their rest angle"),
+            (Charge, 0.0) => "the magnetic force is missing".to_owned(),
+            (Charge, -1.0) => "the magnetic force has the wrong sign: it is q v x B".to_owned(),
+            (Charge, _) => format!("the magnetic force is {times} the scene's"),
             (_, 0.0) => format!("{} is missing", self.what()),
             (Gravity, _) => format!("gravity acts with {}", self.beside(scene, factor)),
             _ => format!("the {} is {times} the scene's", self.what()),

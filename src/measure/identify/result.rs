@@ -89,8 +89,8 @@ pub struct Explained {
 /// One thing that acts otherwise than the scene says.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Deviation {
-    /// `gravity`, `springs.stiffness`, `springs.damping`, `springs.rest_length`, `springs.cubic`, `drag`,
-    /// `quadratic_drag`, `air_drag`, `air.velocity`, `wind`,
+    /// `gravity`, `springs.stiffness`, `springs.damping`, `springs.rest_length`, `springs.cubic`, `bending.stiffness`,
+    /// `bending.rest_angle`, `bending.damping`, `drag`, `quadratic_drag`, `air_drag`, `air.velocity`, `charge`, `wind`,
     /// `gravitational`, `mass`, `velocity`, `timestep`, `axis`, or what a known mistake changes.
     pub what: String,
     /// How many times the scene's; of a velocity, the factor of each step.

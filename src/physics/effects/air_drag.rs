@@ -51,7 +51,7 @@ struct Moment {
 impl Triangle {
     fn at(&self, x: &[f64], v: &[f64], air: [f64; 3]) -> Moment {
         let [a, b, c] = self.corners;
-        let edges = [b, c].map(|end| Vector3::from(difference(x, a, end)));
+        let edges = [b, c].map(|end| Vector3::from(difference(x, 3 * a, 3 * end)));
         let normal = edges[0].cross(&edges[1]);
         let square = normal.norm_squared();
         let [u, v, w] = self.corners.map(|i| Vector3::from(velocity(v, i)));

@@ -6,20 +6,24 @@
 //! integrator, and will not implement this trait.
 
 mod air_drag;
+mod bending;
 mod central;
 mod drag;
 mod driven;
 mod gravity;
+mod magnetic;
 mod quadratic_drag;
 mod scaled;
 mod springs;
 mod wind;
 
 pub use air_drag::AirDrag;
+pub use bending::BendingForce;
 pub use central::Central;
 pub use drag::Drag;
 pub use driven::Driven;
 pub use gravity::Gravity;
+pub use magnetic::MagneticForce;
 pub use quadratic_drag::QuadraticDrag;
 pub use scaled::Scaled;
 pub use springs::Springs;
@@ -141,6 +145,8 @@ pub static REGISTRY: &[EffectRow] = &[
     wind::ROW,
     central::GRAVITATIONAL,
     driven::ROW,
+    magnetic::ROW,
+    bending::ROW,
 ];
 
 fn boxed<E: Effect + 'static>(effect: E) -> Box<dyn Effect> {

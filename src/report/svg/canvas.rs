@@ -1,6 +1,8 @@
 //! SVG text, written element by element. Numbers have at most one decimal, so equal input gives
 //! equal bytes; there are no ids, so several figures can be inline on one page.
 
+use crate::report::words::in_xml;
+
 /// The look of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
@@ -186,9 +188,8 @@ pub fn px(value: f64) -> String {
     ((10.0 * value).round() / 10.0 + 0.0).to_string()
 }
 
-/// Text escaped for XML, without the characters XML 1.0 forbids.
+/// Text escaped for XML.
 fn escape(text: &str) -> String {
-    let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
-    let text = text.replace(forbidden, "").replace('&', "&amp;");
+    let text = in_xml(text).replace('&', "&amp;");
     text.replace('<', "&lt;").replace('>', "&gt;")
 }

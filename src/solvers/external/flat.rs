@@ -2,7 +2,7 @@
 
 use super::Task;
 use crate::scene::model::{
-    DRIVEN, GRAVITATIONAL, PARTICLES, Part, Row, SINE, SPRINGS, TRIANGLES, ValueKind,
+    BENDING, DRIVEN, GRAVITATIONAL, PARTICLES, Part, Row, SINE, SPRINGS, TRIANGLES, ValueKind,
 };
 use crate::scene::{Scene, Value};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -35,6 +35,7 @@ impl Serialize for Flat<'_> {
         map.serialize_entry("particles", &scene.particles.len())?;
         arrays(&mut map, scene, &PARTICLES)?;
         map.serialize_entry("springs", &Arrays(scene, &[&SPRINGS]))?;
+        map.serialize_entry("bending", &Arrays(scene, &[&BENDING]))?;
         map.serialize_entry("driven", &Arrays(scene, &[&DRIVEN, &SINE]))?;
         map.serialize_entry("damping_model", &scene.damping_model)?;
         map.serialize_entry("gravity", &scene.gravity())?;
@@ -42,6 +43,11 @@ impl Serialize for Flat<'_> {
         map.serialize_entry("air_velocity", &scene.air().velocity)?;
         map.serialize_entry("air_density", &scene.air().density)?;
         map.serialize_entry("triangles", &Arrays(scene, &[&TRIANGLES]))?;
+        let field = scene
+            .magnetic
+            .as_ref()
+            .map_or([0.0; 3], |magnetic| magnetic.field);
+        map.serialize_entry("magnetic_field", &field)?;
         map.serialize_entry("gravitational", &Arrays(scene, &[&GRAVITATIONAL]))?;
         map.serialize_entry("effects", &effects)?;
         map.serialize_entry("timestep", &timestep)?;

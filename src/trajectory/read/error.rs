@@ -1,13 +1,13 @@
 //! The one error of reading a trajectory: what is wrong, where, and what to do about it. Lines and columns
 //! are worked out from byte offsets only when something is wrong.
 
-use crate::scene::words::{printable, shorten};
+use crate::scene::words::{in_line, shorten};
 use std::fmt;
 
 /// Why a trajectory file cannot be used. Displays as `mine.csv:17:3: ...` or
 /// `mine.npz: x[12, 3, 0]: ...`, followed by a line of help where there is some.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}{place}: {message}{}", printed(file), separated(help))]
+#[error("{}{place}: {message}{}", in_line(file), separated(help))]
 pub struct ReadError {
     /// The file as it was named.
     pub file: String,
@@ -38,10 +38,6 @@ impl fmt::Display for ErrorPlace {
             Self::Array { name, index } => write!(f, ": {}{index:?}", shorten(name)),
         }
     }
-}
-
-fn printed(file: &str) -> String {
-    file.chars().map(printable).collect()
 }
 
 fn separated(help: &str) -> String {

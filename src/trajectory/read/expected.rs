@@ -144,7 +144,8 @@ pub fn free_axis(scene: &Scene) -> Option<FreeAxis> {
 }
 
 /// The axes on which free particles can move: where their velocities, gravity, wind, moving air, motions of driven
-/// ones, or their springs and attractions have a component; on all where the air drags at triangles, which turn.
+/// ones, or their springs, hinges and attractions have a component, and where a magnetic field turns such motion; on all
+/// where the air drags at triangles, which turn.
 fn moves(scene: &Scene) -> [bool; 3] {
     let starts = scene.starts();
     // Effects of strength 0 pull nowhere.
@@ -154,8 +155,17 @@ fn moves(scene: &Scene) -> [bool; 3] {
         .filter(|s| s.stiffness != 0.0 || s.cubic != 0.0 || s.damping != 0.0)
         .map(|s| s.ends);
     let pairs = scene.gravitational.iter().filter(|pair| pair.g != 0.0);
+    let hinges = scene.bending.iter();
+    let hinges = hinges.filter(|h| h.stiffness != 0.0 || h.damping != 0.0);
+    let hinges = hinges.flat_map(|h| {
+        [
+            [h.particles[0], h.particles[1]],
+            [h.particles[1], h.particles[2]],
+        ]
+    });
     let lines = springs
         .chain(pairs.map(|pair| pair.ends))
+        .chain(hinges)
         .filter(|ends| ends.iter().any(|&end| !scene.particles[end].fixed))
         .map(|[a, b]| [0, 1, 2].map(|axis| starts[b][axis] - starts[a][axis]));
     let wind = scene.wind.iter().filter(|wind| wind.strength != 0.0);
@@ -173,6 +183,15 @@ fn moves(scene: &Scene) -> [bool; 3] {
     {
         for axis in 0..3 {
             moves[axis] |= direction[axis] != 0.0;
+        }
+    }
+    let charged = scene.particles.iter().any(|p| !p.fixed && p.charge != 0.0);
+    if let Some(magnetic) = scene.magnetic.as_ref().filter(|_| charged) {
+        // v x B moves across both; what it moves it turns again.
+        for axis in [0, 1, 2, 0, 1, 2] {
+            let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+            let turned = |of: usize, by: usize| moves[of] && magnetic.field[by] != 0.0;
+            moves[axis] |= turned(next, last) || turned(last, next);
         }
     }
     moves

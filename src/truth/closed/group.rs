@@ -32,6 +32,8 @@ pub(super) struct Body {
     /// Acceleration under gravity, wind and the linear drag of air that moves at what is at rest, m/s²: equal
     /// masses and drags have the same bits, and under gravity alone all have.
     pub constant: Vector3<f64>,
+    /// q B / m, 1/s: a magnetic field turns the velocity v by v x this a second.
+    pub turning: Vector3<f64>,
 }
 
 /// A spring and damper of a group.
@@ -69,6 +71,10 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
         wind.strength * Vector3::from(wind.direction)
     });
     let air = Vector3::from(scene.air().velocity);
+    let field = scene
+        .magnetic
+        .as_ref()
+        .map_or(Vector3::zeros(), |magnetic| magnetic.field.into());
     let position = |i: usize| Vector3::from_column_slice(&start.x[3 * i..3 * i + 3]);
     let drives = scene.drives();
     let drive = |i: usize| drives.iter().find(|drive| drive.particle == i).cloned();
@@ -96,6 +102,7 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
             quadratic: particle.quadratic_drag,
             air,
             constant: gravity + (wind + air * particle.drag) / particle.mass,
+            turning: field * particle.charge / particle.mass,
         });
     }
     for spring in springs {

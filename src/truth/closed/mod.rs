@@ -3,13 +3,15 @@
 //! Particles that springs join form a group; a scene has a closed form if every group has one. A
 //! group has one where its forces stay linear: without springs, with springs of rest length 0, or
 //! moving on one line with lengths proven to stay above 0. Its modes are then decoupled, and each is
-//! one scalar equation. With quadratic drag a particle without springs has one on a line. Forces here are read off the scene, not off the effects' code, so that
+//! one scalar equation. With quadratic drag a particle without springs has one on a line; in a magnetic field it goes
+//! round a helix. Forces here are read off the scene, not off the effects' code, so that
 //! either would show a fault in the other.
 
 mod elliptic;
 mod fall;
 mod forced;
 mod group;
+mod helix;
 mod lengths;
 mod line;
 mod mode;
@@ -25,7 +27,9 @@ use super::{Motion, States, Truth, TruthKind};
 use crate::physics::ParticleSystem;
 use crate::scene::{Drive, Scene};
 use fall::Fall;
-use group::{Group, groups};
+use group::{Body, Group, groups};
+use helix::Helix;
+use nalgebra::Vector3;
 use part::GroupMotion;
 
 /// Ids of the effects the forms account for. Any other effect in a scene means no closed form.
@@ -36,6 +40,7 @@ const KNOWN: &[&str] = &[
     "quadratic_drag",
     "wind",
     "driven",
+    "magnetic",
 ];
 
 /// The form that holds for this scene up to `until` seconds, if one does: what it is, such as
@@ -94,17 +99,22 @@ fn each_once<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 
 /// The motion of one group.
 enum Part {
-    Modes(GroupMotion),
+    Modes(Box<GroupMotion>),
     Fall(Fall),
+    Helix(Helix),
 }
 
 impl Part {
     /// The group's motion, if it has a closed form.
     fn of(group: &Group) -> Option<Self> {
-        if group.bodies.iter().any(|body| body.quadratic != 0.0) {
-            return Fall::of(group).map(Self::Fall);
+        let squared = group.bodies.iter().any(|body| body.quadratic != 0.0);
+        let turned = |body: &Body| body.turning != Vector3::zeros();
+        match (squared, group.bodies.iter().any(turned)) {
+            (true, true) => None,
+            (true, false) => Fall::of(group).map(Self::Fall),
+            (false, true) => Helix::of(group).map(Self::Helix),
+            (false, false) => GroupMotion::of(group).map(Box::new).map(Self::Modes),
         }
-        GroupMotion::of(group).map(Self::Modes)
     }
 
     /// Method and reason.
@@ -112,6 +122,7 @@ impl Part {
         match self {
             Self::Modes(motion) => [&motion.method, &motion.reason],
             Self::Fall(_) => [fall::METHOD, fall::REASON],
+            Self::Helix(helix) => helix.words(),
         }
     }
 
@@ -119,6 +130,7 @@ impl Part {
         match self {
             Self::Modes(motion) => motion.add(t, x, v),
             Self::Fall(fall) => fall.add(t, x, v),
+            Self::Helix(helix) => helix.add(t, x, v),
         }
     }
 
@@ -126,6 +138,7 @@ impl Part {
         match self {
             Self::Modes(motion) => motion.error_bar(t),
             Self::Fall(fall) => fall.error_bar(t),
+            Self::Helix(helix) => helix.error_bar(t),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! `springcheck check PATH...`
 
-use super::select::{self, Partition};
+use super::select::Partition;
+use super::targets::Targets;
 use super::{Baseline, Claim, Gate, Verdict, text, verdict};
 use crate::report::github;
 use crate::report::json::Tool;
@@ -13,7 +14,6 @@ use crate::verbs::cli::flags::{self, Time};
 use crate::verbs::cli::interrupt;
 use crate::verbs::cli::note::note;
 use crate::verbs::cli::output;
-use crate::verbs::cli::place::put;
 use crate::verbs::cli::terminal::{self, Terminal};
 use crate::verbs::compare::{Recorded, read};
 use crate::verbs::run::Choice;
@@ -35,7 +35,12 @@ pub struct Args {
     external: Vec<External>,
 
     /// A program that takes longer is stopped: 60s, 2m, 500ms.
-    #[arg(long, value_name = "TIME", default_value = "60s")]
+    #[arg(
+        long,
+        value_name = "TIME",
+        default_value = "60s",
+        allow_hyphen_values = true
+    )]
     external_timeout: Time,
 
     /// The axes that two-dimensional rows of programs have. Default: rows have all three.
@@ -68,7 +73,7 @@ pub struct Args {
     force: bool,
 
     /// Check only a part of the scenes: slice:1/4 (every fourth), hash:1/4 (by the path alone).
-    #[arg(long, value_name = "PART")]
+    #[arg(long, value_name = "PART", allow_hyphen_values = true)]
     partition: Option<Partition>,
 
     /// What could not be decided fails.
@@ -97,7 +102,9 @@ impl<T: FromStr> FromStr for Named<T> {
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || format!("expected NAME=VALUE, found `{text}`");
         let (name, value) = text.split_once('=').ok_or_else(wrong)?;
-        let value = value.parse().map_err(|_| wrong())?;
+        let value = Some(value).filter(|value| !value.is_empty());
+        let value = value.and_then(|value| value.parse().ok());
+        let value = value.ok_or_else(wrong)?;
         let name = name.to_owned();
         Ok(Self { name, value })
     }
@@ -118,12 +125,14 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
             "--accept does not run in CI, where nobody looks at what it accepts: --force does it all the same"
         );
     }
-    for named in &args.write {
-        if !output::is_format(&named.name) {
-            bail!("--write {}: no such format", named.name);
-        }
+    for Named { name, .. } in &args.write {
+        output::known(name).context("--write")?;
     }
-    let files = select::scenes(&args.paths, args.partition)?;
+    let all = flags::scenes(&args.paths)?;
+    let files = match args.partition {
+        Some(partition) => partition.of(&all),
+        None => all.clone(),
+    };
     if files.is_empty() {
         note("no scene was selected");
         return Ok(ExitCode::from(NOTHING));
@@ -140,10 +149,13 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         .map(|(path, scene)| choice(args, scene, path, &trajectories));
     let choices: Vec<Choice> = choices.collect::<anyhow::Result<_>>()?;
     let baseline = args.baseline.as_deref().map(baseline).transpose()?;
-    let accepted = match args.accept.as_deref() {
-        Some(path) if path.exists() => Some(self::baseline(path)?),
-        Some(_) => Some(Baseline::default()),
-        None => None,
+    let Targets { accept, writes } = targets(args, &all)?;
+    // What was accepted before stays, where it was kept.
+    let accepted = match (&accept, args.accept.as_deref()) {
+        (Some(target), Some(path)) if target.file().is_some_and(Path::exists) => {
+            self::baseline(path)?
+        }
+        _ => Baseline::default(),
     };
     let human = args.format == "human";
     let by_line = args.format == "jsonl";
@@ -156,9 +168,10 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
             report.header.checks.extend(baseline.check(&report, scene));
         }
         if human {
-            let text = text::human(&report, output::columns());
-            let line = text.lines().next().unwrap_or_default();
-            output::print(&if quiet { format!("{line}\n") } else { text })?;
+            output::print(&match quiet {
+                true => output::summary(&report),
+                false => report.human(output::columns()),
+            })?;
         } else if by_line {
             output::print(&rendered(std::slice::from_ref(&report))?)?;
         }
@@ -166,24 +179,25 @@ pub fn check(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     interrupt::unfinished(&[]);
     if human {
-        output::print(&format!("{}\n", text::closing(&reports)))?;
+        output::print(&output::closing(&reports, quiet))?;
     } else if !by_line {
         output::print(&rendered(&reports)?)?;
     }
-    for Named { name, value } in &args.write {
+    for (name, target) in &writes {
         let text = output::rendered(name, &Tool::this(), &reports)?;
         // A file has no colours.
         let text = anstream::adapter::strip_str(&text).to_string();
-        put(value, text.as_bytes())?;
+        target.put(text.as_bytes())?;
     }
     if args.format == "github" {
         // A job's log shows a line that is no command as it is.
         output::print(&format!("{}\n", text::closing(&reports)))?;
         summarise(&reports)?;
     }
-    if let (Some(path), Some(mut accepted)) = (&args.accept, accepted) {
+    if let Some(target) = accept {
+        let mut accepted = accepted;
         accepted.accept(reports.iter().zip(scenes.iter().map(|(_, scene)| scene)));
-        put(path, accepted.text().as_bytes())?;
+        target.put(accepted.text().as_bytes())?;
     }
     Ok(ExitCode::from(code(&reports, args.strict)))
 }
@@ -200,6 +214,20 @@ pub fn code(reports: &[Report], strict: bool) -> u8 {
     } else {
         NOTHING
     }
+}
+
+/// The files to write, found and tried before the work.
+fn targets<'a>(args: &'a Args, scenes: &[PathBuf]) -> anyhow::Result<Targets<'a>> {
+    let trajectories = args.trajectory.iter().map(|named| &named.value);
+    let read = scenes.iter().chain(trajectories);
+    let write = |Named { name, value }: &'a Named<PathBuf>| (name.as_str(), value.as_path());
+    let writes = args.write.iter().map(write);
+    Targets::find(
+        read,
+        args.baseline.as_deref(),
+        args.accept.as_deref(),
+        writes,
+    )
 }
 
 /// What scenes may speak of: what there is, and the programs of this command.

@@ -9,6 +9,7 @@ mod baseline;
 mod claims;
 mod laws;
 mod select;
+mod targets;
 mod text;
 
 pub use args::{Args, check, code};

@@ -1,6 +1,5 @@
-//! Which scene files are checked: files and folders, and a part of them for one machine among several.
+//! A part of the scenes, for one machine among several.
 
-use crate::verbs::cli::flags;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -46,6 +45,13 @@ impl FromStr for Partition {
 }
 
 impl Partition {
+    /// The scenes of this part, in their order.
+    pub fn of(self, scenes: &[PathBuf]) -> Vec<PathBuf> {
+        let held = |(at, path): &(usize, &PathBuf)| self.holds(*at, path);
+        let held = scenes.iter().enumerate().filter(held);
+        held.map(|(_, path)| path.clone()).collect()
+    }
+
     fn holds(self, at: usize, path: &Path) -> bool {
         let number = match self.by {
             By::Slice => at as u64,
@@ -58,30 +64,6 @@ impl Partition {
         };
         number % self.parts == self.part - 1
     }
-}
-
-/// The scene files of these paths, each once, in the order of their names below each path.
-///
-/// # Errors
-/// Fails where a folder cannot be read.
-pub fn scenes(paths: &[PathBuf], partition: Option<Partition>) -> anyhow::Result<Vec<PathBuf>> {
-    let mut found: Vec<PathBuf> = Vec::new();
-    for path in paths {
-        if path.is_dir() {
-            found.extend(flags::below(path)?);
-        } else {
-            found.push(path.clone());
-        }
-    }
-    let mut seen = std::collections::BTreeSet::new();
-    found.retain(|path| seen.insert(path.clone()));
-    let part = |(at, path): &(usize, PathBuf)| partition.is_none_or(|p| p.holds(*at, path));
-    Ok(found
-        .into_iter()
-        .enumerate()
-        .filter(part)
-        .map(|(_, path)| path)
-        .collect())
 }
 
 #[cfg(test)]

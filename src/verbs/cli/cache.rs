@@ -56,8 +56,7 @@ fn put(folder: &Path, key: &str, bytes: &[u8]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let mut file = temporary::file(folder)?;
     file.write_all(bytes)?;
-    file.persist(folder.join(key))?;
-    Ok(())
+    file.become_file(&folder.join(key))
 }
 
 /// Removes the oldest entries beyond the limit.

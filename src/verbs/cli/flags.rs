@@ -1,11 +1,13 @@
 //! Flags that several verbs have: the scene with its duration, `--truth`, lengths of time.
 
+use super::target;
 use crate::scene::{self, Names, Scene};
 use crate::trajectory::{Expected, Plane};
 use crate::truth::Demand;
 use crate::verbs;
 use anyhow::{Context, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
@@ -13,37 +15,50 @@ use std::time::Duration;
 /// The extensions of scene files, the usual one first.
 pub const EXTENSIONS: [&str; 2] = ["yml", "yaml"];
 
-/// The scene files that paths state: of a folder all in it and in its folders, sorted.
+/// The scene files that paths state, each once under its first name, which is without `./`: of a folder all in it and in
+/// its folders, sorted. A link is a scene of its own.
 ///
 /// # Errors
-/// Fails where a folder cannot be read or has no scene in it.
+/// Fails where a folder cannot be read.
 pub fn scenes(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
-    let mut scenes: Vec<PathBuf> = Vec::new();
+    let mut seen = BTreeSet::new();
+    let mut scenes = Vec::new();
     for path in paths {
-        if path.is_dir() {
-            let mut found = below(path)?;
-            if found.is_empty() {
-                let what = EXTENSIONS.map(|extension| format!("*.{extension}"));
-                bail!(
-                    "{}: there is no scene in this folder, expected files {}",
-                    path.display(),
-                    what.join(" or ")
-                );
+        let found = match path.is_dir() {
+            true => below(path)?,
+            false => vec![path.clone()],
+        };
+        for scene in found {
+            // Of a file that is not there, reading says so.
+            let itself = target::without_aliases(&scene).unwrap_or_else(|_| scene.clone());
+            if seen.insert(itself) {
+                scenes.push(scene.strip_prefix(".").map(Path::to_owned).unwrap_or(scene));
             }
-            found.retain(|scene| !scenes.contains(scene));
-            scenes.extend(found);
-        } else {
-            scenes.push(path.clone());
         }
     }
     Ok(scenes)
 }
 
-/// The scene files of a folder and of its folders, sorted.
+/// Refuses a folder without a scene.
 ///
 /// # Errors
-/// Fails where a folder cannot be read.
-pub fn below(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+/// Fails where there is none, or a folder cannot be read.
+pub fn refuse_empty(paths: &[PathBuf]) -> anyhow::Result<()> {
+    for path in paths {
+        if path.is_dir() && below(path)?.is_empty() {
+            let what = EXTENSIONS.map(|extension| format!("*.{extension}"));
+            bail!(
+                "{}: there is no scene in this folder, expected files {}",
+                path.display(),
+                what.join(" or ")
+            );
+        }
+    }
+    Ok(())
+}
+
+/// The scene files of a folder and of its folders, sorted.
+fn below(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     let read = collect(folder, &mut found);
     read.with_context(|| format!("cannot read {}", folder.display()))?;
@@ -51,7 +66,8 @@ pub fn below(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Collects the scene files of a folder. Hidden ones, and folders behind links, which may lead back, are left out.
+/// Collects the scene files of a folder. Hidden ones, and folders behind links, which may lead back, are
+/// left out. What has the name of a scene and cannot be read is one: reading it says why.
 fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let entry = entry?;
@@ -66,7 +82,12 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
             continue;
         } else if entry.file_type()?.is_dir() {
             collect(&path, found)?;
-        } else if is_scene() && path.is_file() {
+        } else if is_scene() && !path.is_dir() {
+            // Nobody who names a folder feeds a pipe in it.
+            if path.metadata().is_ok_and(|facts| !facts.is_file()) {
+                let why = format!("{} is no regular file", path.display());
+                return Err(std::io::Error::other(why));
+            }
             found.push(path);
         }
     }

@@ -50,25 +50,39 @@ pub fn shows(bar: Option<ProgressBar>) {
     left().bar = bar;
 }
 
-/// Starts a program in a process group of its own, which a signal ends.
-pub fn start(command: &mut Command) -> std::io::Result<Child> {
+/// A process group that a signal ends, as long as this lives: until all that its program gives has been read.
+#[derive(Debug)]
+pub struct Group(u32);
+
+/// Starts a program in a process group of its own.
+pub fn start(command: &mut Command) -> std::io::Result<(Child, Group)> {
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(command, 0);
     let mut left = left();
     let child = command.spawn()?;
-    left.programs.push(child.id());
-    Ok(child)
+    let group = Group(child.id());
+    left.programs.push(group.0);
+    Ok((child, group))
 }
 
-/// States that a program has ended.
-pub fn ended(program: u32) {
-    left().programs.retain(|known| *known != program);
+impl Drop for Group {
+    fn drop(&mut self) {
+        let mut left = left();
+        let at = left.programs.iter().position(|known| *known == self.0);
+        at.map(|at| left.programs.swap_remove(at));
+    }
 }
 
-/// Kills a program that [`start`] started with all that it started itself: its process group, and those that left the
-/// group, as far as `ps` finds them.
+impl Group {
+    /// Kills the program with all that it started itself: its process group, and those that left the group, as far as
+    /// `ps` finds them. Elsewhere than on Unix the caller kills the program alone.
+    pub fn kill(&self) {
+        kill(self.0);
+    }
+}
+
 #[cfg(unix)]
-pub fn kill(program: u32) {
+fn kill(program: u32) {
     use rustix::process::{Pid, Signal, kill_process, kill_process_group};
     let pid = |id: u32| Pid::from_raw(id.try_into().ok()?);
     let found = descendants(program);
@@ -81,9 +95,8 @@ pub fn kill(program: u32) {
     }
 }
 
-/// Elsewhere the caller kills the program alone.
 #[cfg(not(unix))]
-pub fn kill(_program: u32) {}
+fn kill(_program: u32) {}
 
 /// The children of a process, their children, and so on, as far as their parents are alive.
 #[cfg(unix)]

@@ -9,5 +9,6 @@ pub mod output;
 pub mod place;
 pub mod save;
 pub mod solvers;
-mod temporary;
+pub(in crate::verbs) mod target;
+pub(in crate::verbs) mod temporary;
 pub mod terminal;

@@ -3,11 +3,9 @@
 use super::place::Place;
 use crate::report::json::Tool;
 use crate::report::terminal::{self, width};
-use crate::report::verdict;
-use crate::report::words::one_line;
-use crate::scene::words::{acts, visible};
+use crate::scene::words::{acts, aside, in_line, visible};
 use crate::verbs::{Report, formats};
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clap::builder::PossibleValuesParser;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -73,8 +71,8 @@ impl Output {
         Some(Place::new(self.stated().or(default)?, scene))
     }
 
-    /// Prints the reports to stdout.
-    pub fn print(&self, tool: &Tool, reports: &[Report]) -> anyhow::Result<()> {
+    /// Prints the reports to stdout, as [`print`].
+    pub fn print(&self, tool: &Tool, reports: &[Report]) -> anyhow::Result<bool> {
         print(&rendered(&self.format, tool, reports)?)
     }
 
@@ -98,13 +96,14 @@ impl Output {
     }
 
     /// Prints one report to stdout; for people the text of [`human`], or where it is to be quiet the [`summary`].
+    /// Returns what [`print`] does.
     pub fn print_one(
         &self,
         report: &Report,
         place: Option<&Place>,
         otherwise: &str,
         quiet: bool,
-    ) -> anyhow::Result<()> {
+    ) -> anyhow::Result<bool> {
         match (self.is_human(), quiet) {
             (true, true) => print(&summary(report)),
             (true, false) => print(&human(report, place, otherwise)),
@@ -113,9 +112,14 @@ impl Output {
     }
 }
 
-/// Whether there is a format of this id.
-pub fn is_format(id: &str) -> bool {
-    formats::format(id).is_some()
+/// Refuses an id that is no format's.
+pub fn known(id: &str) -> anyhow::Result<()> {
+    let known: Vec<&str> = formats::FORMATS.iter().map(|format| format.id).collect();
+    if !known.contains(&id) {
+        let (aside, known) = (aside(id, &known), known.join(", "));
+        bail!("unknown format `{id}`{aside}; known: {known}");
+    }
+    Ok(())
 }
 
 /// Reports made by `tool`, in the format of this id.
@@ -124,12 +128,21 @@ pub fn rendered(format: &str, tool: &Tool, reports: &[Report]) -> anyhow::Result
     Ok((format.render)(tool, reports))
 }
 
-/// Writes to stdout. A reader that has closed the pipe (`| head`) is not an error.
-pub fn print(text: &str) -> anyhow::Result<()> {
+/// The same for stdout: text for people is as wide as the terminal.
+pub fn shown(format: &str, tool: &Tool, reports: &[Report]) -> anyhow::Result<String> {
+    if format != HUMAN {
+        return rendered(format, tool, reports);
+    }
+    let texts = reports.iter().map(|report| report.human(columns()));
+    Ok(formats::together(reports, texts, columns()))
+}
+
+/// Writes to stdout, and returns whether anybody reads it: a reader that has closed the pipe (`| head`) is not an error.
+pub fn print(text: &str) -> anyhow::Result<bool> {
     let mut out = anstream::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        other => other.context("cannot write to stdout"),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+        other => other.context("cannot write to stdout").map(|()| true),
     }
 }
 
@@ -148,7 +161,7 @@ pub fn table(report: &Report, place: Option<&Place>) -> String {
     let table = report.human(columns());
     let written = place.map_or_else(String::new, |place| {
         let file = place.report(report).display().to_string();
-        format!("report: {}\n", visible(&file))
+        format!("report: {}\n", in_line(&file))
     });
     format!("{table}{written}")
 }
@@ -162,14 +175,26 @@ pub fn human(report: &Report, place: Option<&Place>, otherwise: &str) -> String 
     format!("{}next: {}\n", table(report, place), visible(next))
 }
 
-/// The report's scene and its verdict on one line.
+/// The report's scene and its verdict on one line, which is cut where a terminal would break it.
 pub fn summary(report: &Report) -> String {
-    let name = one_line(&report.header.scene.file);
-    let room = columns().saturating_sub(width(&name) + ": ".len());
-    format!(
-        "{name}: {}\n",
-        verdict::within(&report.view_in(columns()), room)
-    )
+    cut(&format!("{}\n", report.line(columns())))
+}
+
+/// What stands below the texts of several reports; below their summaries, only what those do not say.
+pub fn closing(reports: &[Report], quiet: bool) -> String {
+    match quiet && !formats::is_gate(reports) {
+        true => String::new(),
+        false => cut(&formats::closing(reports, columns())),
+    }
+}
+
+/// The lines, each cut at the width of the terminal, if there is one.
+fn cut(lines: &str) -> String {
+    if terminal_size::terminal_size_of(std::io::stdout()).is_none() {
+        return lines.to_owned();
+    }
+    let cut = |line| terminal::clip(line, columns()) + "\n";
+    lines.lines().map(cut).collect()
 }
 
 /// The columns of a line on stdout: those of the terminal, and a fixed number where there is none.

@@ -1,6 +1,7 @@
-//! The folder of a scene's report: where it is, whether it can be written, and files that are written whole.
+//! The folder of a scene's report: where it is, whether it can be written, and its files.
 
 use super::flags::EXTENSIONS;
+use super::target::Target;
 use super::temporary;
 use crate::report::json::Tool;
 use crate::verbs::{Report, formats, series};
@@ -23,14 +24,18 @@ impl Place {
     /// outside the working directory is mirrored from its root. What is dropped stays where another scene would
     /// otherwise have the same folder.
     pub fn new(output: &Path, scene: &Path) -> Self {
-        let here = std::env::current_dir().unwrap_or_default();
+        // None where the working directory has been removed: then everything is outside of it.
+        let here = std::env::current_dir().ok();
         let whole = without_dots(&std::path::absolute(scene).unwrap_or_else(|_| scene.into()));
-        let inside = whole.strip_prefix(&here).ok();
-        let scenes = inside.and_then(|path| path.strip_prefix("scenes").ok());
-        let kept = match (scenes, inside) {
-            (Some(rest), _) if !is_there(&here.join(rest)) => rest.to_owned(),
-            (_, Some(inside)) => inside.to_owned(),
-            (_, None) => {
+        let inside = here.and_then(|here| {
+            let inside = whole.strip_prefix(&here).ok()?.to_owned();
+            let rest = inside.strip_prefix("scenes").ok();
+            let rest = rest.filter(|rest| !is_there(&here.join(rest)));
+            Some(rest.map(Path::to_owned).unwrap_or(inside))
+        });
+        let kept = match inside {
+            Some(inside) => inside,
+            None => {
                 let normal = whole
                     .components()
                     .filter(|c| matches!(c, Component::Normal(_)));
@@ -87,25 +92,10 @@ impl Place {
     }
 
     fn put(&self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
-        put(&self.folder.join(name), bytes)
+        let path = self.folder.join(name);
+        let refusal = || format!("cannot write {}", path.display());
+        Target::of(&path).with_context(refusal)?.put(bytes)
     }
-}
-
-/// Writes a file whole or not at all: it is written under a temporary name beside it, then renamed.
-///
-/// # Errors
-/// Fails where it cannot be written.
-pub fn put(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    let write = || -> std::io::Result<()> {
-        let mut file = temporary::file(folder.unwrap_or_else(|| Path::new(".")))?;
-        file.write_all(bytes)?;
-        file.persist(path)?;
-        Ok(())
-    };
-    write().with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// The path without `..` and `.`.

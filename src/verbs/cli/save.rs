@@ -1,12 +1,12 @@
 //! `--save` writes every step of every engine to files beside the report.
 
-use super::temporary;
+use super::target::Target;
+use super::temporary::Temporary;
 use crate::measure::Statics;
 use crate::physics::State;
 use crate::trajectory::{CsvWriter, NpzWriter, Observer, SaveError, Values};
 use crate::verbs::session::{Label, Saver};
 use std::path::PathBuf;
-use tempfile::NamedTempFile;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum FileKind {
@@ -49,34 +49,37 @@ impl Files {
         } = case;
         let path = |extension| {
             let name = format!("{engine}@{timestep}.{extension}");
-            self.folder.join(name)
+            Target::of(&self.folder.join(name))
         };
-        let file = temporary::file(&self.folder)?;
         let asked = |column| self.columns.contains(&column);
         let rows = (*steps, self.every);
         match self.kind {
             FileKind::Csv => {
+                let target = path("csv")?;
+                let file = target.begin()?;
                 let states = if asked(Column::Reaction) {
                     let reaction = self.values(Column::Reaction);
                     CsvWriter::with(file, ["rx", "ry", "rz"], reaction, rows, *timestep)
                 } else {
                     CsvWriter::new(file, *steps, self.every, *timestep)
                 };
-                let mut files = vec![(states, path("csv"))];
+                let mut files = vec![(states, target)];
                 if asked(Column::Tension) {
-                    let (file, tension) =
-                        (temporary::file(&self.folder)?, self.values(Column::Tension));
+                    let target = path("tension.csv")?;
+                    let (file, tension) = (target.begin()?, self.values(Column::Tension));
                     let tensions = CsvWriter::alone(file, "tension", tension, rows, *timestep);
-                    files.push((tensions, path("tension.csv")));
+                    files.push((tensions, target));
                 }
-                let files = files.into_iter().map(|(writer, path)| Saving {
+                let files = files.into_iter().map(|(writer, target)| Saving {
                     writer,
                     complete: CsvWriter::finish as fn(_) -> _,
-                    path,
+                    target,
                 });
                 Ok(Box::new(Several(files.collect())))
             }
             FileKind::Npz => {
+                let target = path("npz")?;
+                let file = target.begin()?;
                 let scratch = [tempfile::tempfile()?, tempfile::tempfile()?];
                 let mut writer = NpzWriter::new(scratch, *particles, *steps, self.every, *timestep);
                 for (column, name, shape) in [
@@ -91,7 +94,7 @@ impl Files {
                 Ok(Box::new(Saving {
                     writer,
                     complete: |writer: NpzWriter<_>| writer.finish(file),
-                    path: path("npz"),
+                    target,
                 }))
             }
         }
@@ -127,11 +130,11 @@ impl<S: Saver> Saver for Several<S> {
     }
 }
 
-/// A file that is being written: its writer, the function that completes it, and its final path.
+/// A file that is being written: its writer, the function that completes it, and where it goes.
 struct Saving<W, F> {
     writer: W,
     complete: F,
-    path: PathBuf,
+    target: Target,
 }
 
 impl<W: Observer, F> Observer for Saving<W, F> {
@@ -147,11 +150,10 @@ impl<W: Observer, F> Observer for Saving<W, F> {
 impl<W, F> Saver for Saving<W, F>
 where
     W: Observer,
-    F: FnOnce(W) -> Result<NamedTempFile, SaveError>,
+    F: FnOnce(W) -> Result<Temporary, SaveError>,
 {
     fn finish(self: Box<Self>) -> Result<(), SaveError> {
         let file = (self.complete)(self.writer)?;
-        file.persist(self.path).map_err(|error| error.error)?;
-        Ok(())
+        Ok(self.target.complete(file)?)
     }
 }

@@ -114,6 +114,9 @@ fn look_up(
 ) -> anyhow::Result<Vec<Solver>> {
     let mut rows: Vec<Solver> = Vec::new();
     for id in ids {
+        if id == word {
+            bail!("`{word}` stands alone: name {kind}, or {word}");
+        }
         let row = find(id).with_context(|| {
             let words = known.iter().copied().chain([*word]).collect::<Vec<_>>();
             format!(

@@ -51,11 +51,11 @@ pub struct Args {
     expect: Option<Scheme>,
 
     /// The largest energy error it may have, in units of the scene's energy.
-    #[arg(long, value_name = "PART", value_parser = positive)]
+    #[arg(long, value_name = "PART", value_parser = positive, allow_hyphen_values = true)]
     max_energy: Option<f64>,
 
     /// The largest distance from the truth that a particle may have, m.
-    #[arg(long, value_name = "METRES", value_parser = positive)]
+    #[arg(long, value_name = "METRES", value_parser = positive, allow_hyphen_values = true)]
     max_error: Option<f64>,
 
     #[command(flatten)]

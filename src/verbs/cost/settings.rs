@@ -385,8 +385,9 @@ fn step_cost(scene: &Scene, system: &ParticleSystem, solver: &Solver, setting: &
     let _ = run.advance(SAMPLE);
     let counts = run.counts();
     let each = |count: Option<u64>| count.unwrap_or(0) as f64 / run.taken().max(1) as f64;
-    let pairs = scene.gravitational.len() as f64;
-    let evaluation = CALL + EVALUATION * particles + SPRING * (springs + 2.0 * pairs);
+    let (pairs, hinges) = (scene.gravitational.len() as f64, scene.bending.len() as f64);
+    let like_springs = springs + 2.0 * pairs + 8.0 * hinges;
+    let evaluation = CALL + EVALUATION * particles + SPRING * like_springs;
     let free = scene.particles.iter().filter(|p| !p.fixed).count() as f64;
     let solve = (DENSE * free.powf(1.5)).min(SPARSE * free);
     STEP + PARTICLE * particles

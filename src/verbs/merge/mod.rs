@@ -55,9 +55,6 @@ pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     let tool = whole.unwrap_or_else(Tool::this);
-    output::print(&output::rendered(&args.format, &tool, &reports)?)?;
-    if args.format == "human" {
-        output::print(&format!("{}\n", check::closing(&reports)))?;
-    }
+    output::print(&output::shown(&args.format, &tool, &reports)?)?;
     Ok(ExitCode::from(check::code(&reports, args.strict)))
 }

@@ -105,6 +105,7 @@ const SHORTER: &str = "--duration, a larger --timestep, --integrators A,B, --eng
 /// Runs the verb.
 pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     // All scenes are read before any of them runs: a typo in the last one costs no time.
+    flags::refuse_empty(&args.scenes)?;
     let paths = flags::scenes(&args.scenes)?;
     distinct(args, &paths)?;
     external::distinct(&args.external)?;
@@ -123,6 +124,7 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     let mut reports = Vec::new();
     let mut failure = Ok(());
+    let mut is_read = true;
     for (at, ((scene, choice), place)) in scenes.iter().zip(&places).enumerate() {
         interrupt::unfinished(&paths[at..]);
         let (report, saved) = one(args, quiet, scene, choice, &paths[at], place.as_ref())?;
@@ -133,17 +135,18 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
             // The path of a report is not shown where the report could not be written.
             let place = place.as_ref().filter(|_| saved.is_ok());
             let otherwise = "springcheck run --help";
-            args.output.print_one(&report, place, otherwise, quiet)?;
+            is_read = args.output.print_one(&report, place, otherwise, quiet)?;
         }
         failure = failure.and(saved);
         reports.push(report);
+        if !is_read && places.iter().all(Option::is_none) {
+            // Nobody would see what is still to come.
+            break;
+        }
     }
     interrupt::unfinished(&[]);
     if args.output.is_human() {
-        if reports.len() > 1 && !quiet {
-            let lines: String = reports.iter().map(output::summary).collect();
-            output::print(&format!("\n{lines}"))?;
-        }
+        output::print(&output::closing(&reports, quiet))?;
     } else if !args.output.is_by_line() {
         args.output.print(&Tool::this(), &reports)?;
     }

@@ -60,7 +60,10 @@ pub fn orders(plan: &Plan, truth: &Truth) -> Vec<Check> {
         return Vec::new();
     };
     let mut methods: Vec<&Method> = Vec::new();
-    for method in plan.cases.iter().filter_map(|case| case.solver.as_method()) {
+    // Who refuses the scene's forces has no order here.
+    let takes = |method: &&Method| plan.system.admits(method.id, method.takes()).is_ok();
+    let all = plan.cases.iter().filter_map(|case| case.solver.as_method());
+    for method in all.filter(takes) {
         if !methods.iter().any(|known| known.id == method.id) {
             methods.push(method);
         }

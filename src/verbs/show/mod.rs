@@ -4,7 +4,7 @@ use crate::report::json::{self, Tool};
 use crate::verbs::cli::note::note;
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::place::Place;
-use crate::verbs::{Body, Report, SeriesState, series};
+use crate::verbs::{Body, Report, SeriesState, formats, series};
 
 use anyhow::{Context, bail};
 use std::fs::File;
@@ -29,6 +29,9 @@ const MAX_BYTES: u64 = 1 << 28;
 /// Runs the verb.
 pub fn show(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let (tool, reports) = stored(&args.file)?;
+    if reports.is_empty() {
+        bail!("{}: there is no report in this file", args.file.display());
+    }
     let places = places(args, &reports)?;
     for place in places.iter().flatten() {
         place.prepare()?;
@@ -39,13 +42,14 @@ pub fn show(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     };
     let saved: Vec<_> = reports.iter().zip(&places).map(write).collect();
     if args.output.is_human() && quiet {
-        output::print(&reports.iter().map(output::summary).collect::<String>())?;
+        let lines: String = reports.iter().map(output::summary).collect();
+        output::print(&(lines + &output::closing(&reports, quiet)))?;
     } else if args.output.is_human() {
         let places = places.iter().zip(&saved);
         let places = places.map(|(place, saved)| place.as_ref().filter(|_| saved.is_ok()));
         let tables = reports.iter().zip(places);
-        let tables: Vec<String> = tables.map(|(r, place)| output::table(r, place)).collect();
-        output::print(&tables.join("\n"))?;
+        let tables = tables.map(|(report, place)| output::table(report, place));
+        output::print(&formats::together(&reports, tables, output::columns()))?;
     } else {
         args.output.print(&tool, &reports)?;
     }

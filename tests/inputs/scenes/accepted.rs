@@ -269,7 +269,7 @@ fn shipped_scenes_load() {
         })
         .collect();
     // The hard ones and those of effects are counted by no one: there will be more.
-    let open = |s: &&Scene| ["/hard/", "/effects/"].iter().any(|at| s.file.contains(at));
+    let open = |s: &&Scene| ["/hard/", "/effects/"].iter().any(|of| s.file.contains(of));
     assert_eq!(scenes.len() - scenes.iter().filter(open).count(), 21);
     for scene in &scenes {
         assert!(scene.description.is_some() && !scene.name.is_empty());

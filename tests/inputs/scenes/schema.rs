@@ -45,8 +45,10 @@ pub fn full() -> Value {
         "springs": [{"particle_ids": [0, 1], "stiffness": 20}],
         "triangles": [{"particle_ids": [0, 1, 2], "air_drag": 1}],
         "air": {},
+        "bending": [{"particle_ids": [0, 1, 2], "stiffness": 1}],
         "gravitational": [{"particle_ids": [0, 1], "G": 1}],
         "wind": {"direction": [1, 0, 0], "strength": 1},
+        "magnetic": {"field": [0, 0, 1]},
         "plot": {"particle_id": 0, "dof": 2},
         "externals": ["mine"],
         "expect": {"mine": {"status": "completed"}},
@@ -389,7 +391,7 @@ fn defaults_are_those_of_the_reader() {
             some += 1;
         }
     }
-    // duration, up, damping_model; gravity; vel, fixed, radius, drag, quadratic_drag; cubic, damping; velocity,
-    // density; phase.
-    assert_eq!(some, 14);
+    // duration, up, damping_model; gravity; vel, fixed, radius, drag, quadratic_drag, charge; cubic, damping;
+    // rest_angle, damping; velocity, density; phase.
+    assert_eq!(some, 17);
 }

@@ -115,7 +115,9 @@ fn a_change_is_seen_by_whatever_depends_on_it() {
             let moves = row.flat.is_some();
             assert_eq!(key(&scene, 5.0) != key(&original, 5.0), moves, "{title}");
             let name = row.flat.map(|name| match part.key {
-                "springs" | "gravitational" | "triangles" => format!("{}.{name}", part.key),
+                "springs" | "bending" | "gravitational" | "triangles" => {
+                    format!("{}.{name}", part.key)
+                }
                 "driven" | "driven.sine" => format!("driven.{name}"),
                 _ => name.to_owned(),
             });
@@ -153,8 +155,12 @@ fn every_number_that_moves_something_can_be_varied() {
 }
 
 /// The keys a scene has to have, with one member of every part, in the order of [`PARTS`].
-const REQUIRED: [(&str, &[(&str, &str)]); 11] = [
+const REQUIRED: [(&str, &[(&str, &str)]); 13] = [
     ("springs", &[("particle_ids", "[0, 1]"), ("stiffness", "1")]),
+    (
+        "bending",
+        &[("particle_ids", "[0, 1, 2]"), ("stiffness", "1")],
+    ),
     ("particles", &[("pos", "[1, 0, 0]"), ("mass", "1")]),
     (
         "triangles",
@@ -168,6 +174,7 @@ const REQUIRED: [(&str, &[(&str, &str)]); 11] = [
     ),
     ("wind", &[("direction", "[1, 0, 0]"), ("strength", "1")]),
     ("air", &[]),
+    ("magnetic", &[("field", "[0, 0, 1]")]),
     ("solver", &[("type", "midpoint"), ("timestep", "0.01")]),
     ("plot", &[("particle_id", "0"), ("dof", "0")]),
     ("file", &[]),

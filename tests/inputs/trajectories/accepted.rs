@@ -140,6 +140,21 @@ fn the_free_axis_is_where_everything_points() {
             None,
         ),
         (
+            "a charge that turns",
+            moving.replace("mass: 1", "mass: 1, charge: 1") + "magnetic: {field: [0, 2, 0]}",
+            None,
+        ),
+        (
+            "a charge along the field",
+            moving.replace("mass: 1", "mass: 1, charge: 1") + "magnetic: {field: [0, 0, 2]}",
+            axis(1, 2),
+        ),
+        (
+            "no charge",
+            format!("{moving}magnetic: {{field: [0, 2, 0]}}"),
+            axis(1, 2),
+        ),
+        (
             "up",
             still
                 .replace("gravity: 0", "gravity: -1")

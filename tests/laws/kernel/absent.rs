@@ -3,7 +3,9 @@
 use crate::testkit::cloth::cloth;
 use springcheck::physics::ParticleSystem;
 use springcheck::physics::effects::{EffectRow, REGISTRY};
-use springcheck::scene::{Air, DampingModel, GravitationalPair, Scene, Triangle, Wind};
+use springcheck::scene::{
+    Air, Bending, DampingModel, GravitationalPair, Magnetic, Scene, Triangle, Wind,
+};
 use springcheck::solvers::{self, Setting};
 
 /// The ids of what a system has to call.
@@ -16,7 +18,7 @@ fn called(scene: &Scene) -> Vec<&'static str> {
 type Call = fn(&mut Scene);
 
 /// What the scene calls for one by one, each on top of gravity and springs.
-const CALLS: [(&str, Call); 6] = [
+const CALLS: [(&str, Call); 8] = [
     ("cubic_springs", |scene| scene.springs[0].cubic = 1.0),
     ("drag", |scene| scene.particles[1].drag = 0.1),
     ("quadratic_drag", |scene| {
@@ -42,6 +44,18 @@ const CALLS: [(&str, Call); 6] = [
         scene.gravitational.push(GravitationalPair {
             ends: [0, 1],
             g: 1.0,
+        });
+    }),
+    ("bending", |scene| {
+        scene.bending.push(Bending {
+            stiffness: 1.0,
+            ..Bending::default()
+        });
+    }),
+    ("magnetic", |scene| {
+        scene.particles[1].charge = 1.0;
+        scene.magnetic = Some(Magnetic {
+            field: [0.0, 0.0, 1.0],
         });
     }),
 ];

@@ -1,7 +1,7 @@
 //! Laws over the registry of mistakes, and over the methods that are none.
 
 use super::record::{PRECISIONS, fault_of, question, rows, run, thinned};
-use crate::testkit::{distance, driven, everything, part, swinging_triangle};
+use crate::testkit::{distance, driven, everything, is_its_own, part, swinging_triangle};
 use springcheck::integrators::{Settings, fixed};
 use springcheck::measure::identify::{Candidate, MISTAKES, Wrong, first_fault, identify, mistakes};
 use springcheck::physics::{ParticleSystem, State, System};
@@ -20,8 +20,8 @@ fn scene(model: DampingModel) -> Scene {
 
 fn built(scene: &Scene) -> (ParticleSystem, Vec<Candidate>, Vec<Candidate>) {
     let system = ParticleSystem::new(scene);
-    let methods = fixed().iter().map(|m| Candidate::method(&system, m, 1));
-    let methods = methods.collect();
+    let methods = fixed().iter().filter(|method| is_its_own(scene, method));
+    let methods = methods.map(|m| Candidate::method(&system, m, 1)).collect();
     let wrong = mistakes(scene, &system);
     (system, methods, wrong)
 }

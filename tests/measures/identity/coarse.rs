@@ -1,7 +1,7 @@
 //! Rounded data: named where it can be, and said to be too coarse where not.
 
 use super::*;
-use crate::testkit::{crossed, swinging_triangle};
+use crate::testkit::{crossed, is_its_own, swinging_triangle};
 use springcheck::integrators::fixed;
 use springcheck::measure::identify::{FIT, TRUTH, Undecided};
 use springcheck::scene::DampingModel;
@@ -62,6 +62,9 @@ fn what_is_said_of_rounded_data_holds() {
     let mut decided = 0;
     for (method, ((damping, substeps), precision)) in &tried {
         let scene = swinging_triangle(*damping, DampingModel::Axial);
+        if !is_its_own(&scene, method) {
+            continue;
+        }
         let rows = run(&scene, method.id, *substeps, 200);
         let found = found(&scene, &rounded(rows, *precision), None);
         let Some(identity) = found.identity else {

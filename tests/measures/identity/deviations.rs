@@ -9,7 +9,7 @@ use springcheck::scene::{Axis, DampingModel, Spring, Vectors};
 /// A change, and what is to be said of it: what deviates, by which factor, where.
 type Case = (fn(&mut Scene), &'static str, f64, Option<&'static str>);
 
-const CASES: [Case; 11] = [
+const CASES: [Case; 15] = [
     (|s| s.solver.gravity = -9.8, "gravity", 9.8 / 9.81, None),
     (|s| s.solver.gravity = 0.0, "gravity", 0.0, None),
     (
@@ -65,6 +65,25 @@ const CASES: [Case; 11] = [
         "mass",
         2.0,
         None,
+    ),
+    (
+        |s| s.particles.iter_mut().for_each(|p| p.charge *= -1.0),
+        "charge",
+        -1.0,
+        None,
+    ),
+    (|s| s.magnetic = None, "charge", 0.0, None),
+    (
+        |s| s.bending.iter_mut().for_each(|h| h.stiffness *= 0.5),
+        "bending.stiffness",
+        0.5,
+        None,
+    ),
+    (
+        |s| s.bending[1].damping *= 3.0,
+        "bending.damping",
+        3.0,
+        Some("hinge 1"),
     ),
 ];
 

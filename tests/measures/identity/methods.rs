@@ -1,7 +1,7 @@
 //! Every method in substeps, on a motion where no two are the same.
 
 use super::*;
-use crate::testkit::{part, swinging_triangle};
+use crate::testkit::{is_its_own, part, swinging_triangle};
 use springcheck::integrators::fixed;
 use springcheck::measure::identify::Undecided;
 use springcheck::scene::DampingModel;
@@ -29,7 +29,8 @@ fn names(scene: &Scene, rows: &Rows, method: &str, substeps: u32) -> Result<Iden
 fn every_method_is_named_in_any_substeps_to_the_last_bit() {
     for (damping, several) in [(0.0, [1, 3, 8]), (0.7, [1, 4, 16])] {
         let scene = swinging_triangle(damping, DampingModel::Axial);
-        for (at, method) in fixed().iter().enumerate() {
+        let own = fixed().iter().filter(|method| is_its_own(&scene, method));
+        for (at, method) in own.enumerate() {
             for &substeps in part(&several, 3, at) {
                 let rows = run(&scene, method.id, substeps, 60);
                 let identity = names(&scene, &rows, method.id, substeps).unwrap();
@@ -61,7 +62,7 @@ fn other_last_bits_are_the_same_method() {
     let mut worst = 0.0_f64;
     for damping in [0.0, 0.7] {
         let scene = swinging_triangle(damping, DampingModel::Isotropic);
-        for method in fixed().iter() {
+        for method in fixed().iter().filter(|method| is_its_own(&scene, method)) {
             for substeps in [1, 2] {
                 let rows = other_bits(&run(&scene, method.id, substeps, 100));
                 let identity = names(&scene, &rows, method.id, substeps).unwrap();

@@ -1,7 +1,7 @@
 //! Positions without velocities.
 
 use super::*;
-use crate::testkit::{crossed, swinging_triangle};
+use crate::testkit::{crossed, is_its_own, swinging_triangle};
 use springcheck::integrators::fixed;
 use springcheck::measure::identify::Undecided;
 use springcheck::scene::DampingModel;
@@ -38,6 +38,9 @@ fn positions_tell_methods_up_to_what_truly_coincides() {
     let cases = [(0.0, 1), (0.7, 2), (0.0, 2), (0.7, 1)];
     for (method, &(damping, substeps)) in crossed(fixed(), &cases) {
         let scene = swinging_triangle(damping, DampingModel::Axial);
+        if !is_its_own(&scene, method) {
+            continue;
+        }
         let rows = without_velocities(run(&scene, method.id, substeps, 60));
         let identity = name(&scene, &rows);
         let class = class(method.id, damping > 0.0);

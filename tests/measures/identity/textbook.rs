@@ -18,7 +18,7 @@ enum Coding {
     Backward,
 }
 
-/// Accelerations of springs, dampers, gravity, drag, wind and attraction.
+/// Accelerations of springs, dampers, hinges, gravity, drag, wind, attraction and a magnetic field.
 fn acceleration(scene: &Scene, coding: Coding, (x, v): (&Vectors, &Vectors)) -> Vectors {
     let mut f: Vectors = vec![[0.0; 3]; x.len()];
     let weigh = |f: &mut Vectors| {
@@ -57,6 +57,37 @@ fn acceleration(scene: &Scene, coding: Coding, (x, v): (&Vectors, &Vectors)) -> 
             let force = pull * d[i] / l + damped;
             f[a][i] += force;
             f[b][i] -= force;
+        }
+    }
+    for hinge in &scene.bending {
+        // As a textbook has it: the angle from its cosine, and the chain rule.
+        let [a, b, c] = hinge.particles;
+        let links = [(a, b), (b, c)].map(|(from, to)| [0, 1, 2].map(|i| x[to][i] - x[from][i]));
+        let turns = [(a, b), (b, c)].map(|(from, to)| [0, 1, 2].map(|i| v[to][i] - v[from][i]));
+        let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let lengths = [0, 1].map(|i| dot(&links[i], &links[i]).sqrt());
+        let cos = dot(&links[0], &links[1]) / (lengths[0] * lengths[1]);
+        let (angle, sin) = (cos.acos(), (1.0 - cos * cos).sqrt());
+        let by = [0, 1].map(|i| {
+            let other = links[1 - i].map(|d| d / lengths[1 - i]);
+            let own = links[i].map(|d| d / lengths[i]);
+            [0, 1, 2].map(|k| (cos * own[k] - other[k]) / (sin * lengths[i]))
+        });
+        let rate = dot(&by[0], &turns[0]) + dot(&by[1], &turns[1]);
+        let moment = hinge.stiffness * (angle - hinge.rest_angle) + hinge.damping * rate;
+        for i in 0..3 {
+            f[a][i] += moment * by[0][i];
+            f[b][i] -= moment * (by[0][i] - by[1][i]);
+            f[c][i] -= moment * by[1][i];
+        }
+    }
+    if let Some(magnetic) = &scene.magnetic {
+        let b = magnetic.field;
+        for (i, p) in scene.particles.iter().enumerate() {
+            for axis in 0..3 {
+                let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+                f[i][axis] += p.charge * (v[i][next] * b[last] - v[i][last] * b[next]);
+            }
         }
     }
     for pair in &scene.gravitational {

@@ -58,11 +58,13 @@ fn no_two_scenes_share_a_folder() {
         let text = std::fs::read_to_string(&file).expect("a report");
         assert_eq!(report(&text)["scene"]["file"], scene);
     }
-    // Of one scene by two names there is one report.
-    let twice = short(&["x.yml", "../here/x.yml"]);
-    let (code, _, err) = answer(springcheck().current_dir(&here).args(twice));
-    assert_eq!(code, 2);
-    assert!(err.contains("would both write to"), "{err}");
+    // A scene by several names runs once, under the first.
+    let whole = here.join("x.yml");
+    let names = ["./x.yml", "../here/x.yml", word(&whole)];
+    let several = short(&[&names[..], &["--output", "out", "--quiet"]].concat());
+    let (code, out, err) = answer(springcheck().current_dir(&here).args(several));
+    assert_eq!((code, out.lines().count()), (0, 1), "{err}");
+    assert!(out.starts_with("x.yml: "), "{out}");
 }
 
 #[test]
@@ -159,4 +161,80 @@ fn a_folder_means_its_scenes_and_several_scenes_end_with_a_line_each() {
         &short(&[word(&empty)]),
         &["no scene in this folder", "*.yml"],
     );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_working_directory_that_was_removed_does_not_move_the_output() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [gone, scenes, out] = ["gone", "scenes", "out"].map(|name| folder.path().join(name));
+    for made in [&gone, &scenes] {
+        std::fs::create_dir(made).expect("made");
+    }
+    let scene = scenes.join("s.yml");
+    std::fs::copy(SCENE, &scene).expect("copied");
+    let program = crate::testkit::program::springcheck_path();
+    let args = short(&[word(&scene), "--output", word(&out)]).join("' '");
+    let removed = format!("rmdir ../gone; '{}' '{args}'", program.display());
+    let status = std::process::Command::new("sh")
+        .args(["-c", &removed])
+        .current_dir(&gone)
+        .output()
+        .expect("sh runs");
+    assert_eq!(status.status.code(), Some(0));
+    assert_eq!(files(&scenes), ["s.yml".to_owned()].into());
+    assert_eq!(files(&out), ["@root".to_owned()].into());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_scene_of_a_folder_that_cannot_be_read_is_an_error() {
+    for kind in ["link", "pipe"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let root = folder.path();
+        std::fs::copy(SCENE, root.join("a.yml")).expect("copied");
+        let bad = root.join("b.yml");
+        match kind {
+            "link" => std::os::unix::fs::symlink("nowhere.yml", &bad).expect("linked"),
+            _ => {
+                let made = std::process::Command::new("mkfifo").arg(&bad).status();
+                assert!(made.is_ok_and(|status| status.success()));
+            }
+        }
+        // Who names a pipe may feed it.
+        let named = (kind == "link").then_some(bad.as_path());
+        for path in [Some(root), named].into_iter().flatten() {
+            let mut command = springcheck();
+            command.timeout(std::time::Duration::from_secs(60));
+            let (code, out, err) = answer(command.args(["check", word(path)]));
+            assert_eq!((code, out.as_str()), (2, ""), "{kind}: {err}");
+            assert!(err.contains("b.yml"), "{kind}: {err}");
+        }
+    }
+}
+
+#[test]
+fn one_scene_is_checked_once_under_its_first_name_and_one_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let root = folder.path().canonicalize().expect("a path");
+    let whole = root.join("s.yml");
+    std::fs::copy(SCENE, &whole).expect("copied");
+    let check = |paths: &[&str], more: &[&str]| {
+        let mut command = springcheck();
+        let args = [&["check"], paths, more].concat();
+        answer(command.current_dir(&root).env_remove("CI").args(args))
+    };
+    let (code, out, err) = check(&["./s.yml", word(&whole), "."], &[]);
+    assert_eq!(code, 0, "{err}");
+    assert!(out.starts_with("pass  s.yml  "), "{out}");
+    assert!(
+        out.ends_with("1 scene: 1 passed, 0 failed, 0 skipped\n"),
+        "{out}"
+    );
+    // The key of the baseline is the same, however the scene was named.
+    assert_eq!(check(&["./s.yml"], &["--accept", "base.json"]).0, 0);
+    for path in ["s.yml", "././s.yml", "."] {
+        let (code, out, err) = check(&[path], &["--baseline", "base.json"]);
+        assert_eq!(code, 0, "{path}: {out}{err}");
+    }
 }

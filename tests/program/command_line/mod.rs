@@ -2,6 +2,7 @@
 
 mod files;
 mod screen;
+mod targets;
 mod words;
 
 use crate::testkit::program::{array, output, report, word};

@@ -5,7 +5,15 @@ use crate::testkit::program::{output, refuse_all};
 
 #[test]
 fn a_wrong_word_is_answered_with_the_nearest() {
-    let cases: [(&[&str], &str); 10] = [
+    let cases: [(&[&str], &str); 12] = [
+        (
+            &["run", SCENE, "--integrators", "all,rk4"],
+            "`all` stands alone",
+        ),
+        (
+            &["run", SCENE, "--engines", "rapier,none"],
+            "`none` stands alone",
+        ),
         (&["run", SCENE, "--integrators", "rk44"], "mean `rk4`"),
         (
             &["run", SCENE, "--integrators", "verlocity_verlet"],
@@ -33,7 +41,17 @@ fn a_wrong_word_is_answered_with_the_nearest() {
         refuse_all(args, &[says]);
     }
     // A negative value is a value.
-    let values: [(&[&str], &str); 9] = [
+    let values: [(&[&str], &str); 13] = [
+        (&["check", SCENE, "--external-timeout", "-1s"], "'-1s'"),
+        (&["check", SCENE, "--partition", "-1/2"], "'-1/2'"),
+        (
+            &["compare", "x.csv", "--scene", SCENE, "--max-error", "-1"],
+            "'-1'",
+        ),
+        (
+            &["compare", "x.csv", "--scene", SCENE, "--max-energy", "-1"],
+            "'-1'",
+        ),
         (&["run", SCENE, "--timestep", "-0.01"], "timestep -0.01"),
         (&["run", SCENE, "--timestep", "-0.01,0.1"], "timestep -0.01"),
         (&["run", SCENE, "--duration", "-2"], "-2"),

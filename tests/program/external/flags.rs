@@ -18,10 +18,11 @@ up: y
 damping_model: isotropic
 particles:
 - {pos: [0.1, 0, 0], fixed: true, mass: 3}
-- {pos: [1, 2, 3], vel: [4, 5, 6], mass: 0.3, drag: 0.7}
+- {pos: [1, 2, 3], vel: [4, 5, 6], mass: 0.3, drag: 0.7, charge: -0.2}
 springs: [{particle_ids: [1, 0], stiffness: 20, cubic: 3, damping: 0.5, rest_length: 0.4}]
 gravitational: [{particle_ids: [0, 1], G: 1.5}]
 wind: {direction: [0, 0, 2], strength: 3}
+magnetic: {field: [1, 0, 2]}
 ";
     std::fs::write(&scene, yaml).expect("written");
     // The program writes down its arguments, each on a line, and keeps the JSON.
@@ -70,6 +71,7 @@ wind: {direction: [0, 0, 2], strength: 3}
             "damping": [0.5],
             "rest_lengths": [0.4],
         },
+        "bending": {"ids": [], "stiffness": [], "rest_angles": [], "damping": []},
         "driven": {
             "ids": [],
             "velocities": [],
@@ -82,9 +84,11 @@ wind: {direction: [0, 0, 2], strength: 3}
         "damping_model": "isotropic",
         "gravity": [0.0, -2.0, 0.0],
         "drag": [0.0, 0.7],
+        "charges": [0.0, -0.2],
+        "magnetic_field": [1.0, 0.0, 2.0],
         "wind_force": [0.0, 0.0, 3.0],
         "gravitational": {"ids": [0, 1], "g": [1.5]},
-        "effects": ["gravity", "springs", "cubic_springs", "drag", "wind", "gravitational"],
+        "effects": ["gravity", "springs", "cubic_springs", "drag", "wind", "gravitational", "magnetic"],
         "timestep": 0.05,
         "duration": 0.75,
         "steps": 15,

@@ -69,6 +69,12 @@ fn one_particle() {
         // Measured 2.0 to 3.0.
         holds(&format!("fall {rate:e}"), 40, 6.0, &make).unwrap();
     }
+    for w in [1e-6, 1e-2, 1.0, 30.0, 1e4] {
+        for rate in [0.0, 1e-6, 1.0, 1e3] {
+            let make: Make = Box::new(move |r| families::charged(r, w, rate));
+            holds(&format!("charged {w:e} {rate:e}"), 40, 30.0, &make).unwrap();
+        }
+    }
     let ratios = [0.0, 1e-9, 1e-3, 0.1, 0.7, 1.0, 1.1, 3.0, 30.0, 1e4, 1e8];
     let near = [1.0 - 1e-9, 1.0 + 1e-9, 1.0 - 1e-15, 1.0 + 1e-15];
     for zeta in ratios.into_iter().chain(near) {

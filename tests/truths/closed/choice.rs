@@ -64,9 +64,14 @@ fn shipped_scenes() {
 fn families_by_name() {
     let mut random = Random(3);
     let random = &mut random;
-    let cases: [(Scene, &str); 7] = [
+    let cases: [(Scene, &str); 9] = [
         (families::fall(random, 0.0), "parabola"),
         (families::fall(random, 0.2), "fall with linear drag"),
+        (families::charged(random, 3.0, 0.0), "helix"),
+        (
+            families::charged(random, 3.0, 0.2),
+            "helix with linear drag",
+        ),
         (
             families::chain(random, 4, 0.0),
             "eigendecomposition of 4 modes",

@@ -141,9 +141,48 @@ impl Matrix {
 /// Positions and velocities of all coordinates at `t`, where the forces are linear in each axis: rest
 /// length 0 and isotropic dampers, or one line. All free particles at once, groups or not.
 pub fn states(scene: &Scene, t: f64) -> (Vec<Dd>, Vec<Dd>) {
+    if scene.magnetic.is_some() {
+        return charged(scene, t);
+    }
     let mut motion = Motion::new(scene);
     motion.advance(&flow(scene, t));
     motion.states()
+}
+
+/// The same of a scene of one particle in a magnetic field, which couples the axes: over position, velocity and 1.
+fn charged(scene: &Scene, t: f64) -> (Vec<Dd>, Vec<Dd>) {
+    let [p] = &scene.particles[..] else {
+        panic!("one particle alone");
+    };
+    let field = scene.magnetic.as_ref().expect("a field").field;
+    let mass = Dd::of(p.mass);
+    let mut a = Matrix::zero(7);
+    for c in 0..3 {
+        a.entries[c * 7 + 3 + c] = Dd::of(1.0);
+        let row = (3 + c) * 7;
+        a.entries[row + 3 + c] = -Dd::of(p.drag).over(mass);
+        // (v x B)_c = v_next B_last - v_last B_next.
+        let (next, last) = ((c + 1) % 3, (c + 2) % 3);
+        let turn = |b: f64| (Dd::of(p.charge) * Dd::of(b)).over(mass);
+        a.entries[row + 3 + next] = turn(field[last]);
+        a.entries[row + 3 + last] = -turn(field[next]);
+        let wind = scene.wind.as_ref().map_or(Dd::default(), |wind| {
+            Dd::of(wind.strength) * Dd::of(wind.direction[c])
+        });
+        a.entries[row + 6] = wind.over(mass);
+    }
+    let weight = &mut a.entries[(3 + scene.up.index()) * 7 + 6];
+    *weight = *weight + Dd::of(scene.solver.gravity);
+    let flow = a.exp(t);
+    // As elsewhere the motion is that of the displacement, which starts at 0.
+    let start = [0.0; 3].into_iter().chain(p.velocity).chain([1.0]);
+    let start: Vec<Dd> = start.map(Dd::of).collect();
+    let at = |row: usize| {
+        let terms = flow.entries[row * 7..][..7].iter().zip(&start);
+        terms.fold(Dd::default(), |sum, (a, b)| sum + *a * *b)
+    };
+    let x = (0..3).map(|c| at(c) + Dd::of(p.position[c])).collect();
+    (x, (3..6).map(at).collect())
 }
 
 /// The numbers of the free particles among themselves.

@@ -2,7 +2,7 @@
 
 pub use crate::testkit::scenes::{empty, fixed};
 use crate::testkit::{Random, scenes};
-use springcheck::scene::{DampingModel, Particle, Scene, Spring, Wind};
+use springcheck::scene::{DampingModel, Magnetic, Particle, Scene, Spring, Wind};
 
 pub fn free(position: [f64; 3], velocity: [f64; 3], mass: f64) -> Particle {
     Particle {
@@ -41,6 +41,17 @@ pub fn fall(random: &mut Random, rate: f64) -> Scene {
         direction: [0.6, 0.0, 0.8],
         strength: random.next(),
     });
+    scene
+}
+
+/// The same with a charge in a field of any direction that turns it at `w`, rad/s.
+pub fn charged(random: &mut Random, w: f64, rate: f64) -> Scene {
+    let mut scene = fall(random, rate);
+    let field = vector(random, 1.0);
+    let size = field.iter().map(|b| b * b).sum::<f64>().sqrt();
+    let sign = if random.next() < 0.0 { -1.0 } else { 1.0 };
+    scene.particles[0].charge = sign * w * scene.particles[0].mass / size;
+    scene.magnetic = Some(Magnetic { field });
     scene
 }
 

@@ -4,7 +4,7 @@
 use super::families::{self, between};
 use super::{form, gauss};
 use crate::testkit::{Random, built, distance};
-use springcheck::scene::{DampingModel, Scene};
+use springcheck::scene::{DampingModel, Magnetic, Particle, Scene};
 use springcheck::truth::Motion;
 
 const UNTIL: f64 = 3.0;
@@ -75,6 +75,12 @@ fn scenes() -> Vec<(&'static str, Scene, f64)> {
     }
     scenes.push(("two", families::two(random), 10.0));
     scenes.push(("all", families::together(random), 40.0));
+    for w in [1e-3, 0.3, 3.0, 20.0] {
+        for rate in [0.0, 0.5] {
+            let turned = f64::max(w + 2.0 * rate, 1.0);
+            scenes.push(("charged", families::charged(random, w, rate), turned));
+        }
+    }
     scenes
 }
 
@@ -112,6 +118,16 @@ const WRONG: &[(&str, Wrong)] = &[
         let any = s.particles.iter().any(|p| p.drag > 0.0 && !p.fixed);
         s.particles.iter_mut().for_each(|p| p.drag = 0.0);
         any
+    }),
+    ("charge's sign", |s| {
+        s.particles.iter_mut().for_each(|p| p.charge *= -1.0);
+        s.magnetic.is_some()
+    }),
+    ("field a millionth off", |s| {
+        s.magnetic.as_mut().is_some_and(|m| {
+            m.field = m.field.map(|b| 1.000_001 * b);
+            true
+        })
     }),
     ("damping forgotten", |s| {
         let any = s.springs.iter().any(|l| l.damping > 0.0);
@@ -234,4 +250,38 @@ fn the_damping_model_counts() {
     scene.damping_model = DampingModel::Axial;
     assert!(form(&scene, UNTIL).is_none());
     assert!(obeys(&scene, motion, 4.0).is_err());
+}
+
+/// A charge of q/m = 1 in 3 T along z from (1, 0, 0.2) m/s, at 5 s, to 17 digits; and what its form says.
+#[test]
+fn a_charge_goes_round_a_helix() {
+    let mut scene = families::empty();
+    let start = families::free([0.0; 3], [1.0, 0.0, 0.2], 0.5);
+    scene.particles = vec![Particle {
+        charge: 0.5,
+        ..start
+    }];
+    scene.magnetic = Some(Magnetic {
+        field: [0.0, 0.0, 3.0],
+    });
+    let off = |scene: &Scene| {
+        let found = form(scene, 5.0).expect("a form");
+        let motion = found.motion().expect("a motion");
+        let states = motion.states(&[5.0]);
+        let golden = [0.216_762_613_385_705_62, -0.586_562_637_619_607_09, 1.0];
+        distance(states.x(0), &golden) / motion.error_bar(5.0)
+    };
+    assert!(off(&scene) < 1.0);
+    scene.particles[0].charge = -0.5;
+    assert!(off(&scene) > 1e6);
+    // Across gravity it drifts at m g/(q B) = 3.27 m/s, to the left where the field points at the reader.
+    scene.particles[0].charge = 0.5;
+    scene.particles[0].velocity = [0.0; 3];
+    (scene.up, scene.solver.gravity) = (springcheck::scene::Axis::Y, -9.81);
+    let found = form(&scene, 60.0).expect("a form");
+    let turn = 2.0 * std::f64::consts::PI / 3.0;
+    let after = found.motion().expect("a motion").states(&[28.0 * turn]);
+    let drift = [-3.27 * 28.0 * turn, 0.0, 0.0];
+    // 192 m in 176 radians: w t roundings of the circle, 1 m, and a few of the drift.
+    assert!(distance(after.x(0), &drift) < 2e-12);
 }

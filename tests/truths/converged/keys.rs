@@ -20,7 +20,7 @@ const DECIDES: &[(&str, Change)] = &[
     ("corner", |s| s.triangles[0].corners = [1, 3, 2]),
     ("air drag", |s| s.triangles[0].air_drag = 0.9),
     ("velocity of the air", |s| {
-        s.air.iter_mut().for_each(|air| air.velocity[0] = 0.6)
+        s.air.iter_mut().for_each(|air| air.velocity[0] = 0.7)
     }),
     ("density of the air", |s| {
         s.air.iter_mut().for_each(|air| air.density = 1.3)
@@ -42,6 +42,11 @@ const DECIDES: &[(&str, Change)] = &[
     ("cubic", |s| s.springs[1].cubic += 1.0),
     ("damping", |s| s.springs[1].damping += 0.1),
     ("rest_length", |s| s.springs[1].rest_length += 0.1),
+    ("hinge", |s| s.bending[0].particles = [0, 2, 1]),
+    ("bending stiffness", |s| s.bending[0].stiffness += 1.0),
+    ("rest angle", |s| s.bending[0].rest_angle += 0.1),
+    ("bending damping", |s| s.bending[0].damping += 0.1),
+    ("a hinge less", |s| s.bending.truncate(1)),
     ("gravitational end", |s| s.gravitational[0].ends = [0, 1]),
     ("G", |s| s.gravitational[0].g = 1.0),
     ("wind direction", |s| {
@@ -55,6 +60,13 @@ const DECIDES: &[(&str, Change)] = &[
         }
     }),
     ("no wind", |s| s.wind = None),
+    ("charge", |s| s.particles[1].charge += 0.1),
+    ("field", |s| {
+        if let Some(magnetic) = &mut s.magnetic {
+            magnetic.field[1] += 0.1;
+        }
+    }),
+    ("no field", |s| s.magnetic = None),
     ("a particle less", |s| {
         s.particles.truncate(s.particles.len() - 1)
     }),
@@ -127,6 +139,13 @@ fn a_key_that_forgets_any_field_is_found_out() {
         ("up", |s, o| s.up = o.up),
         ("damping_model", |s, o| s.damping_model = o.damping_model),
         ("wind", |s, o| s.wind.clone_from(&o.wind)),
+        ("rest angle", |s, _| {
+            s.bending.iter_mut().for_each(|h| h.rest_angle = 0.0)
+        }),
+        ("field", |s, o| s.magnetic.clone_from(&o.magnetic)),
+        ("charge", |s, _| {
+            s.particles.iter_mut().for_each(|p| p.charge = 0.0)
+        }),
         ("drag", |s, _| {
             s.particles.iter_mut().for_each(|p| p.drag = 0.0)
         }),

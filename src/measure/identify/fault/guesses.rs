@@ -109,6 +109,7 @@ pub(super) fn numbers(spot: &Spot) -> Vec<Guess> {
     };
     let springs = channels::springs_at(scene, &[spot.worst]);
     let mut channels: Vec<Channel> = channels::of_springs(springs).collect();
+    channels.extend(channels::of_hinges(scene, &[spot.worst]));
     channels.push(Channel::One(Gravity, 0));
     channels.extend(channels::of_particles(scene, &[spot.worst]));
     channels.extend(scene.wind.as_ref().map(|_| Channel::One(Wind, 0)));

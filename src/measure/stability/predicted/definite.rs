@@ -7,6 +7,7 @@
 //!
 //! - textbook kicks: 4 - 2 h C - h² K >= 0;
 //! - exact damping flows (Verlet, whose half kicks or half drifts merge): 2 h C coth(h C / 2) - h² K >= 0;
+//! - kicks by the midpoint rule (Boris): 4 - h² K >= 0, whatever the damping;
 //! - linearly implicit Euler with K' for K in its matrix: 4 + 2 h C + h² (2 K' - K) >= 0.
 //!
 //! Each is a decreasing function of h but for a positive factor. What is unstable in truth (K < 0)
@@ -24,6 +25,7 @@ use crate::integrators::{Amplification, DampingTreatment, Stage, bisect};
 pub(super) enum Definite {
     Explicit,
     ExactFlow,
+    Midpoint,
     Material,
 }
 
@@ -48,7 +50,10 @@ impl Definite {
         match damping {
             DampingTreatment::Explicit if kicks == 1 => Some(Self::Explicit),
             DampingTreatment::Explicit => None,
-            _ => (changes.count() == 2).then_some(Self::ExactFlow),
+            _ if changes.count() != 2 => None,
+            DampingTreatment::Boris if kicks == 1 => Some(Self::Midpoint),
+            DampingTreatment::Boris => None,
+            _ => Some(Self::ExactFlow),
         }
     }
 
@@ -70,6 +75,7 @@ impl Definite {
                 let across = k - 2.0 * material;
                 (across > 0.0).then(|| (c + (c * c + 4.0 * across).sqrt()) / across)
             }
+            Self::Midpoint => (k > 0.0).then(|| 2.0 / k.sqrt()),
             Self::ExactFlow => {
                 if k <= 0.0 {
                     return None;
@@ -158,7 +164,7 @@ impl Definite {
                         material.add_product(-2.0 * h * h, x, y);
                         damping.add_product(-2.0 * h, x, y);
                     }
-                    Self::ExactFlow => {}
+                    Self::ExactFlow | Self::Midpoint => {}
                 }
                 for (y, x) in y.iter_mut().zip(x) {
                     *y -= 4.0 * x;

@@ -106,6 +106,7 @@ impl Pair {
         let (trace, determinant) = match damping {
             _ if mode.stiffness != 0.0 => (a + d, a * d - b * c),
             DampingTreatment::Explicit => (d, 0.0),
+            DampingTreatment::Boris => (d, 0.0),
             // Flows of damping alone merge into one: their product overflows where kicks go backward.
             _ => ((-h * mode.damping).exp(), 0.0),
         };
@@ -150,6 +151,9 @@ fn coupled(
 ) -> Prediction {
     let part = &spectrum.part;
     let n = part.n();
+    if let Some(limit) = turning(amplification, part) {
+        return Prediction::only(limit);
+    }
     // Of matrices that are not symmetric this takes the symmetric parts: a guess.
     let definite = Definite::of(amplification).and_then(|kind| kind.limit(part, effort));
     let map = (n <= effort.map).then(|| StepMap::new(spectrum)).flatten();
@@ -178,13 +182,30 @@ fn coupled(
     found.growing(map.and_then(|map| map.growth(amplification, h)), h)
 }
 
-/// Whether a composition sweeps over dampers in more than one kick, so that [`swept`] does not know its limit.
-pub(super) fn is_swept_several_times(method: &Method) -> bool {
+/// The limit of a composition on a part with a magnetic field, where one look is enough.
+///
+/// The map of textbook kicks has the determinant of their 1 - b h C, which is above 1 for a skew C: they gain energy
+/// at every step. Flows and Boris' turns only turn velocities, and do no more without other forces.
+fn turning(amplification: Amplification, part: &Part) -> Option<Limit> {
+    let Amplification::Composition(_, damping) = amplification else {
+        return None;
+    };
+    let turns = part.damping.skewness() > 0.0 && part.damping.symmetric_part().norm() == 0.0;
+    match damping {
+        _ if !turns => None,
+        DampingTreatment::Explicit => Some(Limit::Never),
+        _ => (part.stiffness.norm() == 0.0).then_some(Limit::Unconditional),
+    }
+}
+
+/// Whether a composition sweeps over dampers in a way of which [`swept`] does not know the limit: in more than one
+/// kick, or in `any` number.
+pub(super) fn is_swept(method: &Method, any: bool) -> bool {
     let sweeps = matches!(
         method.amplification,
-        Amplification::Composition(_, DampingTreatment::Sweeps)
+        Amplification::Composition(_, DampingTreatment::Sweeps | DampingTreatment::Boris)
     );
-    sweeps && Definite::of(method.amplification).is_none()
+    sweeps && (any || Definite::of(method.amplification).is_none())
 }
 
 /// The prediction where a composition sweeps over dampers that share particles.

@@ -14,7 +14,7 @@ mod swept;
 
 use super::Limit;
 use crate::integrators::{Amplification, DampingTreatment, Method, fixed};
-use crate::physics::{Dampers, State, System};
+use crate::physics::{Dampers, ForceKinds, State, System};
 use crate::scene::{DampingModel, Scene};
 pub(super) use parts::shortest;
 pub use prediction::Prediction;
@@ -103,9 +103,11 @@ impl Linearised {
         }
         let free = system.inverse_mass().iter().filter(|w| **w > 0.0).count();
         if linearised.shared && unstable == 0 && free <= effort.map.min(SWEPT) {
+            // What is known of one sweep a step holds for dampers, and not for what turns velocities.
+            let turns = system.kinds().has(ForceKinds::GYROSCOPIC);
             let sweeps = fixed()
                 .iter()
-                .filter(|method| maps::is_swept_several_times(method));
+                .filter(|method| maps::is_swept(method, turns));
             let omega = linearised.omega_max();
             linearised.swept = sweeps
                 .filter_map(|m| Some((m.id, swept::limit(system, state, m, omega?))))
@@ -146,9 +148,10 @@ impl Linearised {
             .iter()
             .filter_map(|part| match method.amplification {
                 Amplification::Rational(rational) => regions::predict(&rational, part, timestep),
-                Amplification::Composition(_, DampingTreatment::Sweeps)
-                    if self.shared && part.part.damping.norm() > 0.0 =>
-                {
+                Amplification::Composition(
+                    _,
+                    DampingTreatment::Sweeps | DampingTreatment::Boris,
+                ) if self.shared && part.part.damping.norm() > 0.0 => {
                     Some(maps::swept(method.amplification, part, &self.effort))
                 }
                 other => maps::predict(other, part, timestep, &self.effort),
@@ -293,10 +296,19 @@ pub fn is_linear(scene: &Scene) -> bool {
     let isotropic = scene.damping_model == DampingModel::Isotropic;
     let springs = scene.springs.iter().filter(|spring| moves(&spring.ends));
     let attractions = scene.gravitational.iter().filter(|pair| moves(&pair.ends));
-    springs.into_iter().all(|s| {
-        let pulls_linearly = s.rest_length == 0.0 || s.stiffness == 0.0;
-        pulls_linearly && s.cubic == 0.0 && (s.damping == 0.0 || isotropic)
-    }) && attractions.into_iter().all(|pair| pair.g == 0.0)
+    let hinges = scene.bending.iter().filter(|hinge| {
+        let fixed = |&p: &usize| scene.particles.get(p).is_some_and(|p| p.fixed);
+        !hinge.particles.iter().all(fixed)
+    });
+    let bends = hinges
+        .into_iter()
+        .any(|hinge| hinge.stiffness != 0.0 || hinge.damping != 0.0);
+    !bends
+        && springs.into_iter().all(|s| {
+            let pulls_linearly = s.rest_length == 0.0 || s.stiffness == 0.0;
+            pulls_linearly && s.cubic == 0.0 && (s.damping == 0.0 || isotropic)
+        })
+        && attractions.into_iter().all(|pair| pair.g == 0.0)
         && (scene.particles.iter()).all(|p| p.fixed || p.quadratic_drag == 0.0)
         && scene
             .triangles

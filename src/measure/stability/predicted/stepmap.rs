@@ -3,21 +3,29 @@
 use super::Limit;
 use super::parts::Part;
 use super::spectrum::Spectrum;
-use crate::integrators::{Amplification, Stage, bisect};
+use crate::integrators::{Amplification, DampingTreatment, Stage, bisect};
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
+use nalgebra::DMatrix;
 
-/// A part in the basis of its damping's eigenvectors, where that is symmetric, over (ξ, v): ξ are the
-/// displacements that change some force.
+/// A part over (ξ, v), in the basis of its damping's eigenvectors where that is symmetric: ξ are the displacements
+/// that change some force.
 pub(super) struct StepMap {
     /// The change of ξ with the velocities, and the force of ξ over the masses.
     drift: Mat<f64>,
     force: Mat<f64>,
     material: Mat<f64>,
-    /// Eigenvalues of C, 1/s.
-    damping: Vec<f64>,
+    damping: Damping,
     /// How many modes grow in truth: a step follows them.
     unstable: usize,
+}
+
+/// C, 1/s.
+enum Damping {
+    /// Its eigenvalues, where it is symmetric.
+    Apart(Vec<f64>),
+    /// C itself: a magnetic field turns velocities.
+    Turning(DMatrix<f64>),
 }
 
 /// A modulus beyond 1 by more than this is growth. The eigenvalues of an unsymmetric matrix carry some
@@ -29,8 +37,30 @@ const FAR: f64 = 1e4;
 /// A limit is confirmed by steps this much inside and outside it, relative.
 const BESIDE: f64 = 1e-4;
 
+impl Damping {
+    /// Multiplies velocities and `force` by the two factors of a kick over `step`, and subtracts.
+    fn kick(&self, treatment: DampingTreatment, step: f64, force: &Mat<f64>, v: &mut Mat<f64>) {
+        match self {
+            Self::Apart(rates) => {
+                for (i, c) in rates.iter().enumerate() {
+                    let (kept, pushed) = treatment.kick(step, *c);
+                    for j in 0..v.ncols() {
+                        v[(i, j)] = kept * v[(i, j)] - pushed * force[(i, j)];
+                    }
+                }
+            }
+            Self::Turning(c) => {
+                let factors = treatment.kick_matrices(step, c);
+                let [kept, pushed] =
+                    factors.map(|by| Mat::from_fn(c.nrows(), c.nrows(), |i, j| by[(i, j)]));
+                *v = kept * &*v - pushed * force;
+            }
+        }
+    }
+}
+
 impl StepMap {
-    /// None where the damping is not symmetric, or where its eigenvectors are not found.
+    /// None where the eigenvectors of a symmetric damping are not found.
     pub fn new(spectrum: &Spectrum) -> Option<Self> {
         let Part {
             stiffness,
@@ -38,25 +68,29 @@ impl StepMap {
             material,
             ..
         } = &spectrum.part;
-        if damping.skewness() > 0.0 {
-            return None;
-        }
         let felt = spectrum.part.felt()?;
-        let eigen = damping.dense().self_adjoint_eigen(Side::Lower).ok()?;
-        let u = eigen.U();
-        let values = eigen.S().column_vector();
+        let n = damping.n();
+        let (u, damping) = if damping.skewness() > 0.0 {
+            let turning = DMatrix::from_fn(n, n, |i, j| damping.at(i, j));
+            (Mat::identity(n, n), Damping::Turning(turning))
+        } else {
+            let eigen = damping.dense().self_adjoint_eigen(Side::Lower).ok()?;
+            let values = eigen.S().column_vector();
+            let values = (0..n).map(|i| values[i]).collect();
+            (eigen.U().to_owned(), Damping::Apart(values))
+        };
         Some(Self {
-            drift: felt.transpose() * u,
+            drift: felt.transpose() * &u,
             force: u.transpose() * stiffness.dense() * &felt,
-            material: u.transpose() * material.dense() * u,
-            damping: (0..damping.n()).map(|i| values[i]).collect(),
+            material: u.transpose() * material.dense() * &u,
+            damping,
             unstable: spectrum.left_out.map_or(0, |left_out| left_out.unstable),
         })
     }
 
     /// The step's matrix on (ξ, h v).
     fn matrix(&self, amplification: Amplification, h: f64) -> Option<Mat<f64>> {
-        let (n, rank) = (self.damping.len(), self.force.ncols());
+        let (n, rank) = (self.force.nrows(), self.force.ncols());
         let size = rank + n;
         let one = |from: usize| move |i, j| f64::from(u8::from(i + from == j));
         let mut x = Mat::<f64>::from_fn(rank, size, one(0));
@@ -73,20 +107,19 @@ impl StepMap {
                         Stage::Drift(part) => x += drift(part) * &v,
                         Stage::Kick(part) => {
                             let force = &force * &x;
-                            for (i, c) in self.damping.iter().enumerate() {
-                                let (kept, pushed) = treatment.kick(part * h, *c);
-                                for j in 0..size {
-                                    v[(i, j)] = kept * v[(i, j)] - pushed * force[(i, j)];
-                                }
-                            }
+                            self.damping.kick(treatment, part * h, &force, &mut v);
                         }
                     }
                 }
             }
             Amplification::MaterialImplicit => {
                 let mut matrix = faer::Scale(h * h) * &self.material;
-                for (i, c) in self.damping.iter().enumerate() {
-                    matrix[(i, i)] += 1.0 + h * c;
+                for i in 0..n {
+                    matrix[(i, i)] += 1.0;
+                    match &self.damping {
+                        Damping::Apart(rates) => matrix[(i, i)] += h * rates[i],
+                        Damping::Turning(c) => (0..n).for_each(|j| matrix[(i, j)] += h * c[(i, j)]),
+                    }
                 }
                 v -= faer::Scale(h) * (&force * &x);
                 v = matrix.partial_piv_lu().solve(&v);

@@ -137,7 +137,7 @@ pub(super) const DISSIPATION: Row = Row {
     derivation: "the power c v² is never negative; 8 roundings a step of what was dissipated",
     remedy: "a damper acts on a velocity of the wrong sign, or the work is booked at another velocity",
     judge: Some(|ran| {
-        if !ran.system().kinds().depends_on_velocity() {
+        if !ran.system().kinds().damps() {
             return Vec::new();
         }
         let own = ran.whole().filter(|(subject, ..)| !subject.is_other());

@@ -2,12 +2,13 @@
 
 use super::{Ran, Row};
 use crate::measure::Check;
-use crate::physics::ParticleSystem;
 use crate::physics::effects::Effect;
+use crate::physics::{ForceKinds, ParticleSystem};
 
 pub(super) const LAW: Row = Row {
     id: "forces",
-    requires: "every effect's force does the work that its potential loses and its power states",
+    requires: "every effect's force does the work that its potential loses and its power states; one that only turns \
+               velocities is what it says it is",
     derivation: "a central difference of the potential along the motion, extrapolated, against the force; the \
                  difference of two step widths and the rounding of the potential bound its error",
     remedy: "the named effect's force, potential and power do not belong together: check its sign and its factors",
@@ -74,7 +75,20 @@ fn instant(effect: &dyn Effect, t: f64, x: &[f64], v: &[f64]) -> super::Instant 
     let bound = 4.0 * (fine - coarse).abs() + 16.0 * (rounding + off) + 1e-9 * terms;
     super::Instant {
         t,
-        found: (power - said).abs(),
+        found: (power - said).abs().max(turning(effect, t, x, v, &f)),
         bound,
     }
+}
+
+/// Of a force that turns velocities and so has no power: how far what `f` has of the velocity is from what the effect
+/// says of it elsewhere, W. 0 of any other.
+fn turning(effect: &dyn Effect, t: f64, x: &[f64], v: &[f64], f: &[f64]) -> f64 {
+    if !effect.kinds().has(ForceKinds::GYROSCOPIC) {
+        return 0.0;
+    }
+    let mut rest = vec![0.0; x.len()];
+    effect.add_force(t, x, &vec![0.0; x.len()], &mut rest);
+    effect.add_damping(x, v, &mut rest);
+    let pairs = f.iter().zip(&rest).zip(v);
+    pairs.map(|((f, rest), v)| ((f - rest) * v).abs()).sum()
 }

@@ -3,7 +3,7 @@
 mod process;
 
 use super::flags::{self, Time};
-use super::interrupt;
+use super::temporary;
 use crate::integrators;
 use crate::scene::Scene;
 use crate::scene::limits::external;
@@ -19,7 +19,6 @@ use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
-use tempfile::TempDir;
 
 /// The flag's value: the program's name in reports, and its command.
 #[derive(Debug, Clone)]
@@ -113,9 +112,7 @@ struct CommandProgram {
 impl Program for CommandProgram {
     fn record(&self, task: &Task) -> Result<Recording, Failure> {
         // The folder is removed with its contents when it goes out of scope.
-        let make = || tempfile::Builder::new().prefix("springcheck-").tempdir();
-        let folder = interrupt::remembered(make, TempDir::path)
-            .map_err(Failure::io("make a temporary folder"))?;
+        let folder = temporary::folder().map_err(Failure::io("make a temporary folder"))?;
         let json = folder.path().join("scene.json");
         let output = folder.path().join("trajectory.npz");
         if self.command.uses(Placeholder::SceneJson) {

@@ -15,8 +15,8 @@ pub struct Finished {
     /// The wall time from its start to its end, s.
     pub seconds: f64,
     deadline: Deadline,
-    /// Its process group.
-    group: u32,
+    /// What of it still runs in the background.
+    group: interrupt::Group,
 }
 
 /// An event that one of the two reader threads reports.
@@ -54,21 +54,21 @@ pub fn run(
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
-    let mut child = interrupt::start(&mut command).map_err(|cause| not_started(program, cause))?;
+    let started = interrupt::start(&mut command);
+    let (mut child, group) = started.map_err(|cause| not_started(program, cause))?;
     let deadline = Deadline { start, timeout };
     let watched = watch(&mut child, &deadline, limit, wanted).inspect_err(|_| {
-        interrupt::kill(child.id());
+        group.kill();
         // An error means that it has ended already.
         let _ = child.kill();
         let _ = child.wait();
     });
-    interrupt::ended(child.id());
     let (stdout, seconds) = watched?;
     Ok(Finished {
         stdout,
         seconds,
         deadline,
-        group: child.id(),
+        group,
     })
 }
 
@@ -207,7 +207,7 @@ impl Finished {
         let left = self.deadline.left().unwrap_or_default();
         let done = done.recv_timeout(left.max(Duration::from_secs(1)));
         done.unwrap_or_else(|_| {
-            interrupt::kill(self.group);
+            self.group.kill();
             let after = self.deadline.timeout;
             Err(Failure::Held { what, after })
         })

@@ -90,7 +90,7 @@ fn drawn(map: &StabilityMap, panel: &MapPanel, columns: usize) -> Vec<String> {
     lines.push(clip(&format!("{:>16} {axis}", ""), columns));
     lines.push(mark(
         Tone::Dim,
-        &format!("{:>16} · stable  - dissipating  # growing  x failed", ""),
+        &format!("{:>15} · stable  - dissipating  # growing  x failed", ""),
     ));
     lines
 }

@@ -154,8 +154,8 @@ fn radius_law(system: &dyn System, method: &Method, build: Build) -> Result<(), 
         Limit::Unknown(_) if method.id == "yoshida4" => return Ok(()),
         other => return Err(format!("{}: {other:?}", method.id)),
     }
-    let sweeps = DampingTreatment::Sweeps;
-    if matches!(method.amplification, Amplification::Composition(_, by) if by == sweeps) {
+    let sweeps = [DampingTreatment::Sweeps, DampingTreatment::Boris];
+    if matches!(method.amplification, Amplification::Composition(_, by) if sweeps.contains(&by)) {
         // Their limit is known here, and how fast they grow beyond it is not.
         return Ok(());
     }

@@ -110,6 +110,34 @@ fn what_rests_or_grows_in_truth_is_left_out_and_counted() {
     }
 }
 
+/// Quadratic drag is linearised about the start, relative to the air: along the motion at the rate 2 c |u| / m, across at
+/// half of that.
+#[test]
+fn drag_that_is_not_linear_has_the_limit_of_its_start() {
+    let mut scene = scene(
+        vec![particle([0.0; 3], 0.5, false)],
+        Vec::new(),
+        DampingModel::Axial,
+    );
+    scene.particles[0].velocity = [0.0, 3.0, -4.0];
+    scene.particles[0].quadratic_drag = 0.2;
+    let limit = |scene: &Scene| {
+        assert!(!is_linear(scene));
+        match start(scene).predict(method("explicit_euler"), 0.01).limit {
+            Limit::At(limit) => limit,
+            other => panic!("{other:?}"),
+        }
+    };
+    // 2 / rate; a few roundings of it.
+    let rate = |speed: f64| 2.0 * 0.2 * speed / 0.5;
+    assert!((limit(&scene) * rate(5.0) / 2.0 - 1.0).abs() < 1e-14);
+    scene.air = Some(Air {
+        velocity: [12.0, 3.0, -4.0],
+        ..Air::default()
+    });
+    assert!((limit(&scene) * rate(12.0) / 2.0 - 1.0).abs() < 1e-14);
+}
+
 #[test]
 fn drag_alone_is_the_textbook_test_equation() {
     // x' = -k x for the velocity, k = drag / m = 4.
