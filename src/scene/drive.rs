@@ -33,6 +33,25 @@ enum Motion {
     Spline(Spline),
 }
 
+impl Scene {
+    /// The motions of driven particles.
+    pub fn drives(&self) -> Vec<Drive> {
+        self.driven
+            .iter()
+            .filter_map(|driven| Drive::new(self, driven))
+            .collect()
+    }
+
+    /// Where each particle is at t = 0, m: a driven one has its motion added.
+    pub fn starts(&self) -> Vec<[f64; 3]> {
+        let mut starts: Vec<_> = self.particles.iter().map(|p| p.position).collect();
+        for drive in self.drives() {
+            starts[drive.particle] = drive.at(0.0)[0];
+        }
+        starts
+    }
+}
+
 impl Drive {
     /// None where the entry says no motion, or of no particle.
     pub(super) fn new(scene: &Scene, driven: &Driven) -> Option<Self> {

@@ -12,7 +12,6 @@
 //! `Default` is the value of an absent key. Where the key is required, it is something harmless, such as
 //! a force of 0.
 
-use super::drive::Drive;
 use super::expectation::{Expectation, Scope, Skipped};
 use super::limits::{self, Bounds, Form};
 use super::table::{Field, Value, Vectors, declare, member, words};
@@ -497,23 +496,6 @@ impl Scene {
         };
         let rest_lengths = self.springs.iter().map(|s| s.rest_length);
         diagonal + rest_lengths.fold(0.0, f64::max)
-    }
-
-    /// The motions of driven particles.
-    pub fn drives(&self) -> Vec<Drive> {
-        self.driven
-            .iter()
-            .filter_map(|driven| Drive::new(self, driven))
-            .collect()
-    }
-
-    /// Where each particle is at t = 0, m: a driven one has its motion added.
-    pub fn starts(&self) -> Vec<[f64; 3]> {
-        let mut starts: Vec<_> = self.particles.iter().map(|p| p.position).collect();
-        for drive in self.drives() {
-            starts[drive.particle] = drive.at(0.0)[0];
-        }
-        starts
     }
 
     /// The expectations of an engine, each key once: those of its own line (or, for an integrator without

@@ -1,5 +1,6 @@
 //! Mistakes are named, first faults are found and explained, and what is right is left alone.
 
+mod anchors;
 mod injected;
 mod mistaken;
 mod record;
