@@ -101,8 +101,8 @@ fn boris_law(build: Build, h: f64) -> Result<(), String> {
 fn boris_turns_by_its_angle_on_its_radii() {
     // The published frequencies and radii of h = 0.1 and 0.01.
     for (h, frequency, radius) in [
-        (0.1, 2.977_798_952_189_945_0, 0.337_062_473_602_611_41),
-        (0.01, 2.999_775_030_370_119_2, 0.333_370_831_224_195_60),
+        (0.1, 2.977_798_952_189_945, 0.337_062_473_602_611_41),
+        (0.01, 2.999_775_030_370_119_2, 0.333_370_831_224_195_6),
     ] {
         assert!((2.0 * (0.5 * W * h).atan() / h - frequency).abs() < 1e-15 * 4.0);
         let half = (1.0 + (0.5 * W * h).powi(2)).sqrt() / W;
