@@ -268,7 +268,7 @@ fn a_charge_goes_round_a_helix() {
         let found = form(scene, 5.0).expect("a form");
         let motion = found.motion().expect("a motion");
         let states = motion.states(&[5.0]);
-        let golden = [0.216_762_613_385_705_62, -0.586_562_637_619_607_09, 1.0];
+        let golden = [0.216_762_613_385_705_62, -0.586_562_637_619_607_1, 1.0];
         distance(states.x(0), &golden) / motion.error_bar(5.0)
     };
     assert!(off(&scene) < 1.0);
