@@ -487,3 +487,14 @@ fn only_what_the_scene_calls_for_is_built() {
     scene.springs.clear();
     assert!(ids(&scene).is_empty());
 }
+
+#[test]
+fn every_effect_has_its_section_in_the_documents() {
+    let document = include_str!("../../docs/effects.md");
+    let titles: Vec<&str> = document
+        .lines()
+        .filter_map(|line| line.strip_prefix("## "))
+        .collect();
+    let ids: Vec<&str> = effects::REGISTRY.iter().map(|row| row.id).collect();
+    assert_eq!(titles, ids);
+}

@@ -7,3 +7,4 @@ mod horizon;
 mod keys;
 mod orders;
 mod problems;
+mod published;
