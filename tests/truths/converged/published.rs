@@ -4,8 +4,8 @@ use crate::testkit::distance;
 use crate::testkit::scenes::shipped;
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;
-use springcheck::truth::NoStore;
 use springcheck::truth::converged::find;
+use springcheck::truth::{Motion, NoStore};
 
 /// A scene, and the coordinates of its last particles at a time.
 type Row = (&'static str, f64, &'static [f64]);

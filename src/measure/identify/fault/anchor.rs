@@ -65,6 +65,9 @@ fn moved(
     })
 }
 
+/// Where a driven particle is at a time, s; m.
+type Place<'p> = &'p dyn Fn(f64) -> [f64; 3];
+
 /// How a driven particle moves that does not move as the scene says.
 fn otherwise(drive: &Drive, rows: &Rows) -> String {
     let h = rows.timestep;
@@ -77,7 +80,7 @@ fn otherwise(drive: &Drive, rows: &Rows) -> String {
         let moved = less(t, start);
         [0, 1, 2].map(|axis| pos[axis] + moved[axis])
     };
-    let ways: [(&str, &dyn Fn(f64) -> [f64; 3]); 7] = [
+    let ways: [(&str, Place); 7] = [
         (
             "stays at its `pos`: its displacement at time t is missing",
             &|_| pos,
