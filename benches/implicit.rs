@@ -39,7 +39,10 @@ fn a_step(c: &mut Criterion) {
         let scene = cloth(100, stiffness);
         let system = ParticleSystem::new(&scene);
         let method = integrators::find("implicit_euler").expect("a method");
-        let mut integrator = method.build(&Settings { tolerance });
+        let mut integrator = method.build(&Settings {
+            tolerance,
+            ..Settings::default()
+        });
         let mut state = ParticleSystem::initial_state(&scene);
         group.bench_function(format!("k = {stiffness}, to {tolerance:e}"), |b| {
             b.iter(|| integrator.step(black_box(&system), STEP, &mut state));

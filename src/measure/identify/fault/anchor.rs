@@ -65,6 +65,9 @@ fn moved(
     })
 }
 
+/// A position, m, at a time, s.
+type Way<'a> = &'a dyn Fn(f64) -> [f64; 3];
+
 /// How a driven particle moves that does not move as the scene says.
 fn otherwise(drive: &Drive, rows: &Rows) -> String {
     let h = rows.timestep;
@@ -77,7 +80,7 @@ fn otherwise(drive: &Drive, rows: &Rows) -> String {
         let moved = less(t, start);
         [0, 1, 2].map(|axis| pos[axis] + moved[axis])
     };
-    let ways: [(&str, &dyn Fn(f64) -> [f64; 3]); 7] = [
+    let ways: [(&str, Way); 7] = [
         (
             "stays at its `pos`: its displacement at time t is missing",
             &|_| pos,
@@ -100,7 +103,7 @@ fn otherwise(drive: &Drive, rows: &Rows) -> String {
             &|t| less(t, pos),
         ),
     ];
-    let follows = |way: &dyn Fn(f64) -> [f64; 3]| {
+    let follows = |way: Way| {
         (1..rows.len()).all(|k| {
             let at = &rows.x(k)[3 * drive.particle..3 * drive.particle + 3];
             let wanted = way(rows.time(k));
