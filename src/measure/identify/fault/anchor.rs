@@ -65,8 +65,8 @@ fn moved(
     })
 }
 
-/// Where a driven particle is at a time, s; m.
-type Place<'p> = &'p dyn Fn(f64) -> [f64; 3];
+/// A position, m, at a time, s.
+type Way<'a> = &'a dyn Fn(f64) -> [f64; 3];
 
 /// How a driven particle moves that does not move as the scene says.
 fn otherwise(drive: &Drive, rows: &Rows) -> String {
@@ -80,7 +80,7 @@ fn otherwise(drive: &Drive, rows: &Rows) -> String {
         let moved = less(t, start);
         [0, 1, 2].map(|axis| pos[axis] + moved[axis])
     };
-    let ways: [(&str, Place); 7] = [
+    let ways: [(&str, Way); 7] = [
         (
             "stays at its `pos`: its displacement at time t is missing",
             &|_| pos,
@@ -103,7 +103,7 @@ fn otherwise(drive: &Drive, rows: &Rows) -> String {
             &|t| less(t, pos),
         ),
     ];
-    let follows = |way: &dyn Fn(f64) -> [f64; 3]| {
+    let follows = |way: Way| {
         (1..rows.len()).all(|k| {
             let at = &rows.x(k)[3 * drive.particle..3 * drive.particle + 3];
             let wanted = way(rows.time(k));
