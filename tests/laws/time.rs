@@ -33,11 +33,13 @@ fn first_step_law(id: &str, build: Build) -> Result<(), String> {
             let x1 = x + h * v;
             (x1, v + h * (-W * W * x1 + push(t + h)))
         }
-        // Linear in x, so that one Newton step is the whole solution.
-        "implicit_euler"
-        | "linearized_implicit_predicted"
-        | "linearized_implicit_at_start"
-        | "linearized_implicit_material" => {
+        // The force is that at the start; linear in x, so that its Jacobian is the whole change.
+        "linearized_implicit_at_start" | "linearized_implicit_material" => {
+            let v1 = (v + h * (-W * W * x + push(t))) / (1.0 + h * h * W * W);
+            (x + h * v1, v1)
+        }
+        // One Newton step is the whole solution.
+        "implicit_euler" | "linearized_implicit_predicted" => {
             let v1 = (v + h * (-W * W * x + push(t + h))) / (1.0 + h * h * W * W);
             (x + h * v1, v1)
         }

@@ -47,4 +47,13 @@ impl Effect for Driven {
     fn drives(&self) -> &[Drive] {
         &self.drives
     }
+
+    /// It has no force of its own. What is driven is fixed, so nothing is kept in a scene that has it.
+    fn keeps_momentum(&self) -> bool {
+        true
+    }
+
+    fn keeps_angular_momentum(&self) -> bool {
+        true
+    }
 }

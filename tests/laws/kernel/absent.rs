@@ -4,7 +4,7 @@ use crate::testkit::cloth::cloth;
 use springcheck::physics::ParticleSystem;
 use springcheck::physics::effects::{EffectRow, REGISTRY};
 use springcheck::scene::{
-    Air, Bending, DampingModel, GravitationalPair, Magnetic, Scene, Triangle, Wind,
+    Air, Bending, DampingModel, Driven, GravitationalPair, Magnetic, Scene, Triangle, Wind,
 };
 use springcheck::solvers::{self, Setting};
 
@@ -18,7 +18,7 @@ fn called(scene: &Scene) -> Vec<&'static str> {
 type Call = fn(&mut Scene);
 
 /// What the scene calls for one by one, each on top of gravity and springs.
-const CALLS: [(&str, Call); 8] = [
+const CALLS: [(&str, Call); 9] = [
     ("cubic_springs", |scene| scene.springs[0].cubic = 1.0),
     ("drag", |scene| scene.particles[1].drag = 0.1),
     ("quadratic_drag", |scene| {
@@ -44,6 +44,14 @@ const CALLS: [(&str, Call); 8] = [
         scene.gravitational.push(GravitationalPair {
             ends: [0, 1],
             g: 1.0,
+        });
+    }),
+    ("driven", |scene| {
+        let held = scene.particles.iter().position(|p| p.fixed);
+        scene.driven.push(Driven {
+            particle: held.expect("a corner"),
+            velocity: Some([1.0, 0.0, 0.0]),
+            ..Driven::default()
         });
     }),
     ("bending", |scene| {

@@ -56,6 +56,8 @@ fn keys() -> Vec<OutcomeKey> {
         ("work.steps", KeyKind::Number),
         ("work.force_evaluations", KeyKind::Number),
         ("work.linear_solves", KeyKind::Number),
+        ("work.world.bodies", KeyKind::Number),
+        ("work.world.joints", KeyKind::Number),
         ("identified.method", word(&scheme::ids())),
         ("identified.substeps", KeyKind::Number),
         ("identified.defect", KeyKind::Number),
