@@ -59,8 +59,8 @@ fn what_is_written_out_has_every_default() {
          up: z\n\
          damping_model: axial\n\
          particles:\n\
-         \x20 - {pos: [0.0, 0.0, 2.0], vel: [0.0, 0.0, 0.0], fixed: true, mass: 1.0, radius: 0.1, drag: 0.0, charge: 0.0, quadratic_drag: 0.0}\n\
-         \x20 - {pos: [0.0, 0.0, 1.0], vel: [0.0, 0.0, 0.0], fixed: false, mass: 2.0, radius: 0.1, drag: 0.0, charge: 0.0, quadratic_drag: 0.0}\n\
+         \x20 - {pos: [0.0, 0.0, 2.0], vel: [0.0, 0.0, 0.0], fixed: true, mass: 1.0, radius: 0.1, drag: 0.0, quadratic_drag: 0.0, charge: 0.0}\n\
+         \x20 - {pos: [0.0, 0.0, 1.0], vel: [0.0, 0.0, 0.0], fixed: false, mass: 2.0, radius: 0.1, drag: 0.0, quadratic_drag: 0.0, charge: 0.0}\n\
          springs:\n\
          \x20 - {particle_ids: [0, 1], stiffness: 20.0, cubic: 0.0, damping: 0.0, rest_length: 1.0}\n\
          expect:\n\
