@@ -123,7 +123,8 @@ fn random_scenes_raise_none() {
             continue;
         }
         let alarms = failed(&report);
-        assert!(alarms.is_empty(), "seed {seed}, {method}: {alarms:#?}");
+        let text = springcheck::scene::yaml(&scene);
+        assert!(alarms.is_empty(), "seed {seed}: {alarms:#?}\n{text}");
     }
     // Measured 2 in a thousand.
     assert!(100 * left <= many().max(100), "{left}");

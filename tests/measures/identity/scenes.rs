@@ -80,11 +80,17 @@ fn every_method_is_named_on_every_shipped_scene() {
     }
 }
 
-/// Position Verlet and Boris, where dampers are weak.
+/// Boris and what it is like: position Verlet where dampers are weak, and in a field alone the methods of its rotation,
+/// which are solved to a tolerance.
 fn weak(method: &str, other: &str) -> bool {
-    [method, other]
-        .iter()
-        .all(|id| ["position_verlet", "boris"].contains(id))
+    let like = [
+        "position_verlet",
+        "boris",
+        "implicit_midpoint",
+        "trapezoidal",
+    ];
+    let pair = [method, other];
+    pair.contains(&"boris") && pair.iter().all(|id| like.contains(id))
 }
 
 fn set(ids: &str) -> BTreeSet<String> {

@@ -44,9 +44,10 @@ fn balance(ran: &Ran, subject: &Subject) -> Option<Check> {
     let over = |part: f64| observed(&points(ran, &subject.case.solver, part), order);
     let mut seen = over(1.0);
     if seen.verdict == Verdict::Misses {
-        // Slopes may only have seemed to settle: over a shorter time the same steps are finer.
+        // Slopes may only have seemed to settle, as where all energy is lost at every step: over a shorter time the
+        // same steps are finer. An order misses where it does over both.
         let finer = over(1.0 / 16.0);
-        if matches!(finer.verdict, Verdict::Meets | Verdict::Above) {
+        if finer.verdict != Verdict::Misses {
             seen = finer;
         }
     }
