@@ -71,7 +71,7 @@ impl Output {
         Some(Place::new(self.stated().or(default)?, scene))
     }
 
-    /// Prints the reports to stdout, as [`print`].
+    /// Prints the reports to stdout, as [`print()`].
     pub fn print(&self, tool: &Tool, reports: &[Report]) -> anyhow::Result<bool> {
         print(&rendered(&self.format, tool, reports)?)
     }
@@ -96,7 +96,7 @@ impl Output {
     }
 
     /// Prints one report to stdout; for people the text of [`human`], or where it is to be quiet the [`summary`].
-    /// Returns what [`print`] does.
+    /// Returns what [`print()`] does.
     pub fn print_one(
         &self,
         report: &Report,
