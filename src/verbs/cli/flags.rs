@@ -83,7 +83,7 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
         } else if entry.file_type()?.is_dir() {
             collect(&path, found)?;
         } else if is_scene() && !path.is_dir() {
-            // Nobody who names a folder feeds a pipe in it.
+            // To read a pipe in a folder would wait for a writer for ever.
             if path.metadata().is_ok_and(|facts| !facts.is_file()) {
                 let why = format!("{} is no regular file", path.display());
                 return Err(std::io::Error::other(why));

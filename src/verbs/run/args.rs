@@ -140,7 +140,7 @@ pub fn run(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
         failure = failure.and(saved);
         reports.push(report);
         if !is_read && places.iter().all(Option::is_none) {
-            // Nobody would see what is still to come.
+            // The reader of stdout is gone, and nothing else is written.
             break;
         }
     }

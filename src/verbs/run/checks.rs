@@ -60,7 +60,7 @@ pub fn orders(plan: &Plan, truth: &Truth) -> Vec<Check> {
         return Vec::new();
     };
     let mut methods: Vec<&Method> = Vec::new();
-    // Who refuses the scene's forces has no order here.
+    // A method that refuses the scene's forces has no order here.
     let takes = |method: &&Method| plan.system.admits(method.id, method.takes()).is_ok();
     let all = plan.cases.iter().filter_map(|case| case.solver.as_method());
     for method in all.filter(takes) {

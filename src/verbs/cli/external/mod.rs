@@ -128,14 +128,9 @@ impl Program for CommandProgram {
         });
         let in_file = self.command.uses(Placeholder::Output);
         let ended = process::run(&words, self.terms.timeout.0, MAX_BYTES, !in_file)?;
-        let expected = Expected::new(task.scene, task.timestep);
         // Axes that do not fit were refused before.
-        let plane = |plane| {
-            Expected::new(task.scene, task.timestep)
-                .in_plane(plane)
-                .ok()
-        };
-        let expected = self.terms.axes.and_then(plane).unwrap_or(expected);
+        let expected = flags::expected(task.scene, task.timestep, self.terms.axes)
+            .unwrap_or_else(|_| Expected::new(task.scene, task.timestep));
         let rows = if in_file {
             let bytes = ended.within("its {output}", move || read(&output))?;
             trajectory::read(&bytes, "{output}", Some(Layout::Npz), &expected)?
