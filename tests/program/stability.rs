@@ -440,3 +440,36 @@ fn damping_alone_decays_under_substeps_backward_in_time() {
         assert_eq!(row["measured_unconditional"], true, "{row}");
     }
 }
+
+/// Quadratic drag has no limit at rest, and 2 m/(2 c v) at the speed v = V tanh(g t/V) of a fall: the step at
+/// which Euler's velocity changes its distance from V by the factor -1.
+#[test]
+fn a_limit_that_the_motion_brings_is_shown() {
+    let scene = "scenes/effects/terminal_velocity.yml";
+    let integrators = "rk4,explicit_euler,velocity_verlet";
+    let args = [scene, "--engines", "none", "--integrators", integrators];
+    let report = json(&args);
+    let rows = array(&report["stability"]["rows"]);
+    let euler = &rows[1];
+    assert_eq!(euler["unconditional"], true);
+    let terminal = (9.81_f64 / 0.05).sqrt();
+    let speed = terminal * (9.81 * 5.0 / terminal).tanh();
+    let found = number(&euler["tightest"]["limit_s"]);
+    // The fall is rk4's: off by 5e-10 of V.
+    assert!((found * 0.05 * speed - 1.0).abs() < 1e-9, "{found}");
+    let said = euler["reason"].as_str().unwrap_or_default();
+    assert!(said.contains("tightest at t = 5"), "{said}");
+    // What does not run here is not called stable.
+    let verlet = &rows[2];
+    assert_eq!(verlet["unsupported"], true);
+    assert_eq!(verlet["unconditional"], false);
+    let (_, text, _) =
+        program::output(&[&["stability"], &args[..], &["--output", "none"]].concat());
+    assert!(text.contains("tightest on"), "{text}");
+    let mut lines = text.lines();
+    let line = lines.find(|line| line.contains("velocity_verlet"));
+    assert!(
+        line.is_some_and(|line| line.ends_with("unsupported")),
+        "{text}"
+    );
+}

@@ -50,7 +50,11 @@ pub fn remarks(
 fn tightest(shared: &Shared, row: &StabilityRow) -> Option<String> {
     let tightest = row.tightest.as_ref()?;
     let method = shared.path.method?;
-    let start = row.predicted_limit_s?;
+    let start = match row.predicted_limit_s {
+        Some(limit) => limit,
+        None if row.unconditional => f64::INFINITY,
+        None => return None,
+    };
     (tightest.limit_s < start * (1.0 - RESOLUTION)).then(|| {
         format!(
             "along the trajectory of {} the predicted limit is tightest at t = {:.3e} s: {:.4e} s",

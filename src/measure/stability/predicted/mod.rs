@@ -39,6 +39,8 @@ const SWEPT: usize = 24;
 pub struct Linearised {
     /// The parts with a spectrum.
     parts: Vec<Spectrum>,
+    /// What the scene's forces are: a method that does not take them has no limit.
+    kinds: ForceKinds,
     excluded: Vec<String>,
     /// The reason why nothing, or not everything, is known.
     failed: Option<&'static str>,
@@ -56,6 +58,7 @@ impl Linearised {
     pub fn new<S: System + ?Sized>(system: &S, state: &State, effort: Effort) -> Self {
         let mut linearised = Self {
             parts: Vec::new(),
+            kinds: system.kinds(),
             excluded: Vec::new(),
             failed: None,
             shared: system.dampers() == Dampers::Shared,
@@ -104,7 +107,7 @@ impl Linearised {
         let free = system.inverse_mass().iter().filter(|w| **w > 0.0).count();
         if linearised.shared && unstable == 0 && free <= effort.map.min(SWEPT) {
             // What is known of one sweep a step holds for dampers, and not for what turns velocities.
-            let turns = system.kinds().has(ForceKinds::GYROSCOPIC);
+            let turns = linearised.kinds.has(ForceKinds::GYROSCOPIC);
             let sweeps = fixed()
                 .iter()
                 .filter(|method| maps::is_swept(method, turns));
@@ -141,8 +144,13 @@ impl Linearised {
         &self.excluded
     }
 
-    /// The prediction for `method`: its limit, and its growth at `timestep`, s.
+    /// The prediction for `method`: its limit, and its growth at `timestep`, s. The limit of a method that does
+    /// not take the scene's forces is unknown.
     pub fn predict(&self, method: &Method, timestep: f64) -> Prediction {
+        let refused = self.kinds.without(method.takes());
+        if refused != ForceKinds::NONE {
+            return Prediction::unknown(format!("{} takes no force that is {refused}", method.id));
+        }
         let parts = self
             .parts
             .iter()

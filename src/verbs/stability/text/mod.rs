@@ -148,7 +148,8 @@ fn table<'a>(report: &Report, stability: &'a Stability) -> Table<'a, StabilityRo
     table.right("ratio", "ratio", 2, ratio);
     if any(|row| row.tightest.is_some()) {
         let tightest = |row: &StabilityRow| row.tightest.clone();
-        table.markdown("tightest along the way (s)", |row| {
+        let [terminal, markdown] = ["tightest on\nthe way (s)", "tightest on the way (s)"];
+        table.right(terminal, markdown, 3, |row| {
             limit(tightest(row).map(|tightest| tightest.limit_s), false)
         });
         table.markdown("at t (s)", |row| {
@@ -231,6 +232,7 @@ fn place(row: &StabilityRow, timestep: f64) -> String {
             format!("{} x beyond", words::quantity(timestep / limit))
         }
         (Some(false), _) => "beyond".into(),
+        (None, _) if row.unsupported => "unsupported".into(),
         (None, _) => NOTHING.into(),
     }
 }

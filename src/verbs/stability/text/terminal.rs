@@ -5,7 +5,7 @@ use crate::measure::stability::Cell;
 use crate::report::terminal::{Tone, clip, mark, pad, width, wrap};
 use crate::report::words;
 use crate::verbs::Report;
-use crate::verbs::stability::{MapPanel, Stability, StabilityMap};
+use crate::verbs::stability::{MapPanel, Stability, StabilityMap, StabilityRow};
 
 /// The columns beside a map in characters, which has a column for each value.
 const BESIDE: usize = 20;
@@ -15,17 +15,24 @@ const LINES: usize = 40;
 /// The lines below the facts.
 pub fn lines(report: &Report, stability: &Stability, columns: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
-    lines.extend(table(report, stability).in_terminal(columns, ", ", |_| {
-        let mut rows = stability.rows.iter();
-        let smooth = match rows.any(|row| row.smooth_below_s.is_some()) {
-            true => " | smooth: decays without changing sign, predicted",
-            false => "",
-        };
-        format!(
-            "▸ own integrator | never, always: no step is stable, every step is | \
-             ratio: measured over predicted{smooth}"
-        )
-    }));
+    lines.extend(
+        table(report, stability).in_terminal(columns, ", ", |left_out| {
+            let any = |wanted: fn(&StabilityRow) -> bool| stability.rows.iter().any(wanted);
+            let mut legend = vec![
+                "▸ own integrator",
+                "never, always: no step is stable, every step is",
+                "ratio: measured over predicted",
+            ];
+            let tightest = any(|row| row.tightest.is_some());
+            if tightest && !left_out.iter().any(|column| column.starts_with("tightest")) {
+                legend.push("predicted: at the start; tightest on the way: where the motion leads");
+            }
+            if any(|row| row.smooth_below_s.is_some()) {
+                legend.push("smooth: decays without changing sign, predicted");
+            }
+            legend.join(" | ")
+        }),
+    );
     if let Some(largest) = &stability.largest {
         lines.push(String::new());
         lines.extend(wrap(&largest_heading(largest), columns, "  "));
