@@ -107,6 +107,19 @@ impl Jacobian {
         }
     }
 
+    /// Adds the block ∂f_i/∂x_j, or ∂f_i/∂v_j, of particles i and j.
+    pub fn add_block(&mut self, by: Derivative, [i, j]: [usize; 2], block: &Matrix3<f64>) {
+        let out = match by {
+            Derivative::Position => &mut self.position,
+            Derivative::Velocity => &mut self.velocity,
+        };
+        for row in 0..3 {
+            for column in 0..3 {
+                out.push((3 * i + row, 3 * j + column, block[(row, column)]));
+            }
+        }
+    }
+
     /// Adds the block of an interaction that depends on the difference of two particles only:
     /// ∂f_i/∂(x_j - x_i), or ∂f_i/∂(v_j - v_i), with f_j = -f_i.
     pub fn add_pair(&mut self, by: Derivative, ends: [usize; 2], block: Matrix3<f64>) {

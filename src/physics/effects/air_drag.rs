@@ -1,9 +1,8 @@
 //! Drag of the air at triangles: cloth in the wind.
 
-use super::drag::{moved_by, velocity};
-use super::springs::difference;
-use super::{Effect, EffectRow, boxed};
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
+use super::drag::moved_by;
+use super::{Effect, EffectRow, boxed, difference, velocity};
+use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;
 use nalgebra::{Matrix3, Vector3};
 
@@ -179,13 +178,8 @@ impl Effect for AirDrag {
             let turns = [second - first, -second, first].map(|turn| by_normal * turn);
             for i in triangle.corners {
                 for (j, by_position) in triangle.corners.into_iter().zip(&turns) {
-                    for row in 0..3 {
-                        for column in 0..3 {
-                            let (r, c) = (3 * i + row, 3 * j + column);
-                            out.position.push((r, c, by_position[(row, column)]));
-                            out.velocity.push((r, c, by_velocity[(row, column)]));
-                        }
-                    }
+                    out.add_block(Derivative::Position, [i, j], by_position);
+                    out.add_block(Derivative::Velocity, [i, j], &by_velocity);
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use super::springs::SHORTEST;
 use super::{Effect, EffectRow, FEW_OPERATIONS, boxed};
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep, Triplets};
+use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power, Sweep};
 use crate::scene::{Bending, Scene};
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
 
@@ -373,17 +373,17 @@ impl Effect for BendingForce {
                     }
                 }
             }
-            let place = |i: usize| 3 * hinge.particles[i / 3] + i % 3;
-            let emit = |from: &Square, to: &mut Triplets| {
-                for i in 0..9 {
-                    for j in 0..9 {
-                        to.push((place(i), place(j), from[(i, j)]));
+            let mut emit = |by: Derivative, all: &Square| {
+                for (i, from) in hinge.particles.into_iter().enumerate() {
+                    for (j, to) in hinge.particles.into_iter().enumerate() {
+                        let block = all.fixed_view::<3, 3>(3 * i, 3 * j).into_owned();
+                        out.add_block(by, [from, to], &block);
                     }
                 }
             };
-            emit(&position, &mut out.position);
+            emit(Derivative::Position, &position);
             if hinge.damping != 0.0 {
-                emit(&velocity, &mut out.velocity);
+                emit(Derivative::Velocity, &velocity);
             }
         }
     }

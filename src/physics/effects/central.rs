@@ -1,8 +1,8 @@
 //! Forces along the line between two particles that depend on their distance alone: the cubic part of
 //! springs that stiffen as they stretch, and Newtonian attraction.
 
-use super::springs::{Line, SHORTEST, difference, dot};
-use super::{Effect, EffectRow, FEW_OPERATIONS, boxed};
+use super::springs::{Line, SHORTEST};
+use super::{Effect, EffectRow, FEW_OPERATIONS, boxed, difference, dot};
 use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;
 use nalgebra::{Matrix3, Vector3};

@@ -1,7 +1,6 @@
 //! Linear drag against the air.
 
-use super::springs::dot;
-use super::{Effect, EffectRow, FEW_OPERATIONS, boxed};
+use super::{Effect, EffectRow, FEW_OPERATIONS, boxed, count_members, dot, velocity};
 use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
 use crate::scene::Scene;
 
@@ -88,10 +87,7 @@ impl Effect for Drag {
     }
 
     fn count_dampers(&self, at: &mut [u32]) -> bool {
-        for (i, _) in &self.coefficients {
-            at[*i] += 1;
-        }
-        true
+        count_members(&self.coefficients, at)
     }
 
     fn sweep(&self, sweep: &mut Sweep) {
@@ -124,9 +120,4 @@ pub(super) fn moved_by(air: [f64; 3]) -> ForceKinds {
     } else {
         ForceKinds::DRIVEN
     }
-}
-
-/// The velocity of a particle.
-pub(super) fn velocity(v: &[f64], i: usize) -> [f64; 3] {
-    [v[3 * i], v[3 * i + 1], v[3 * i + 2]]
 }

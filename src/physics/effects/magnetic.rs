@@ -1,6 +1,6 @@
 //! The force of a uniform magnetic field on charged particles.
 
-use super::{Effect, EffectRow, boxed};
+use super::{Effect, EffectRow, boxed, count_members};
 use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
 use crate::scene::Scene;
 
@@ -74,10 +74,7 @@ impl Effect for MagneticForce {
     }
 
     fn count_dampers(&self, at: &mut [u32]) -> bool {
-        for (i, _) in &self.fields {
-            at[*i] += 1;
-        }
-        true
+        count_members(&self.fields, at)
     }
 
     fn sweep(&self, sweep: &mut Sweep) {

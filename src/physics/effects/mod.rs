@@ -149,6 +149,29 @@ pub static REGISTRY: &[EffectRow] = &[
     bending::ROW,
 ];
 
+/// The vector from the particle at offset `i` to the one at offset `j`.
+#[inline(always)]
+fn difference(x: &[f64], i: usize, j: usize) -> [f64; 3] {
+    let (from, to) = (&x[i..i + 3], &x[j..j + 3]);
+    [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
+}
+
+#[inline(always)]
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The velocity of particle `i`.
+fn velocity(v: &[f64], i: usize) -> [f64; 3] {
+    [v[3 * i], v[3 * i + 1], v[3 * i + 2]]
+}
+
+/// Counts one damper at each member, as [`Effect::count_dampers`] does.
+fn count_members<T>(members: &[(usize, T)], at: &mut [u32]) -> bool {
+    members.iter().for_each(|(i, _)| at[*i] += 1);
+    true
+}
+
 fn boxed<E: Effect + 'static>(effect: E) -> Box<dyn Effect> {
     Box::new(effect)
 }

@@ -1,10 +1,10 @@
 //! Drag with the square of the speed.
 
-use super::drag::{moved_by, velocity};
-use super::springs::dot;
-use super::{Effect, EffectRow, boxed};
-use crate::physics::{ForceKinds, Jacobian, Linearization, Power};
+use super::drag::moved_by;
+use super::{Effect, EffectRow, boxed, dot, velocity};
+use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power};
 use crate::scene::Scene;
+use nalgebra::Matrix3;
 
 pub(super) const ROW: EffectRow = EffectRow {
     id: "quadratic_drag",
@@ -108,13 +108,11 @@ impl Effect for QuadraticDrag {
         for &(i, c) in &self.coefficients {
             let (u, speed) = self.relative(v, i);
             let inverse = if speed > 0.0 { 1.0 / speed } else { 0.0 };
-            for row in 0..3 {
-                for column in 0..3 {
-                    let own = if row == column { speed } else { 0.0 };
-                    let slope = -c * (own + u[row] * (u[column] * inverse));
-                    out.velocity.push((3 * i + row, 3 * i + column, slope));
-                }
-            }
+            let slope = Matrix3::from_fn(|row, column| {
+                let own = if row == column { speed } else { 0.0 };
+                -c * (own + u[row] * (u[column] * inverse))
+            });
+            out.add_block(Derivative::Velocity, [i, i], &slope);
         }
     }
 }

@@ -5,7 +5,8 @@
 //! vector instructions of any width give the same bits.
 
 use super::network::{Part, Table};
-use super::{AXIAL, ISOTROPIC, NONE, SHORTEST, dot};
+use super::{AXIAL, ISOTROPIC, NONE, SHORTEST};
+use crate::physics::effects::dot;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Springs in a block: enough for the compiler to use vector instructions, few enough to stay in the

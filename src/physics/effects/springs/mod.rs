@@ -3,7 +3,7 @@
 mod kernel;
 mod network;
 
-use super::{Effect, EffectRow, FEW_OPERATIONS, boxed};
+use super::{Effect, EffectRow, FEW_OPERATIONS, boxed, difference, dot};
 use crate::physics::{Derivative, ForceKinds, Jacobian, Linearization, Power, Sweep};
 use crate::scene::{DampingModel, Scene, Spring};
 use kernel::Motion;
@@ -308,16 +308,4 @@ fn rounding(spring: &Spring, damping: Damping, x: &[f64], v: &[f64]) -> [f64; 3]
         off[axis] += along * n[axis] + size * (turned[axis] + FEW_OPERATIONS * n[axis]);
     }
     off
-}
-
-/// The vector from the particle at offset `i` to the one at offset `j`.
-#[inline(always)]
-pub(super) fn difference(x: &[f64], i: usize, j: usize) -> [f64; 3] {
-    let (from, to) = (&x[i..i + 3], &x[j..j + 3]);
-    [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
-}
-
-#[inline(always)]
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
