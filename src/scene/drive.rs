@@ -13,6 +13,8 @@ pub struct Drive {
     origin: [f64; 3],
     motion: Motion,
     how: How,
+    /// How much later it moves than its motion says, s: 0 where it is right.
+    late: f64,
 }
 
 /// What is made of a motion.
@@ -63,6 +65,7 @@ impl Drive {
             origin: scene.particles.get(driven.particle)?.position,
             motion: sine.or(steady).or(spline.map(Motion::Spline))?,
             how: How::Itself,
+            late: 0.0,
         })
     }
 
@@ -101,6 +104,25 @@ impl Drive {
         }
     }
 
+    /// The same motion, so many seconds later.
+    pub fn late(&self, seconds: f64) -> Self {
+        Self {
+            late: self.late + seconds,
+            ..self.clone()
+        }
+    }
+
+    /// Straight from row to row of its table; any other motion as it is.
+    pub fn unbent(&self) -> Self {
+        let mut straight = self.clone();
+        if let Motion::Spline(spline) = &mut straight.motion {
+            for knot in &mut spline.knots {
+                knot.bend = [0.0; 3];
+            }
+        }
+        straight
+    }
+
     /// The same places with velocity 0: what dampers see in a program that forgets the velocity of what it moves.
     pub fn still(&self) -> Self {
         Self {
@@ -111,6 +133,7 @@ impl Drive {
 
     /// Position, m, velocity, m/s, and acceleration, m/s², at a time, s.
     pub fn at(&self, t: f64) -> [[f64; 3]; 3] {
+        let t = t - self.late;
         let step = match self.how {
             How::Itself => return self.smooth(t),
             How::Still => return [self.smooth(t)[0], [0.0; 3], [0.0; 3]],
@@ -139,6 +162,36 @@ impl Drive {
         };
         let position = [0, 1, 2].map(|axis| self.origin[axis] + moved[axis]);
         [position, velocity, acceleration]
+    }
+
+    /// How far off rounding may put it along each axis after `n` steps, m, where a number is rounded by the part `eps`:
+    /// the time is a running sum, as may be the place that moves on and on; and each term of the motion is rounded.
+    pub fn rounding(&self, t: f64, n: u64, eps: f64) -> [f64; 3] {
+        let [position, velocity, _] = self.at(t);
+        // A cosine of a phase less π/2 is a sine too.
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let terms = match &self.motion {
+            Motion::Sine(sine) => {
+                let phase = (sine.omega * t).abs() + sine.phase.abs() + quarter;
+                sine.amplitude.map(|a| a.abs() * (1.0 + phase))
+            }
+            Motion::Steady(velocity) => velocity.map(|v| (v * t).abs()),
+            // Rows that cancel in the slopes and their differences, each as large as the largest.
+            Motion::Spline(Spline { knots }) => [0, 1, 2].map(|axis| {
+                let sizes = knots.iter().map(|knot| knot.x[axis].abs());
+                4.0 * sizes.fold(0.0, f64::max)
+            }),
+        };
+        let sums = match self.motion {
+            Motion::Steady(_) => 1.0 + 0.25 * n as f64,
+            _ => 1.0,
+        };
+        [0, 1, 2].map(|axis| {
+            let place = sums * (self.origin[axis].abs() + position[axis].abs());
+            // Half a rounding a step, which may all go one way.
+            let late = 0.25 * n as f64 * t.abs() * velocity[axis].abs();
+            eps * (place + terms[axis] + late)
+        })
     }
 
     /// The farthest it gets from its start along each axis within about one period, or from one row of a table to

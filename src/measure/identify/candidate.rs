@@ -3,7 +3,7 @@
 
 use super::altered::{Altered, Altering, Around};
 use super::step::Step;
-use crate::integrators::{Integrator, Method, PerStep, Settings, StepError, fixed};
+use crate::integrators::{Coefficients, Integrator, Method, PerStep, Settings, StepError, fixed};
 use crate::physics::{ParticleSystem, State, System};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -205,6 +205,12 @@ impl Candidate {
     /// Whether its steps solve linear systems, which costs as much as many that do not.
     pub fn solves(&self) -> bool {
         self.step.solves()
+    }
+
+    /// Whether it is a tableau that takes forces at several times.
+    pub(super) fn has_stages(&self) -> bool {
+        let coefficients = self.step.method().map(|method| method.coefficients);
+        matches!(coefficients, Some(Coefficients::Tableau(t)) if t.c.iter().any(|c| *c != 0.0))
     }
 
     /// Whether each particle takes its step alone.

@@ -24,6 +24,8 @@ const NUDGES: u64 = 4;
 const MOST: usize = 3;
 /// Of the sets of several channels, so many are fitted that the linear model finds best.
 const TRIED: usize = 4;
+/// Fits that are kept while they grow.
+const GROWN: usize = 2;
 /// Methods under whose forces a mistake and a wrong number are looked for together.
 const USUAL: [&str; 6] = [
     "explicit_euler",
@@ -55,8 +57,21 @@ pub(super) fn of_none(question: &Question, race: &Race, all: &[Transition]) -> F
     match fitted {
         Some(exact) if exact.is_exact() => exact.found(race, all),
         rough => near()
-            .or_else(|| rough.map(|fit| fit.found(race, all)))
+            .or_else(|| rough.map(|fit| fit.found(race, all).unnamed()))
             .unwrap_or_else(|| unexplained(race, all)),
+    }
+}
+
+impl Found {
+    /// What lowers the difference most, where rounding does not explain what is left: it explains nothing.
+    fn unnamed(mut self) -> Self {
+        if let Some(explained) = &mut self.explained
+            && let Some(scheme) = explained.scheme.take()
+            && let Some(first) = explained.deviations.first_mut()
+        {
+            first.sentence = format!("under {scheme} {}", first.sentence);
+        }
+        self
     }
 }
 
@@ -69,6 +84,7 @@ pub(super) fn of_mistake(scene: &Scene, identity: &Identity) -> Option<Explained
         residual: identity.defect,
         largest_at: None,
         deviations: deviations_of(scene, row),
+        equivalent: identity.equivalent.clone(),
     })
 }
 
@@ -97,6 +113,7 @@ pub(super) fn of_truth(identity: &Identity) -> Found {
             residual: identity.defect,
             largest_at: None,
             deviations: Vec::new(),
+            equivalent: Vec::new(),
         }),
     }
 }
@@ -113,6 +130,7 @@ fn unexplained(race: &Race, all: &[Transition]) -> Found {
         residual: nearest,
         largest_at: step,
         deviations: Vec::new(),
+        equivalent: Vec::new(),
     };
     Found {
         identity: None,
@@ -190,17 +208,27 @@ struct Explanation {
     worst: f64,
     /// What is left of the typical difference, as a part.
     left: f64,
+    /// Whether its numbers are such as a person would have written.
+    plain: bool,
+    /// How many numbers were fitted.
+    numbers: usize,
+    /// Other schemes that explain as well with such numbers.
+    equivalent: Vec<String>,
 }
 
 impl Explanation {
     fn new(model: &Model, fit: Fit) -> Self {
         let (scene, h) = (model.scene, model.replay.rows.timestep);
         let known = model.base.mistake.map(|row| deviations_of(scene, row));
-        let fitted = fit
-            .factors
-            .iter()
-            .map(|(c, factor)| c.deviation(scene, h, *factor));
+        let (gravity, own): (Vec<_>, Vec<_>) =
+            fit.factors.iter().partition(|(c, _)| c.is_component());
+        let own = own.iter().map(|(c, factor)| c.deviation(scene, h, *factor));
+        let vector = (!gravity.is_empty()).then(|| channels::gravity(scene, &gravity));
+        let fitted = own.chain(vector.flatten());
         Self {
+            plain: fit.plain,
+            numbers: fit.numbers,
+            equivalent: Vec::new(),
             deviations: known.into_iter().flatten().chain(fitted).collect(),
             worst: fit.residuals.amax(),
             left: fit.residuals.norm() / model.residuals.norm(),
@@ -214,9 +242,14 @@ impl Explanation {
 
     fn found(self, race: &Race, all: &[Transition]) -> Found {
         let defects = defects_of_all(race.replay, &self.candidate, all);
+        let left = near::left(race, all, &self.candidate, &defects, self.deviations);
+        let equivalent = self.equivalent;
         Found {
             identity: None,
-            explained: near::left(race, all, &self.candidate, &defects, self.deviations),
+            explained: left.map(|explained| Explained {
+                equivalent,
+                ..explained
+            }),
         }
     }
 
@@ -249,32 +282,50 @@ fn fitted(question: &Question, race: &Race) -> Option<Explanation> {
         let models: Vec<(Model, Vec<Slope>)> = bases.filter_map(sloped).collect();
         if group.members {
             let single = models.par_iter().map(|(model, _)| of_one_member(model));
-            let single: Vec<Option<Explanation>> = single.collect();
-            if let Some(fit) = single.into_iter().flatten().next() {
-                return Some(fit);
+            let single: Vec<Vec<Explanation>> = single.collect();
+            if let Some(best) = best_of(single.into_iter().flatten()) {
+                return Some(best);
             }
         }
         for size in group.sizes {
             let fits = models
                 .par_iter()
                 .map(|(model, slopes)| explanations(model, slopes, size));
-            for fits in fits.collect::<Vec<_>>() {
-                let (exact, rough): (Vec<_>, Vec<_>) =
-                    fits.into_iter().partition(Explanation::is_exact);
-                let others: Vec<String> = exact.iter().skip(1).map(Explanation::sentence).collect();
-                if let Some(first) = exact.into_iter().next() {
-                    return Some(first.or(&others));
-                }
-                let rough = rough.into_iter().filter(|_| size == 1);
-                best = best
-                    .into_iter()
-                    .chain(rough)
-                    .min_by(|a, b| a.left.total_cmp(&b.left));
+            let (exact, rough): (Vec<_>, Vec<_>) = (fits.flatten())
+                .collect::<Vec<_>>()
+                .into_iter()
+                .partition(Explanation::is_exact);
+            if let Some(best) = best_of(exact) {
+                return Some(best);
             }
+            let rough = rough.into_iter().filter(|fit| fit.deviations.len() == 1);
+            let all = best.into_iter().chain(rough);
+            best = all.min_by(|a, b| a.left.total_cmp(&b.left));
         }
     }
     // What is only near the truth is near no scheme.
     best.filter(|fit| fit.left <= LEFT && near::is_near(question, race, &fit.candidate))
+}
+
+/// The first of several that explain equally well, one of plain numbers if there is any, with the others beside it.
+fn best_of(exact: impl IntoIterator<Item = Explanation>) -> Option<Explanation> {
+    let mut exact: Vec<Explanation> = exact.into_iter().collect();
+    // Gravity of another direction is three numbers, which one is before.
+    let rank = |explanation: &Explanation| (!explanation.plain, explanation.numbers);
+    exact.sort_by_key(rank);
+    let mut exact = exact.into_iter();
+    let mut first = exact.next()?;
+    let best = rank(&first);
+    let mut others = Vec::new();
+    for other in exact.take_while(|other| rank(other) == best) {
+        let (scheme, own) = (other.candidate.label(), first.candidate.label());
+        if scheme == own {
+            others.push(other.sentence());
+        } else if !first.equivalent.contains(&scheme) {
+            first.equivalent.push(scheme);
+        }
+    }
+    Some(first.or(&others))
 }
 
 /// What a scheme leaves at a few transitions.
@@ -299,8 +350,13 @@ fn model<'a>(question: &Question<'a>, race: &Race<'a>, base: Base) -> Option<Mod
 /// Fits with this many factors, in the order of preference: all of one, the most promising of several.
 fn explanations(model: &Model, slopes: &[Slope], size: usize) -> Vec<Explanation> {
     let switches = |set: &[&Slope]| set.iter().any(|slope| slope.channel.switches());
-    let sets = sets(slopes.len(), size).into_iter();
-    let sets = sets.map(|set| set.into_iter().map(|k| &slopes[k]).collect::<Vec<_>>());
+    // The components of gravity are one vector.
+    let (gravity, own): (Vec<&Slope>, Vec<&Slope>) = slopes
+        .iter()
+        .partition(|slope| slope.channel.is_component());
+    let sets = sets(own.len(), size).into_iter();
+    let sets = sets.map(|set| set.into_iter().map(|k| own[k]).collect::<Vec<_>>());
+    let sets = sets.chain((size == 1 && !gravity.is_empty()).then_some(gravity));
     let alone = sets.filter(|set| size == 1 || !switches(set));
     let sized = alone
         .filter_map(|set| Some((model.predicted(&set)?, set)))
@@ -316,11 +372,44 @@ fn explanations(model: &Model, slopes: &[Slope], size: usize) -> Vec<Explanation
         sets.sort_by_key(|(place, _)| *place);
     }
     let fits = sets.iter().filter_map(|(_, (_, set))| model.fit(set));
+    let fits: Vec<Fit> = fits.collect();
+    let exact = |fits: &[Fit]| fits.iter().any(|fit| fit.residuals.amax() <= FIT);
+    let fits = match size {
+        1 => fits,
+        _ if exact(&fits) => fits,
+        _ => grown(model, &own, size),
+    };
+    let fits = fits.into_iter();
     fits.map(|fit| Explanation::new(model, fit)).collect()
 }
 
-/// The fit of one spring or particle, of those where the scheme is off most.
-fn of_one_member(model: &Model) -> Option<Explanation> {
+/// Fits that grow by one factor at a time from the best single ones: what a factor far from 1 does is not linear.
+fn grown(model: &Model, slopes: &[&Slope], size: usize) -> Vec<Fit> {
+    let slopes = slopes.iter().filter(|slope| !slope.channel.switches());
+    let channels: Vec<Channel> = slopes.clone().map(|slope| slope.channel).collect();
+    let nearest = |mut fits: Vec<Fit>| {
+        fits.sort_by(|a, b| a.residuals.norm().total_cmp(&b.residuals.norm()));
+        fits.truncate(GROWN);
+        fits
+    };
+    let mut singles: Vec<_> = slopes
+        .filter_map(|slope| Some((model.predicted(&[slope])?, slope)))
+        .collect();
+    singles.sort_by(|a, b| a.0.total_cmp(&b.0));
+    singles.truncate(TRIED);
+    let fits = singles.iter().filter_map(|(_, slope)| model.fit(&[slope]));
+    let mut fits = nearest(fits.collect());
+    for _ in 1..size {
+        let larger = fits
+            .iter()
+            .flat_map(|fit| model.grown(fit, &channels, GROWN));
+        fits = nearest(larger.collect());
+    }
+    fits
+}
+
+/// The fits of one spring, hinge or particle, of those where the scheme is off most.
+fn of_one_member(model: &Model) -> Vec<Explanation> {
     let scene = model.scene;
     let mut off = vec![0.0_f64; scene.particles.len()];
     for (i, residual) in model.residuals.iter().enumerate() {
@@ -335,8 +424,9 @@ fn of_one_member(model: &Model) -> Option<Explanation> {
         .chain(channels::of_hinges(scene, &particles))
         .chain(channels::of_particles(scene, &particles));
     let members: Vec<Channel> = members.filter(|channel| channel.is_in(scene)).collect();
-    let fits = explanations(model, &model.slopes(&members)?, 1);
-    fits.into_iter().find(Explanation::is_exact)
+    let slopes = model.slopes(&members).unwrap_or_default();
+    let fits = explanations(model, &slopes, 1).into_iter();
+    fits.filter(Explanation::is_exact).collect()
 }
 
 /// All sets of this many of `n` places, in order.

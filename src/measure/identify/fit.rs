@@ -72,6 +72,10 @@ pub(super) struct Fit {
     pub(super) candidate: Candidate,
     pub(super) factors: Vec<(Channel, f64)>,
     pub(super) residuals: DVector<f64>,
+    /// Whether all factors, or the values they make, are numbers that a person would have written.
+    pub(super) plain: bool,
+    /// How many factors were fitted; some may have been found to be 1.
+    pub(super) numbers: usize,
 }
 
 impl<'a> Model<'a> {
@@ -115,6 +119,42 @@ impl<'a> Model<'a> {
         suiting.map(|channel| self.slope(*channel)).collect()
     }
 
+    /// The fits with one factor more, from where this one ends: the `most` that the linear model finds best there.
+    pub(super) fn grown(&self, fit: &Fit, channels: &[Channel], most: usize) -> Vec<Fit> {
+        let own =
+            (0..fit.factors.len()).map(|place| self.slope_at(&fit.factors, &fit.residuals, place));
+        let Some(own) = own.collect::<Option<Vec<DVector<f64>>>>() else {
+            return Vec::new();
+        };
+        let new = |channel: &&Channel| fit.factors.iter().all(|(own, _)| own != *channel);
+        let larger = channels.iter().filter(new).filter_map(|channel| {
+            let mut factors = fit.factors.clone();
+            factors.push((*channel, 1.0));
+            let slope = self.slope_at(&factors, &fit.residuals, factors.len() - 1)?;
+            let slopes = [&own[..], &[slope]].concat();
+            Some((left(&slopes, &fit.residuals)?, factors, slopes))
+        });
+        let mut larger: Vec<_> = larger.collect();
+        larger.sort_by(|a, b| a.0.total_cmp(&b.0));
+        larger.truncate(most);
+        let fits = larger.into_iter().filter_map(|(_, factors, slopes)| {
+            self.descend(factors, slopes, fit.residuals.clone())
+        });
+        fits.collect()
+    }
+
+    /// How residuals change with one of these factors.
+    fn slope_at(
+        &self,
+        factors: &[(Channel, f64)],
+        residuals: &DVector<f64>,
+        place: usize,
+    ) -> Option<DVector<f64>> {
+        let mut moved = factors.to_vec();
+        moved[place].1 += STEP;
+        Some((self.residuals_at(&moved)? - residuals) / STEP)
+    }
+
     pub(super) fn slope(&self, channel: Channel) -> Option<Slope> {
         let moved = self.residuals_at(&[(channel, 1.0 + STEP)])?;
         let slope = (moved - self.unvaried(channel)?) / STEP;
@@ -133,16 +173,25 @@ impl<'a> Model<'a> {
     /// What the linear model leaves of the difference.
     pub(super) fn predicted(&self, set: &[&Slope]) -> Option<f64> {
         let slopes: Vec<DVector<f64>> = set.iter().map(|s| s.slope.clone()).collect();
-        let step = least_squares(&slopes, &self.residuals)?;
-        Some((&self.residuals - DMatrix::from_columns(&slopes) * step).norm())
+        left(&slopes, &self.residuals)
     }
 
     /// The factors of these channels, from the scene's own numbers; None where they are none. One that switches is
     /// fitted alone.
     pub(super) fn fit(&self, set: &[&Slope]) -> Option<Fit> {
-        let mut factors: Vec<(Channel, f64)> = set.iter().map(|s| (s.channel, 1.0)).collect();
-        let mut slopes: Vec<DVector<f64>> = set.iter().map(|s| s.slope.clone()).collect();
-        let mut residuals = self.unvaried(factors.first()?.0)?;
+        let factors: Vec<(Channel, f64)> = set.iter().map(|s| (s.channel, 1.0)).collect();
+        let slopes = set.iter().map(|s| s.slope.clone()).collect();
+        let residuals = self.unvaried(factors.first()?.0)?;
+        self.descend(factors, slopes, residuals)
+    }
+
+    /// The fit from these factors, where residuals have these slopes.
+    fn descend(
+        &self,
+        mut factors: Vec<(Channel, f64)>,
+        mut slopes: Vec<DVector<f64>>,
+        mut residuals: DVector<f64>,
+    ) -> Option<Fit> {
         for taken in 0..STEPS {
             let mut step = least_squares(&slopes, &residuals)?;
             let here = residuals.norm();
@@ -173,11 +222,28 @@ impl<'a> Model<'a> {
             }
         }
         // A number that a person would have written is taken for the one meant, if it does as well.
-        let rounded: Vec<(Channel, f64)> = factors.iter().map(|&(c, f)| (c, plain(f))).collect();
-        if let Some(plain) = self.residuals_at(&rounded)
-            && plain.amax() <= FIT
-        {
-            (factors, residuals) = (rounded, plain);
+        let mut plain = true;
+        for (place, slope) in slopes.iter().enumerate() {
+            let (channel, factor) = factors[place];
+            let within = FIT / slope.norm();
+            let h = self.replay.rows.timestep;
+            let rounded = channel
+                .rounded(self.scene, h, factor, within)
+                .and_then(|rounded| {
+                    let mut factors = factors.clone();
+                    factors[place].1 = rounded;
+                    let residuals = self.residuals_at(&factors)?;
+                    (residuals.amax() <= FIT).then_some((factors, residuals))
+                });
+            plain &= rounded.is_some();
+            if let Some(rounded) = rounded {
+                (factors, residuals) = rounded;
+            }
+        }
+        // What is as the scene has it is no deviation.
+        factors.retain(|(channel, factor)| channel.switches() || *factor != 1.0);
+        if factors.is_empty() {
+            return None;
         }
         let says = |(channel, factor): &(Channel, f64)| {
             factor.is_finite() && !(channel.switches() && factor.abs() < NOTHING)
@@ -187,18 +253,16 @@ impl<'a> Model<'a> {
             candidate: self.base.varied(self.scene, &factors)?,
             factors,
             residuals,
+            plain,
+            numbers: slopes.len(),
         })
     }
 }
 
-/// The number of few digits that a fitted one is within rounding of.
-fn plain(factor: f64) -> f64 {
-    let rounded: f64 = format!("{factor:.6}").parse().unwrap_or(factor);
-    if (rounded - factor).abs() <= 1e-9 {
-        rounded
-    } else {
-        factor
-    }
+/// What the linear model leaves.
+fn left(slopes: &[DVector<f64>], residuals: &DVector<f64>) -> Option<f64> {
+    let step = least_squares(slopes, residuals)?;
+    Some((residuals - DMatrix::from_columns(slopes) * step).norm())
 }
 
 /// The steps that make slopes times them the residuals, in the sense of least squares; None where slopes

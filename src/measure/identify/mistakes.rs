@@ -47,6 +47,8 @@ pub enum Wrong {
     Physics(fn(&Scene) -> Option<ParticleSystem>),
     /// The length of the step, in any method: this many h.
     Length(f64),
+    /// How any method is applied, where particles are driven.
+    Applied(Around),
 }
 
 /// The mistakes that can be made in this scene: wrong steps once, wrong physics and lengths with
@@ -55,17 +57,20 @@ pub fn mistakes(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
     let steps = MISTAKES.iter().filter_map(|m| m.as_step(system));
     let mut candidates: Vec<Candidate> = steps.collect();
     for mistake in MISTAKES {
-        let length = match mistake.wrong {
-            Wrong::Length(factor) => factor,
-            _ => 1.0,
+        let (length, around) = match mistake.wrong {
+            Wrong::Length(factor) => (factor, None),
+            Wrong::Applied(around) => (1.0, Some(around)),
+            _ => (1.0, None),
         };
         let Some(wrong) = mistake.forces(scene) else {
             continue;
         };
-        let methods = Candidate::plain(&wrong, 1);
-        candidates.extend(methods.chain(treated(&wrong)).map(|candidate| {
+        let methods = Candidate::plain(&wrong, 1).chain(treated(&wrong));
+        // A step of one force has no other times.
+        let methods = methods.filter(|candidate| around.is_none() || candidate.has_stages());
+        candidates.extend(methods.map(|candidate| {
             let id = format!("{}({})", mistake.id, candidate.id);
-            let candidate = candidate.stretched(length);
+            let candidate = candidate.stretched(length).around(around);
             candidate.named(id, mistake.says).mistaken()
         }));
     }
@@ -89,6 +94,7 @@ impl Mistake {
             }
             Wrong::Physics(build) => build(scene),
             Wrong::Length(_) => Some(ParticleSystem::new(scene)),
+            Wrong::Applied(_) => (!scene.driven.is_empty()).then(|| ParticleSystem::new(scene)),
         }
     }
 

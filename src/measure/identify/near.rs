@@ -76,6 +76,7 @@ pub(super) fn left(
         residual: quantile(defects, 0.5),
         largest_at: worst.map(|(t, _)| race.replay.rows.steps[t.from]),
         deviations,
+        equivalent: Vec::new(),
     };
     explained.residual.is_finite().then_some(explained)
 }

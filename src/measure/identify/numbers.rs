@@ -3,7 +3,8 @@
 
 use super::words::{digits, times};
 use crate::scene::model::{
-    AIR, BENDING, GRAVITATIONAL, PARTICLES, Part, Row, SOLVER, SPRINGS, TRIANGLES, ValueKind, WIND,
+    AIR, BENDING, DRIVEN, GRAVITATIONAL, PARTICLES, Part, Row, SINE, SOLVER, SPRINGS, TRIANGLES,
+    ValueKind, WIND,
 };
 use crate::scene::{Scene, Value};
 
@@ -27,15 +28,20 @@ pub(super) enum Number {
     Charge,
     Wind,
     Attraction,
+    /// The amplitude of driven particles' sines, their rate and phase; the velocity of those that move steadily.
+    Amplitude,
+    Omega,
+    Phase,
+    Steady,
     Mass,
 }
 use Number::{
-    AirDrag, AirVelocity, Attraction, Bend, BendDamping, Charge, Cubic, Damping, Drag, Gravity,
-    Mass, QuadraticDrag, RestAngle, RestLength, Stiffness, Wind,
+    AirDrag, AirVelocity, Amplitude, Attraction, Bend, BendDamping, Charge, Cubic, Damping, Drag,
+    Gravity, Mass, Omega, Phase, QuadraticDrag, RestAngle, RestLength, Steady, Stiffness, Wind,
 };
 
 /// In the order in which they are suspected.
-pub(super) const NUMBERS: [Number; 16] = [
+pub(super) const NUMBERS: [Number; 20] = [
     Gravity,
     Stiffness,
     Damping,
@@ -51,6 +57,10 @@ pub(super) const NUMBERS: [Number; 16] = [
     Charge,
     Wind,
     Attraction,
+    Amplitude,
+    Omega,
+    Phase,
+    Steady,
     Mass,
 ];
 
@@ -73,6 +83,10 @@ impl Number {
             Charge => ("charge", &PARTICLES, "charge"),
             Wind => ("wind", &WIND, "strength"),
             Attraction => ("gravitational", &GRAVITATIONAL, "G"),
+            Amplitude => ("driven.sine.amplitude", &SINE, "amplitude"),
+            Omega => ("driven.sine.omega", &SINE, "omega"),
+            Phase => ("driven.sine.phase", &SINE, "phase"),
+            Steady => ("driven.velocity", &DRIVEN, "velocity"),
             Mass => ("mass", &PARTICLES, "mass"),
         }
     }
@@ -98,12 +112,25 @@ impl Number {
         self.rows().filter(given).last()
     }
 
-    /// The unit that its value is written in.
-    pub(super) fn unit(self) -> &'static str {
+    /// A value in its unit, as people write it.
+    pub(super) fn written(self, value: f64, count: usize) -> String {
+        let value = digits(value, count);
         match self.rows().next().map(|row| &row.kind) {
-            Some(ValueKind::Number(bounds) | ValueKind::Numbers(_, bounds)) => bounds.unit,
-            _ => "",
+            Some(ValueKind::Number(bounds) | ValueKind::Numbers(_, bounds))
+                if bounds.unit != "a pure number" =>
+            {
+                format!("{value} {}", bounds.unit)
+            }
+            _ => value,
         }
+    }
+
+    /// Whether it is the length of a vector.
+    pub(super) fn is_vector(self) -> bool {
+        let kinds = self.rows().map(|row| &row.kind);
+        kinds
+            .last()
+            .is_some_and(|kind| !matches!(kind, ValueKind::Number(_)))
     }
 
     /// In the member of this index; 0 where there is none.
@@ -183,6 +210,9 @@ impl Number {
             Wind => "the strength of the wind".to_owned(),
             Bend => "the bending stiffness".to_owned(),
             BendDamping => "the bending damping".to_owned(),
+            Omega => "the rate of the phase".to_owned(),
+            Steady => "the velocity of what is driven".to_owned(),
+            Attraction => "the constant of attraction".to_owned(),
             _ => format!("the {}", self.key().2.replace('_', " ")),
         }
     }
@@ -195,6 +225,7 @@ impl Number {
             (Stiffness, -1.0) => "springs push where they should pull".to_owned(),
             (Stiffness, _) => format!("springs act with {times} their stiffness"),
             (Damping, 0.0) => "the springs' dampers are missing".to_owned(),
+            (Damping, -1.0) => "the springs' dampers have the wrong sign".to_owned(),
             (Damping, _) => format!("dampers act with {times} the scene's damping"),
             (RestLength, 0.0) => "the rest length of springs is taken for 0".to_owned(),
             (RestLength, _) => format!("springs have {times} their rest length"),
@@ -203,6 +234,17 @@ impl Number {
             (AirVelocity, 0.0) => "drag acts as if the air were at rest".to_owned(),
             (AirVelocity, -1.0) => "the air moves the other way".to_owned(),
             (AirVelocity, _) => format!("the air moves with {}", self.beside(scene, factor)),
+            (Steady, 0.0) => "what is driven at a velocity does not move".to_owned(),
+            (Steady, -1.0) => "what is driven at a velocity moves the other way".to_owned(),
+            (Phase, 0.0) => "the phase of the drive is taken for 0".to_owned(),
+            (Amplitude, -1.0) => "the drive swings the other way".to_owned(),
+            (Amplitude | Omega | Phase | Steady, _) => {
+                let noun = self
+                    .noun()
+                    .replace(" of the phase", "")
+                    .replace(" of what is driven", "");
+                format!("{noun} of the drive is {}", self.beside(scene, factor))
+            }
             (QuadraticDrag | AirDrag, 0.0) => format!("{} is missing", self.noun()),
             (QuadraticDrag | AirDrag, _) => format!("{} is {times} the scene's", self.noun()),
             (Bend, 0.0) => "hinges do not resist bending".to_owned(),
@@ -211,7 +253,12 @@ impl Number {
             (BendDamping, 0.0) => "the hinges' dampers are missing".to_owned(),
             (BendDamping, _) => format!("the hinges' dampers act with {times} their damping"),
             (RestAngle, 0.0) => "the rest angle of hinges is taken for 0".to_owned(),
-            (RestAngle, _) => format!("hinges have {times} their rest angle"),
+            (RestAngle, _) => {
+                let times = self
+                    .beside(scene, factor)
+                    .replace("the scene's", "their rest angle");
+                format!("hinges have {times}")
+            }
             (Charge, 0.0) => "the magnetic force is missing".to_owned(),
             (Charge, -1.0) => "the magnetic force has the wrong sign: it is q v x B".to_owned(),
             (Charge, _) => format!("the magnetic force is {times} the scene's"),
@@ -221,12 +268,24 @@ impl Number {
         }
     }
 
-    /// "half the scene's: 4.905 for 9.81 m/s²", of a number that a scene has once.
+    /// Its value where all that have it have the same.
+    pub(super) fn common(self, scene: &Scene) -> Option<f64> {
+        let there = self.values(scene).into_iter().filter(|value| *value != 0.0);
+        let there: Vec<f64> = there.collect();
+        let first = *there.first()?;
+        there.iter().all(|value| *value == first).then_some(first)
+    }
+
+    /// "half the scene's: 4.905 for 9.81 m/s²", without values where a scene has several.
     pub(super) fn beside(self, scene: &Scene, factor: f64) -> String {
-        let value = self.value(scene, 0).abs();
-        let [found, right] = [factor * value, value].map(|value| digits(value, 6));
-        let (times, unit) = (times(factor), self.unit());
-        format!("{times} the scene's: {found} for {right} {unit}")
+        let times = times(factor);
+        let Some(value) = self.common(scene) else {
+            return format!("{times} the scene's");
+        };
+        // Of a vector its length.
+        let value = if self.is_vector() { value.abs() } else { value };
+        let (found, right) = (digits(factor * value, 6), self.written(value, 6));
+        format!("{times} the scene's: {found} for {right}")
     }
 }
 

@@ -262,7 +262,7 @@ impl<'a> Replay<'a> {
     }
 
     /// Whether a number of a state, positions then velocities, is given: no scheme computes it.
-    fn is_driven(&self, i: usize) -> bool {
+    pub(super) fn is_driven(&self, i: usize) -> bool {
         let particle = i % self.rows.dim / 3;
         self.drives.iter().any(|drive| drive.particle == particle)
     }

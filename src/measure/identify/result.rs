@@ -82,8 +82,11 @@ pub struct Explained {
     pub residual: f64,
     /// The step that they leave most of, zero-based; null where rounding explains every step.
     pub largest_at: Option<u64>,
-    /// The fewest changes that explain the trajectory.
+    /// The fewest changes that explain the trajectory; where nothing does, those that lower the difference most.
     pub deviations: Vec<Deviation>,
+    /// Other schemes that as few changes explain it under, and as plain ones.
+    #[serde(default)]
+    pub equivalent: Vec<String>,
 }
 
 /// One thing that acts otherwise than the scene says.
@@ -91,7 +94,7 @@ pub struct Explained {
 pub struct Deviation {
     /// `gravity`, `springs.stiffness`, `springs.damping`, `springs.rest_length`, `springs.cubic`, `bending.stiffness`,
     /// `bending.rest_angle`, `bending.damping`, `drag`, `quadratic_drag`, `air_drag`, `air.velocity`, `charge`, `wind`,
-    /// `gravitational`, `mass`, `velocity`, `timestep`, `axis`, or what a known mistake changes.
+    /// `gravitational`, `driven.sine.amplitude`, `driven.sine.omega`, `driven.sine.phase`, `driven.velocity`, `mass`, `velocity`, `timestep`, `axis`, or what a known mistake changes.
     pub what: String,
     /// How many times the scene's; of a velocity, the factor of each step.
     pub factor: f64,

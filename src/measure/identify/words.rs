@@ -14,11 +14,12 @@ pub(super) fn digits(value: f64, count: usize) -> String {
 
 /// "half", "twice", "0.999 of".
 pub(super) fn times(factor: f64) -> String {
-    match factor {
+    let said = digits(factor, 6);
+    match said.parse().unwrap_or(factor) {
         0.5 => "half".to_owned(),
         2.0 => "twice".to_owned(),
-        0.0..=2.0 => format!("{} of", digits(factor, 6)),
-        _ => format!("{} times", digits(factor, 6)),
+        0.0..=2.0 => format!("{said} of"),
+        _ => format!("{said} times"),
     }
 }
 

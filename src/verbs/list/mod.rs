@@ -141,7 +141,7 @@ fn pair_table() -> Table {
 fn meant(mistake: &Mistake) -> &'static str {
     match mistake.wrong {
         Wrong::Step { meant, .. } => meant,
-        Wrong::Physics(_) | Wrong::Scaled | Wrong::Length(_) => "any",
+        Wrong::Physics(_) | Wrong::Scaled | Wrong::Length(_) | Wrong::Applied(_) => "any",
     }
 }
 

@@ -4,7 +4,9 @@ use super::budget;
 use super::plan::{Case, Plan};
 use super::program::begin_with;
 use crate::integrators::Settings;
-use crate::measure::identify::{Fault, Found, Question, first_fault, identify, moved_anchor};
+use crate::measure::identify::{
+    Deviation, Fault, Found, Question, first_fault, identify, moved_anchor,
+};
 use crate::physics::ParticleSystem;
 use crate::trajectory::{Rows, Trajectory};
 use std::borrow::Cow;
@@ -40,11 +42,25 @@ pub fn of_rows(plan: &Plan, rows: &Rows) -> (Found, Option<Fault>) {
     // A fixed particle must not move under any scheme.
     let moved = moved_anchor(plan.scene, rows);
     let found = identify(&question);
+    let moved = moved.map(|fault| driven_as(fault, &found));
     let fault = moved.or_else(|| {
         let identity = found.identity.as_ref()?;
         first_fault(&question, identity)
     });
     (found, fault)
+}
+
+/// The fault of a driven particle, with the number of its motion that is wrong, where forces tell it.
+fn driven_as(fault: Fault, found: &Found) -> Fault {
+    let deviations = found.explained.iter().flat_map(|e| &e.deviations);
+    let drives = |d: &&Deviation| d.what.starts_with("driven.");
+    match deviations.into_iter().find(drives) {
+        Some(deviation) => Fault {
+            explanation: format!("particle {}: {}", fault.particle, deviation.sentence),
+            ..fault
+        },
+        None => fault,
+    }
 }
 
 /// The rows, preceded by the scene's start where they begin a few steps later: those steps are replayed, too.

@@ -5,7 +5,7 @@ use crate::testkit::{distance, driven, everything, is_its_own, part, swinging_tr
 use springcheck::integrators::{Settings, fixed};
 use springcheck::measure::identify::{Candidate, MISTAKES, Wrong, first_fault, identify, mistakes};
 use springcheck::physics::{ParticleSystem, State, System};
-use springcheck::scene::{DampingModel, Scene};
+use springcheck::scene::{DampingModel, Knots, Scene};
 use springcheck::trajectory::Precision;
 use std::collections::BTreeMap;
 
@@ -92,7 +92,21 @@ fn every_mistake_can_be_made_and_speaks() {
         let (_, _, wrong) = built(&scene(model));
         wrong.into_iter().map(|c| c.id).collect::<Vec<_>>()
     };
-    let made = [ids(DampingModel::Axial), ids(DampingModel::Isotropic)].concat();
+    let mut table = scene(DampingModel::Axial);
+    table.driven[0].sine = None;
+    table.driven[0].table = Some(Knots(vec![
+        [0.0; 4],
+        [1.0, 0.1, 0.0, 0.0],
+        [2.0, 0.0, 0.0, 0.0],
+    ]));
+    let (_, _, tabled) = built(&table);
+    let tabled = tabled.into_iter().map(|c| c.id).collect();
+    let made = [
+        ids(DampingModel::Axial),
+        ids(DampingModel::Isotropic),
+        tabled,
+    ]
+    .concat();
     for mistake in MISTAKES {
         let own = |id: &&String| id.split('(').next() == Some(mistake.id);
         let forms = made.iter().filter(own).count();
@@ -101,6 +115,8 @@ fn every_mistake_can_be_made_and_speaks() {
                 assert!(springcheck::integrators::find(meant).is_some(), "{meant}");
                 1
             }
+            // Of methods that take forces at several times.
+            Wrong::Applied(_) => 4,
             _ => fixed().len(),
         };
         assert!(forms >= least, "{}: {forms}", mistake.id);

@@ -2,7 +2,7 @@
 
 use crate::measure::identify::{Fault, Quantity};
 use crate::scene::{Drive, Scene};
-use crate::trajectory::Rows;
+use crate::trajectory::{Precision, Rows};
 
 /// A fixed particle may be this many of its roundings away from where the scene has it: its own, and
 /// that of the file's number for it.
@@ -31,24 +31,13 @@ fn moved(
     by: Option<&Drive>,
 ) -> Option<Fault> {
     let t = rows.time(k);
-    let (expected, late) = match by {
-        // Another program's time is off by its rounding.
-        Some(drive) => {
-            let [position, velocity, _] = drive.at(t);
-            (position, velocity.map(|v| v.abs() * f64::EPSILON * t.abs()))
-        }
-        None => (scene.particles[particle].position, [0.0; 3]),
+    let expected = match by {
+        Some(drive) => drive.at(t)[0],
+        None => scene.particles[particle].position,
     };
     let at = &rows.x(k)[3 * particle..3 * particle + 3];
     let found = [at[0], at[1], at[2]];
-    let away = (0..3).any(|axis| {
-        let (place, x) = (&expected[axis], &found[axis]);
-        let rounding = rows.precision.half_unit(*place).max(f64::MIN_POSITIVE) + late[axis];
-        // A program in single precision puts it at the nearest single, whatever it prints.
-        let near = |place: f64| (x - place).abs() <= ROUNDINGS * rounding;
-        !near(*place) && !near(f64::from(*place as f32))
-    });
-    away.then(|| Fault {
+    is_away(rows, k, by, found, expected).then(|| Fault {
         step: rows.steps[k].saturating_sub(1),
         t_s: rows.steps[k].saturating_sub(1) as f64 * rows.timestep,
         particle,
@@ -56,7 +45,10 @@ fn moved(
         expected,
         found: found.map(|c| Some(c).filter(|c| c.is_finite())),
         explanation: match by {
-            Some(drive) => format!("particle {particle} is driven, but {}", otherwise(drive, rows)),
+            Some(drive) => {
+                let otherwise = otherwise(drive, rows, k);
+                format!("particle {particle} is driven, but {otherwise}")
+            }
             None => format!(
                 "particle {particle} is fixed in the scene, but moves: leave fixed particles out of \
                  every update"
@@ -65,11 +57,30 @@ fn moved(
     })
 }
 
+/// Whether a fixed or driven particle in row `k` is farther from a place than rounding explains.
+fn is_away(rows: &Rows, k: usize, by: Option<&Drive>, found: [f64; 3], expected: [f64; 3]) -> bool {
+    let computed = by.map_or([0.0; 3], |drive| {
+        // A program in single precision computes the motion so, whatever it prints.
+        let eps = match rows.precision {
+            Precision::Single | Precision::SingleDecimals(_) => f64::from(f32::EPSILON),
+            _ => f64::EPSILON,
+        };
+        drive.rounding(rows.time(k), rows.steps[k], eps)
+    });
+    (0..3).any(|axis| {
+        let (place, x) = (&expected[axis], &found[axis]);
+        let rounding = rows.precision.half_unit(*place).max(f64::MIN_POSITIVE) + computed[axis];
+        // A program in single precision puts it at the nearest single, whatever it prints.
+        let near = |place: f64| (x - place).abs() <= ROUNDINGS * rounding;
+        !near(*place) && !near(f64::from(*place as f32))
+    })
+}
+
 /// A position, m, at a time, s.
 type Way<'a> = &'a dyn Fn(f64) -> [f64; 3];
 
-/// How a driven particle moves that does not move as the scene says.
-fn otherwise(drive: &Drive, rows: &Rows) -> String {
+/// How a driven particle moves that in row `first` is not where the scene says.
+fn otherwise(drive: &Drive, rows: &Rows, first: usize) -> String {
     let h = rows.timestep;
     let [start, pos] = [drive.at(0.0)[0], drive.times(0.0).at(0.0)[0]];
     let less = |t: f64, from: [f64; 3]| {
@@ -80,7 +91,7 @@ fn otherwise(drive: &Drive, rows: &Rows) -> String {
         let moved = less(t, start);
         [0, 1, 2].map(|axis| pos[axis] + moved[axis])
     };
-    let ways: [(&str, Way); 7] = [
+    let ways: [(&str, Way); 8] = [
         (
             "stays at its `pos`: its displacement at time t is missing",
             &|_| pos,
@@ -102,6 +113,10 @@ fn otherwise(drive: &Drive, rows: &Rows) -> String {
             "is where its displacement alone has it: that is added to `pos`",
             &|t| less(t, pos),
         ),
+        (
+            "goes straight from row to row of its table, which it passes on a spline",
+            &|t| drive.unbent().at(t)[0],
+        ),
     ];
     let follows = |way: Way| {
         (1..rows.len()).all(|k| {
@@ -113,7 +128,12 @@ fn otherwise(drive: &Drive, rows: &Rows) -> String {
             })
         })
     };
-    let way = ways.iter().find(|(_, way)| follows(way));
+    // What the motion itself does is no other way.
+    let differs = |way: Way| {
+        let t = rows.time(first);
+        is_away(rows, first, Some(drive), way(t), drive.at(t)[0])
+    };
+    let way = ways.iter().find(|(_, way)| differs(way) && follows(way));
     let says = way.map_or("is not where its motion has it", |(says, _)| says);
     format!("{says}; at n h it is at `pos` plus its displacement at that time")
 }

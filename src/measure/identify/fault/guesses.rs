@@ -7,7 +7,7 @@ use super::super::channels::{self, Channel};
 use super::super::fit::{Base, Model};
 use super::super::mistakes::{MISTAKES, Mistake, Wrong};
 use super::super::numbers::Number::{
-    self, AirVelocity, Cubic, Damping, Gravity, RestLength, Stiffness, Wind,
+    self, AirVelocity, Bend, BendDamping, Damping, Gravity, RestAngle, RestLength, Stiffness, Wind,
 };
 use super::spot::Spot;
 use crate::integrators;
@@ -69,23 +69,31 @@ fn effects(spot: &Spot) -> Vec<Guess> {
     guesses
 }
 
-/// Each spring at the worst particle, alone.
+/// Each spring and hinge at the worst particle, alone: by its stiffness, its damping and what it is at rest at.
 fn springs(spot: &Spot) -> Vec<Guess> {
-    const SPRING: &[Number] = &[Stiffness, Cubic, Damping];
     let scene = spot.question.scene;
-    let whole = WRONG.map(|(factor, what)| (SPRING, factor, what));
-    let parts: [(&[Number], f64, &str); 3] = [
-        (&[Damping], 0.0, "lacks its damper"),
-        (&[Damping], -1.0, "has a damper of the wrong sign"),
-        (&[RestLength], 0.0, "has its rest length ignored"),
-    ];
+    let springs = channels::springs_at(scene, &[spot.worst]).into_iter();
+    let springs = springs.map(|id| (id, [Stiffness, Damping, RestLength], "rest length"));
+    let hinges = channels::hinges_at(scene, &[spot.worst]).into_iter();
+    let hinges = hinges.map(|id| (id, [Bend, BendDamping, RestAngle], "rest angle"));
     let mut guesses = Vec::new();
-    for id in channels::springs_at(scene, &[spot.worst]) {
+    for (id, [stiffness, damping, rest], at_rest) in springs.chain(hinges) {
+        let whole =
+            WRONG.map(|(factor, what)| (channels::forces(stiffness), factor, what.to_owned()));
+        let parts: [(&[Number], f64, String); 3] = [
+            (&[damping], 0.0, "lacks its damper".to_owned()),
+            (
+                &[damping],
+                -1.0,
+                "has a damper of the wrong sign".to_owned(),
+            ),
+            (&[rest], 0.0, format!("has its {at_rest} ignored")),
+        ];
         for (numbers, factor, what) in whole.iter().chain(&parts) {
             let there = numbers.iter().map(|number| Channel::One(*number, id));
             let there = there.filter(|channel| channel.is_in(scene));
             let factors: Vec<(Channel, f64)> = there.map(|channel| (channel, *factor)).collect();
-            let says = format!("{} {what}", channels::spring(scene, id));
+            let says = format!("{} {what}", channels::whole(scene, stiffness, id));
             if !factors.is_empty()
                 && let Some(wrong) = own(spot).varied(scene, &factors)
             {
@@ -169,6 +177,9 @@ fn mistakes(spot: &Spot) -> Vec<Guess> {
     let (scene, followed) = (spot.question.scene, spot.followed);
     let wrong = |mistake: &Mistake| match mistake.wrong {
         Wrong::Length(factor) => Some(followed.stretched(factor)),
+        Wrong::Applied(around) if !scene.driven.is_empty() => {
+            Some(followed.clone().around(Some(around)))
+        }
         _ => mistake.forces(scene).map(|system| followed.under(&system)),
     };
     MISTAKES

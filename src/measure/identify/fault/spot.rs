@@ -109,6 +109,7 @@ impl<'a> Spot<'a> {
     pub(super) fn difference(&self, quantity: Quantity, i: usize) -> f64 {
         match quantity {
             Quantity::Velocity if self.replay.rows.v.is_none() => 0.0,
+            _ if self.replay.is_driven(i) => 0.0,
             _ => self.found(quantity, i) - self.predicted(quantity)[i],
         }
     }

@@ -26,7 +26,23 @@ pub(super) fn drive_at_rest(scene: &Scene) -> Option<ParticleSystem> {
     driven(scene, Drive::still).filter(|_| ends)
 }
 
-fn driven(scene: &Scene, change: fn(&Drive) -> Drive) -> Option<ParticleSystem> {
+/// Driven particles that forces see a step late.
+pub(super) fn drive_late(scene: &Scene) -> Option<ParticleSystem> {
+    driven(scene, |drive| drive.late(scene.solver.timestep))
+}
+
+/// Driven particles that forces see a step ahead.
+pub(super) fn drive_early(scene: &Scene) -> Option<ParticleSystem> {
+    driven(scene, |drive| drive.late(-scene.solver.timestep))
+}
+
+/// Tables passed straight from row to row.
+pub(super) fn drive_unbent(scene: &Scene) -> Option<ParticleSystem> {
+    let table = scene.driven.iter().any(|driven| driven.table.is_some());
+    driven(scene, Drive::unbent).filter(|_| table)
+}
+
+fn driven(scene: &Scene, change: impl Fn(&Drive) -> Drive) -> Option<ParticleSystem> {
     (!scene.driven.is_empty()).then(|| ParticleSystem::new(scene).driven_as(change))
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Mistake, Wrong, physics, springs};
 use crate::integrators::{Coefficients, DampingTreatment, ImplicitScheme, Stage, StepError};
-use crate::measure::identify::altered::OneStep;
+use crate::measure::identify::altered::{Altered, Altering, OneStep};
 use crate::measure::identify::step::{Place, Step, plus};
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
@@ -231,6 +231,30 @@ pub static MISTAKES: &[Mistake] = &[
         physics::drive_at_rest,
         &[("driven.velocity", 0.0)],
         "a driven particle moves, but dampers take it to be at rest: they resist the velocity relative to its own",
+    ),
+    physics(
+        "drive_late",
+        physics::drive_late,
+        &[],
+        "forces see a driven particle where it was one step before: at time t it is at `pos` plus its displacement at t",
+    ),
+    physics(
+        "drive_early",
+        physics::drive_early,
+        &[],
+        "forces see a driven particle where it is one step later: at time t it is at `pos` plus its displacement at t",
+    ),
+    physics(
+        "drive_straight",
+        physics::drive_unbent,
+        &[],
+        "forces see a driven particle go straight from row to row of its table: it passes them on a natural cubic spline",
+    ),
+    row(
+        "drive_held",
+        Wrong::Applied(|step, f, h, _, s| step(&Altered::new(f, Altering::TimeHeld(s.t)), h, s)),
+        &[],
+        "all stages of a step see a driven particle where it is at its start: each stage has a time of its own",
     ),
     scaled(
         "damping_sign",

@@ -32,11 +32,17 @@ pub fn sentence(outcome: &Outcome) -> Option<String> {
         None => format!("step by step it is {scheme}"),
         Some(Undecided::DataTooCoarse) => {
             let why = "which at this step and with these digits cannot be told from";
-            format!("step by step it is {scheme}, {why} {}", equivalent(found))
+            format!(
+                "step by step it is {scheme}, {why} {}",
+                listed_names(&found.equivalent)
+            )
         }
         Some(Undecided::SameMap) => {
             let why = "which here is the same as";
-            format!("step by step it is {scheme}, {why} {}", equivalent(found))
+            format!(
+                "step by step it is {scheme}, {why} {}",
+                listed_names(&found.equivalent)
+            )
         }
     };
     (!itself).then_some(text)
@@ -56,27 +62,39 @@ fn share(found: &Identity) -> String {
 
 /// What a trajectory deviates in.
 fn explained(explained: &Explained) -> String {
+    let says: Vec<&str> = explained
+        .deviations
+        .iter()
+        .map(|d| d.sentence.as_str())
+        .collect();
+    let says = words::one_line(&says.join(", and "));
+    let residual = words::short_sci(explained.residual);
     let Some(scheme) = &explained.scheme else {
-        return "no known scheme explains its steps".to_owned();
+        return match says.as_str() {
+            "" => "no known scheme explains its steps".to_owned(),
+            says => format!(
+                "no known scheme explains its steps; least is left if {says}: {residual} of rounding"
+            ),
+        };
     };
     if scheme == TRUTH {
         return "step by step it is exact to rounding: it steps finer than its rows lie apart, and no scheme can be \
                 told from them"
             .to_owned();
     }
-    let says: Vec<&str> = explained
-        .deviations
-        .iter()
-        .map(|d| d.sentence.as_str())
-        .collect();
     let left = explained.largest_at.map_or(String::new(), |step| {
-        let residual = words::short_sci(explained.residual);
         format!(" (what is left is {residual} of rounding, and largest at step {step})")
     });
+    let others = match explained.equivalent.as_slice() {
+        [] => String::new(),
+        others => format!(
+            "; the data cannot tell the scheme from {}",
+            listed_names(others)
+        ),
+    };
     format!(
-        "step by step it is {}, but {}{left}",
+        "step by step it is {}, but {says}{left}{others}",
         words::one_line(scheme),
-        words::one_line(&says.join(", and "))
     )
 }
 
@@ -95,10 +113,10 @@ fn scheme(found: &Identity, timestep: f64) -> String {
     }
 }
 
-fn equivalent(found: &Identity) -> String {
-    let names = found.equivalent.iter().take(MAX_NAMED);
+fn listed_names(all: &[String]) -> String {
+    let names = all.iter().take(MAX_NAMED);
     let mut names: Vec<String> = names.map(|name| words::one_line(name)).collect();
-    let more = found.equivalent.len() - names.len();
+    let more = all.len() - names.len();
     if more > 0 {
         names.push(format!("{more} more"));
     }
@@ -156,7 +174,7 @@ pub fn verdict(report: &Report) -> Option<String> {
         let says = explained(why);
         return Some(match says.strip_prefix("step by step it is ") {
             Some(says) => format!("{name} is {says}"),
-            None => format!("no known scheme explains {name}"),
+            None => says.replacen("its steps", &name, 1),
         });
     };
     let scheme = scheme(found, outcome.timestep);
@@ -169,11 +187,11 @@ pub fn verdict(report: &Report) -> Option<String> {
         return Some(match found.undecided {
             None => format!("{name} follows {scheme} throughout{says}"),
             Some(Undecided::SameMap) => {
-                let same = equivalent(found);
+                let same = listed_names(&found.equivalent);
                 format!("{name} follows {scheme} throughout{says}; here it is the same as {same}")
             }
             Some(Undecided::DataTooCoarse) => {
-                let others = equivalent(found);
+                let others = listed_names(&found.equivalent);
                 format!("{name} follows {scheme}{says}; the data cannot tell it from {others}")
             }
             Some(Undecided::Near) => format!("{name} is nearly {scheme}: off by {}", share(found)),
