@@ -210,9 +210,20 @@ pub(super) fn treated(system: &ParticleSystem) -> Vec<Candidate> {
         .iter()
         .filter(|_| system.kinds().has(ForceKinds::GYROSCOPIC));
     let treated = TREATED.iter().chain(turned);
-    treated
-        .map(|(id, meant, says, step)| Candidate::new(&forces, *step, meant).named(*id, *says))
-        .collect()
+    let named = |(id, meant, says, step): &(&'static str, &'static str, &str, Step)| {
+        let says = said_of(system.kinds(), says);
+        Candidate::new(&forces, *step, meant).named(*id, says)
+    };
+    treated.map(named).collect()
+}
+
+/// What a treatment of dampers does, where the only force that depends on velocity may be the magnetic one.
+fn said_of(kinds: ForceKinds, says: &str) -> String {
+    if kinds.damps() {
+        return says.to_owned();
+    }
+    let says = says.replace("dampers and drag are", "the magnetic force is");
+    says.replace("dampers", "magnetic force")
 }
 
 /// Every composed scheme in this scene, the likelier ones first.
@@ -238,9 +249,10 @@ pub fn composed(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
     }
     all.extend(damped(scene));
     if let Some(newton) = newton.filter(|_| system.kinds().depends_on_velocity()) {
+        let says = "dampers and drag are solved implicitly, at the velocity after the kick";
         all.push(around(implicit_damping, newton, "symplectic_euler").named(
             "symplectic_euler+implicit_damping",
-            "dampers and drag are solved implicitly, at the velocity after the kick",
+            said_of(system.kinds(), says),
         ));
     }
     if let Some(euler) = integrators::find("symplectic_euler") {
