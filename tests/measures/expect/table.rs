@@ -33,6 +33,7 @@ const LEFT_OUT: &[&str] = &[
     "explained.residual",
     "explained.largest_at",
     "explained.deviations",
+    "explained.equivalent",
     "remarks",
 ];
 
