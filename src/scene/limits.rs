@@ -69,11 +69,23 @@ impl Bounds {
         } else if low == 0.0 && x < 0.0 {
             format!("a number of at least 0 ({unit})")
         } else if x > high {
-            format!("at most {high:e} ({unit})")
+            format!("at most {} ({unit})", plain(high))
         } else {
-            format!("at least {low:e} ({unit})")
+            format!("at least {} ({unit})", plain(low))
         };
-        Refusal::because(format!("expected {expected}, found {number}"), "")
+        let help = match unit {
+            "rad" => "angles are in radians: 180 degrees are 3.14159",
+            _ => "",
+        };
+        Refusal::because(format!("expected {expected}, found {number}"), help)
+    }
+}
+
+/// A bound as people write it: `3.14159`, `1e12`.
+fn plain(bound: f64) -> String {
+    match bound.abs() {
+        b if (1e-3..1e4).contains(&b) => format!("{}", (bound * 1e5).round() / 1e5),
+        _ => format!("{bound:e}"),
     }
 }
 

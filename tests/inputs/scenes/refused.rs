@@ -173,6 +173,7 @@ const PARTS: &[Row] = &[
     ("triangle of two corners", "triangles: [{particle_ids: »[0, 1], air_drag: 1}]", &["a list of 3 numbers, found 2"]),
     ("triangle of nobody", "triangles: [{particle_ids: [0, 1, »7], air_drag: 1}]", &["triangles[0].particle_ids[2]", "a particle from 0 to 1, found 7"]),
     ("triangle with a corner twice", "triangles: [{particle_ids: »[0, 1, 0], air_drag: 1}]", &["triangles[0].particle_ids", "three different particles, found 0 twice"]),
+    ("triangle without an area", "particles: [{pos: [0, 0, 0], mass: 1}, {pos: [0.1, 0.2, 0.3], mass: 1}, {pos: [0.3, 0.6, 0.9], mass: 1}]\ntriangles: [{particle_ids: »[0, 1, 2], air_drag: 1}]", &["triangles[0].particle_ids", "three corners apart, found them on one line", "needs an area"]),
     ("triangle with two corners in one place", "particles: [{pos: [0, 0, 0], mass: 1}, {pos: [1, 0, 0], mass: 1}, {pos: [0, 0, 0], mass: 1}]\ntriangles: [{particle_ids: »[0, 1, 2], air_drag: 1}]", &["triangles[0].particle_ids", "three corners apart, found 0 and 2 in one place", "needs an area"]),
     ("field without numbers", "magnetic: »{}", &["magnetic.field", "missing", "in tesla"]),
     ("field of two", "magnetic: {field: »[0, 1]}", &["magnetic.field", "a list of 3 numbers, found 2"]),
