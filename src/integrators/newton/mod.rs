@@ -125,8 +125,14 @@ impl Newton {
                 || (iteration > 0 && self.at.relative <= self.settings.tolerance);
             // Newton squares a small residual in each iteration until only rounding is left.
             let stalled = self.at.relative >= 0.5 * before;
-            if solved || (stalled && self.at.norm <= self.floor(stage)) {
+            if solved {
                 return Ok(());
+            }
+            if stalled {
+                let left = self.at.norm - self.floor(stage);
+                if left <= 0.0 || left <= self.cancelled(stage) {
+                    return Ok(());
+                }
             }
             before = self.at.relative;
             self.iterations += 1;
@@ -256,7 +262,7 @@ impl Newton {
     }
 
     /// The norm of the change that a few roundings of positions and velocities make to the residual at `self.at`:
-    /// eps (γ |∂f/∂x| max(|y|, |γ u|) + M (|u| + |b|)), with the last Jacobian.
+    /// eps (γ |∂f/∂x| max(|y|, |γ u|) + γ |∂f/∂v| |u| + M (|u| + |b|)), with the last Jacobian.
     fn floor(&mut self, stage: &StageEquation) -> f64 {
         let (at, size) = (&self.at, &mut self.z);
         size.clear();
@@ -266,8 +272,12 @@ impl Newton {
         let reach: Vec<f64> = parts
             .map(|(y, u)| y.abs().max((stage.gamma * u).abs()))
             .collect();
-        let position = Derivative::Position;
-        (self.jacobian).add_magnitudes(position, stage.gamma, &reach, size);
+        for (by, reach) in [
+            (Derivative::Position, &reach),
+            (Derivative::Velocity, &at.u),
+        ] {
+            (self.jacobian).add_magnitudes(by, stage.gamma, reach, size);
+        }
         let mut squares = 0.0;
         for (i, &w) in stage.system.inverse_mass().iter().enumerate() {
             if w > 0.0 {
@@ -276,6 +286,17 @@ impl Newton {
             }
         }
         ROUNDING * f64::EPSILON * squares.sqrt()
+    }
+
+    /// What the roundings of the forces add to [`floor`](Self::floor): those that cancel, such as a weight and the drag
+    /// that holds it, have the rounding of the larger. As costly as an evaluation, so it is only asked where needed.
+    fn cancelled(&self, stage: &StageEquation) -> f64 {
+        let mut own = vec![0.0; self.at.u.len()];
+        (stage.system).rounding(stage.t, &self.at.x, &self.at.u, &mut own);
+        let weights = own.iter().zip(stage.system.inverse_mass());
+        let free = weights.filter(|(_, w)| **w > 0.0);
+        let squares: f64 = free.map(|(own, w)| (own / w) * (own / w)).sum();
+        ROUNDING * stage.gamma * squares.sqrt()
     }
 
     /// Replaces `u` by Newton's first iterate from it: u + (M - γ C - γ² K)⁻¹ r, with everything taken at
