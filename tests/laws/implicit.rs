@@ -12,14 +12,17 @@ use std::f64::consts::{PI, SQRT_2};
 /// h times the rate of the fastest motion.
 const STEPS: [f64; 6] = [0.06, 0.1, 1.0, 10.0, 1e3, 1e5];
 
+/// R(z).
+type Factor = fn(Complex<f64>) -> Complex<f64>;
+
 /// Implicit methods with their R(z) and the equations they solve a step. Hairer, Wanner, Solving ODEs II, IV.3; Hosea,
 /// Shampine 1996 for TR-BDF2.
-fn methods() -> Vec<(&'static Method, fn(Complex<f64>) -> Complex<f64>, u64)> {
+fn methods() -> Vec<(&'static Method, Factor, u64)> {
     let of = |method: &'static Method| {
         let Coefficients::Implicit(scheme) = method.coefficients else {
             return None;
         };
-        let (r, stages): (fn(Complex<f64>) -> Complex<f64>, u64) = match scheme {
+        let (r, stages): (Factor, u64) = match scheme {
             ImplicitScheme::Midpoint | ImplicitScheme::Trapezoidal => {
                 (|z| (z / 2.0 + 1.0) / (-z / 2.0 + 1.0), 1)
             }
@@ -116,12 +119,12 @@ fn dampers() -> Scene {
 
 /// Velocities along x and y, as complex numbers, and positions less those at the start, of each free particle: after two
 /// steps of h by a method of this R.
-type Exact = fn(h: f64, r: fn(Complex<f64>) -> Complex<f64>) -> Vec<[Complex<f64>; 2]>;
+type Exact = fn(h: f64, r: Factor) -> Vec<[Complex<f64>; 2]>;
 
 const V: Complex<f64> = Complex::new(0.6, -0.8);
 
 /// v' = λ v: v0 R², and x1 = x0 + (v1 - v0)/λ, since a Runge-Kutta method keeps λ x - v.
-fn one(rate: Complex<f64>, h: f64, r: fn(Complex<f64>) -> Complex<f64>) -> [Complex<f64>; 2] {
+fn one(rate: Complex<f64>, h: f64, r: Factor) -> [Complex<f64>; 2] {
     let v = V * r(rate * h).powi(2);
     [v, (v - V) / rate]
 }
@@ -156,7 +159,7 @@ fn law(
     scene: &Scene,
     exact: Exact,
     build: Build,
-    r: fn(Complex<f64>) -> Complex<f64>,
+    r: Factor,
     z: f64,
     wrap: impl Fn(&dyn System, &mut dyn Integrator, f64, &mut State),
 ) -> Found {
@@ -209,7 +212,7 @@ fn any_step_of_a_linear_system_is_one_solve_and_the_textbooks() {
     }
 }
 
-/// Leaves the velocity's derivative out of the matrix, or half of it: the symmetric part.
+/// Leaves the turning out of the matrix: what is off the diagonal in the velocity's derivative.
 struct Blind<'a>(&'a dyn System);
 
 impl System for Blind<'_> {
