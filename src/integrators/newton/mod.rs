@@ -47,6 +47,8 @@ pub(super) struct Newton {
     /// The present iterate, and a trial for the next.
     at: Trial,
     next: Trial,
+    /// Whether the last trial was accepted for being nothing but rounding.
+    rounded: bool,
     /// The direction, over all coordinates and over the matrix's rows.
     d: Vec<f64>,
     z: Vec<f64>,
@@ -65,6 +67,7 @@ impl Newton {
             jacobian: Jacobian::in_blocks(),
             at: Trial::default(),
             next: Trial::default(),
+            rounded: false,
             d: Vec::new(),
             z: Vec::new(),
             solves: 0,
@@ -115,6 +118,7 @@ impl Newton {
             let particle = self.at.particle();
             return Err(StepError::NotFinite { particle });
         }
+        self.rounded = false;
         let mut before = f64::INFINITY;
         let mut merit = Merit::Potential;
         let mut full_step_below = LINEAR;
@@ -125,15 +129,10 @@ impl Newton {
                 || (iteration > 0 && self.at.relative <= self.settings.tolerance);
             // Newton squares a small residual in each iteration until only rounding is left.
             let stalled = self.at.relative >= 0.5 * before;
-            if solved {
+            if solved || (stalled && (self.rounded || self.at.norm <= self.floor(stage))) {
                 return Ok(());
             }
-            if stalled {
-                let left = self.at.norm - self.floor(stage);
-                if left <= 0.0 || left <= self.cancelled(stage) {
-                    return Ok(());
-                }
-            }
+            self.rounded = false;
             before = self.at.relative;
             self.iterations += 1;
             // The linear solve is as precise as Newton's squaring of the residual needs, and no more precise

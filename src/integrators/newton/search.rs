@@ -229,7 +229,8 @@ impl Newton {
                     || (alpha < 1.0
                         && off - floor <= *cancelled.get_or_insert_with(|| self.cancelled(stage)))
             };
-            if accepted || rounding() {
+            self.rounded = !accepted && rounding();
+            if accepted || self.rounded {
                 if extend && merit == Merit::Potential && alpha == 1.0 {
                     self.lengthen(stage, line, slope);
                 }
