@@ -1,10 +1,11 @@
 //! Checks that involve several values of a scene, defaults that follow from other values, and the check of
 //! a timestep against a duration.
 
+use super::drive::Drive;
 use super::error::Refusal;
 use super::expect::engine;
 use super::expectation::{Names, Scope};
-use super::limits;
+use super::limits::{self, DRIVEN_ACCELERATION, DRIVEN_SPEED};
 use super::model::{Driven, Knots, NO_PARTICLES, Particle, Scene, Triangle, Wind};
 use super::place::Problem;
 use super::read::Reading;
@@ -216,6 +217,15 @@ fn driven(at: usize, driven: &Driven, scene: &Scene) -> Result<(), Problem> {
         let [before, found] = [times[row - 1], times[row]];
         let message = format!("expected a time after {before:?} s, found {found:?}");
         let help = "rows are in the order of their times, and no two have the same";
+        return Problem::because(format!("{of}.table[{row}]"), message, help);
+    }
+    let wild = |drive: Drive| drive.wild(DRIVEN_SPEED, DRIVEN_ACCELERATION);
+    if let Some(row) = Drive::new(scene, driven).and_then(wild) {
+        let message = format!(
+            "expected a motion of at most {DRIVEN_SPEED:e} m/s and {DRIVEN_ACCELERATION:e} m/s² up to this row, found \
+             a faster one"
+        );
+        let help = "its rows are too near in time for how far apart their places are";
         return Problem::because(format!("{of}.table[{row}]"), message, help);
     }
     Ok(())

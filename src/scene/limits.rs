@@ -31,6 +31,11 @@ pub const WORD_BYTES: usize = 200;
 /// The smallest initial distance of two attracting particles, m. At 0 the force is infinite.
 pub const ATTRACTION_DISTANCE: f64 = 1e-12;
 
+/// The largest component of a driven particle's velocity, m/s, and of its acceleration, m/s²: that of the widest and
+/// fastest sine. The rows of a table could lie so near in time that neither is finite.
+pub const DRIVEN_SPEED: f64 = 1e12;
+pub const DRIVEN_ACCELERATION: f64 = 1e36;
+
 /// The values a number may take, and its unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
