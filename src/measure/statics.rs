@@ -1,7 +1,7 @@
 //! Static quantities of a state: what holds the fixed particles, and how much each spring pulls.
 
 use crate::physics::{ParticleSystem, State};
-use crate::scene::{Scene, Spring};
+use crate::scene::{Scene, Spring, Vectors};
 use crate::trajectory::Trajectory;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 /// Computes static quantities of states of one scene. They are no part of a state: each follows from it alone.
 #[derive(Clone)]
 pub struct Statics {
-    system: ParticleSystem,
+    /// The scene with nothing fixed, and nothing of what acts on free particles alone.
+    held: ParticleSystem,
     springs: Vec<Spring>,
     /// Ids of the fixed particles.
     fixed: Vec<usize>,
@@ -47,10 +48,15 @@ pub struct Reaction {
 }
 
 impl Statics {
-    pub fn new(scene: &Scene, system: &ParticleSystem) -> Self {
+    pub fn new(scene: &Scene) -> Self {
         let particles = scene.particles.iter().enumerate();
+        let mut held = scene.clone();
+        held.particles.iter_mut().for_each(|p| p.fixed = false);
+        held.solver.gravity = 0.0;
+        held.solver.gravities = Vectors::default();
+        (held.wind, held.driven) = (None, Vec::new());
         Self {
-            system: system.clone(),
+            held: ParticleSystem::new(&held),
             springs: scene.springs.clone(),
             fixed: particles
                 .filter(|(_, p)| p.fixed)
@@ -62,11 +68,11 @@ impl Statics {
     /// The force that holds each fixed particle, N, 3 a particle; 0 for free ones.
     ///
     /// Minus the sum of all other forces on it (inverse dynamics). A fixed particle has no weight here, and of a driven
-    /// one m a is left out: in scenes its mass means nothing. A spring between two fixed particles is no force.
+    /// one m a is left out: in scenes its mass means nothing. Wind acts on what is free.
     pub fn reactions(&self, state: &State) -> Vec<f64> {
         let mut forces = vec![0.0; state.x.len()];
         let mut reactions = forces.clone();
-        self.system.forces(state.t, &state.x, &state.v, &mut forces);
+        self.held.forces(state.t, &state.x, &state.v, &mut forces);
         for id in &self.fixed {
             for at in 3 * id..3 * id + 3 {
                 // Not -0.

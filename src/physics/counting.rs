@@ -47,6 +47,9 @@ impl<S: System> System for Counting<S> {
         self.counted.set(counted);
         self.inner.acceleration(t, x, v, a)
     }
+    fn rounding(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
+        self.inner.rounding(t, x, v, a);
+    }
     fn kinds(&self) -> ForceKinds {
         self.inner.kinds()
     }

@@ -104,12 +104,7 @@ impl fmt::Display for ForceKinds {
 
 /// The refusal of forces that a method does not accept: it would step, and be wrong.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{method} takes no force that is {kinds}{}: how it treats velocity needs forces linear in it, as dampers, \
-     drag and magnetic fields are; explicit Runge-Kutta methods (rk4), adaptive pairs and symplectic_euler \
-     take any",
-    list(effects)
-)]
+#[error("{method}: {}", self.reason())]
 pub struct Refused {
     /// The method's id, or another name of it.
     pub method: String,
@@ -117,6 +112,18 @@ pub struct Refused {
     pub kinds: ForceKinds,
     /// Ids of the effects that have these kinds, where they are known.
     pub effects: Vec<&'static str>,
+}
+
+impl Refused {
+    /// The sentence without the method, the same for all that refuse these effects.
+    pub fn reason(&self) -> String {
+        format!(
+            "no force that is {}{} is taken: how velocity is treated needs forces linear in it, as dampers, drag and \
+             magnetic fields are; explicit Runge-Kutta methods (rk4), adaptive pairs and symplectic_euler take any",
+            self.kinds,
+            list(&self.effects)
+        )
+    }
 }
 
 fn list(effects: &[&str]) -> String {

@@ -1,14 +1,16 @@
 //! Checks that involve several values of a scene, defaults that follow from other values, and the check of
 //! a timestep against a duration.
 
+use super::drive::Drive;
 use super::error::Refusal;
 use super::expect::engine;
 use super::expectation::{Names, Scope};
-use super::limits;
+use super::limits::{self, DRIVEN_ACCELERATION, DRIVEN_SPEED};
 use super::model::{Driven, Knots, NO_PARTICLES, Particle, Scene, Triangle, Wind};
 use super::place::Problem;
 use super::read::Reading;
 use super::values::Number;
+use nalgebra::Vector3;
 use std::fmt::Display;
 
 /// Checks that the duration holds at least one step, and no more than a run can take; both in seconds.
@@ -201,7 +203,9 @@ fn driven(at: usize, driven: &Driven, scene: &Scene) -> Result<(), Problem> {
             given.join(" and ")
         };
         let message = format!("expected one of `sine`, `velocity` and `table`, found {found}");
-        return Problem::because(of, message, "a particle has one motion");
+        let help = "a particle has one motion: `sine: {amplitude, omega}`, `velocity: [x, y, z]`, or `table` with two rows \
+                    [t, x, y, z] or more";
+        return Problem::because(of, message, help);
     }
     let rows = driven.table.iter().flat_map(|Knots(rows)| rows);
     let times: Vec<f64> = rows.map(|row| row[0]).collect();
@@ -215,10 +219,19 @@ fn driven(at: usize, driven: &Driven, scene: &Scene) -> Result<(), Problem> {
         let help = "rows are in the order of their times, and no two have the same";
         return Problem::because(format!("{of}.table[{row}]"), message, help);
     }
+    let wild = |drive: Drive| drive.wild(DRIVEN_SPEED, DRIVEN_ACCELERATION);
+    if let Some(row) = Drive::new(scene, driven).and_then(wild) {
+        let message = format!(
+            "expected a motion of at most {DRIVEN_SPEED:e} m/s and {DRIVEN_ACCELERATION:e} m/s² up to this row, found \
+             a faster one"
+        );
+        let help = "its rows are too near in time for how far apart their places are";
+        return Problem::because(format!("{of}.table[{row}]"), message, help);
+    }
     Ok(())
 }
 
-/// Checks that no two corners start in one place.
+/// Checks that no two corners start in one place, nor all three on one line.
 fn triangle(at: usize, triangle: &Triangle, starts: &[[f64; 3]]) -> Result<(), Problem> {
     let [a, b, c] = triangle.corners;
     for ends in [[a, b], [b, c], [a, c]] {
@@ -230,6 +243,14 @@ fn triangle(at: usize, triangle: &Triangle, starts: &[[f64; 3]]) -> Result<(), P
             let help = "a triangle needs an area";
             return Problem::because(format!("triangles[{at}].particle_ids"), message, help);
         }
+    }
+    let edges = [b, c].map(|end| Vector3::from(starts[end]) - Vector3::from(starts[a]));
+    let [first, second] = edges.map(|edge| edge / edge.amax());
+    // To the rounding of a product: what is exactly on a line in decimals is not in binary.
+    if first.cross(&second).amax() <= 4.0 * f64::EPSILON {
+        let message = "expected three corners apart, found them on one line";
+        let help = "a triangle needs an area";
+        return Problem::because(format!("triangles[{at}].particle_ids"), message, help);
     }
     Ok(())
 }

@@ -224,6 +224,27 @@ impl Drive {
         }
     }
 
+    /// The first row of a table on the way to which a component of the velocity, m/s, or of the acceleration, m/s², is
+    /// larger than these, or not a number.
+    pub(super) fn wild(&self, fastest: f64, steepest: f64) -> Option<usize> {
+        let Motion::Spline(Spline { knots }) = &self.motion else {
+            return None;
+        };
+        let pieces = knots.windows(2).position(|pair| {
+            let [from, to] = [&pair[0], &pair[1]];
+            let h = to.t - from.t;
+            let tame = |axis: usize| {
+                let [low, high] = [from.bend[axis], to.bend[axis]];
+                // Within a piece the velocity is that of the chord and at most h/2 times the accelerations.
+                let slope = ((to.x[axis] - from.x[axis]) / h).abs();
+                let bent = low.abs().max(high.abs());
+                slope + 0.5 * h * bent <= fastest && bent <= steepest
+            };
+            !(0..3).all(tame)
+        });
+        pieces.map(|piece| piece + 1)
+    }
+
     /// Times, s, ascending, at which a derivative of the motion jumps: the third, at a table's rows.
     pub fn knots(&self) -> impl Iterator<Item = f64> + '_ {
         let knots = match &self.motion {

@@ -31,6 +31,11 @@ pub const WORD_BYTES: usize = 200;
 /// The smallest initial distance of two attracting particles, m. At 0 the force is infinite.
 pub const ATTRACTION_DISTANCE: f64 = 1e-12;
 
+/// The largest component of a driven particle's velocity, m/s, and of its acceleration, m/s²: that of the widest and
+/// fastest sine. The rows of a table could lie so near in time that neither is finite.
+pub const DRIVEN_SPEED: f64 = 1e12;
+pub const DRIVEN_ACCELERATION: f64 = 1e36;
+
 /// The values a number may take, and its unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
@@ -69,11 +74,23 @@ impl Bounds {
         } else if low == 0.0 && x < 0.0 {
             format!("a number of at least 0 ({unit})")
         } else if x > high {
-            format!("at most {high:e} ({unit})")
+            format!("at most {} ({unit})", plain(high))
         } else {
-            format!("at least {low:e} ({unit})")
+            format!("at least {} ({unit})", plain(low))
         };
-        Refusal::because(format!("expected {expected}, found {number}"), "")
+        let help = match unit {
+            "rad" => "angles are in radians: 180 degrees are 3.14159",
+            _ => "",
+        };
+        Refusal::because(format!("expected {expected}, found {number}"), help)
+    }
+}
+
+/// A bound as people write it: `3.14159`, `1e12`.
+fn plain(bound: f64) -> String {
+    match bound.abs() {
+        b if (1e-3..1e4).contains(&b) => format!("{}", (bound * 1e5).round() / 1e5),
+        _ => format!("{bound:e}"),
     }
 }
 

@@ -251,7 +251,7 @@ declare! {
     fixed: bool = false, "fixed" => ValueKind::Flag, Usual, Some("fixed");
     /// Kilograms, positive. Only a fixed particle that attracts nothing may leave it out.
     mass: f64 = 1.0,
-        "mass" => ValueKind::Number(Bounds::from(1e-30, 1e30, "kg")), Derived, Some("masses");
+        "mass" => ValueKind::Number(Bounds::from(1e-40, 1e30, "kg")), Derived, Some("masses");
     /// Metres; the radius of the ball where the scene has contact.
     radius: f64 = 0.1, "radius" => ValueKind::Number(Bounds::not_negative(1e12, "m")), Usual, None;
     /// Linear drag coefficient b, N s/m: the force is -b u, u the velocity relative to the air.
@@ -350,7 +350,7 @@ declare! {
     sine: Option<Sine> = None, "sine" => ValueKind::Part(&SINE), Usual, None;
     /// Metres per second: it moves on and on.
     velocity: Option<[f64; 3]> = None,
-        "velocity" => ValueKind::Numbers(3, Bounds::signed(1e12, "m/s")), Usual, Some("velocities");
+        "velocity" => ValueKind::Numbers(3, Bounds::signed(limits::DRIVEN_SPEED, "m/s")), Usual, Some("velocities");
     /// Rows of a time, s, ascending, and a displacement, m: it passes them on a natural cubic spline.
     table: Option<Knots> = None,
         "table" => ValueKind::Table(4, Bounds::signed(1e12, "s, then m")), Usual, Some("tables");

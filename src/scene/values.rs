@@ -270,6 +270,11 @@ impl<'de, F: FnMut(usize, Number) -> Result<(), Refusal>> Visitor<'de> for Table
         {
             before += width;
         }
+        if before == 0 {
+            let message = "expected two rows or more, found 0";
+            let help = format!("a row is a list of {width} numbers");
+            return Err(refuse(Refusal::new(message, help)));
+        }
         Ok(())
     }
 }

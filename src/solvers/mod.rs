@@ -87,7 +87,7 @@ pub struct Unsupported {
 
 impl From<Refused> for Unsupported {
     fn from(refused: Refused) -> Self {
-        let reason = refused.to_string();
+        let reason = refused.reason();
         Self { reason }
     }
 }

@@ -393,9 +393,9 @@ fn a_run_shows_who_refused_what_and_why() {
     assert_eq!(
         mine.reason.as_deref(),
         Some(
-            "mine takes no force that is non-linear in the velocity (of_velocity): how it treats \
-             velocity needs forces linear in it, as dampers, drag and magnetic fields are; explicit \
-             Runge-Kutta methods (rk4), adaptive pairs and symplectic_euler take any"
+            "no force that is non-linear in the velocity (of_velocity) is taken: how velocity is treated \
+             needs forces linear in it, as dampers, drag and magnetic fields are; explicit Runge-Kutta \
+             methods (rk4), adaptive pairs and symplectic_euler take any"
         )
     );
 }

@@ -107,9 +107,12 @@ fn boris_turns_by_its_angle_on_its_radii() {
         assert!((2.0 * (0.5 * W * h).atan() / h - frequency).abs() < 1e-15 * 4.0);
         let half = (1.0 + (0.5 * W * h).powi(2)).sqrt() / W;
         assert!((half - radius).abs() < 1e-16 * 2.0);
-        boris_law(&own(method("boris")), h).unwrap();
+        // The midpoint rule is the same map where nothing else acts: Cayley's turn between two half drifts.
+        for id in ["boris", "implicit_midpoint"] {
+            boris_law(&own(method(id)), h).unwrap();
+        }
         // The exact turn, and the other order of kick and drift, are other laws.
-        for id in ["position_verlet", "velocity_verlet", "implicit_midpoint"] {
+        for id in ["position_verlet", "velocity_verlet"] {
             assert!(boris_law(&own(method(id)), h).is_err(), "{id}");
         }
     }

@@ -12,6 +12,7 @@ mod driven;
 mod effects;
 mod force_kinds;
 mod hard;
+mod implicit;
 mod kernel;
 mod magnetic;
 mod momentum;

@@ -4,7 +4,7 @@ use crate::testkit::method;
 use crate::testkit::scenes::{empty, fixed, free, shipped, spring};
 use springcheck::measure::Statics;
 use springcheck::physics::{ParticleSystem, State};
-use springcheck::scene::{DampingModel, Scene};
+use springcheck::scene::{Air, DampingModel, Scene, Triangle, Wind};
 use springcheck::solvers::{Setting, Solver};
 
 const G: f64 = 9.81;
@@ -27,9 +27,7 @@ fn hanging(n: usize, mass: f64, stiffness: f64) -> Scene {
 }
 
 fn start(scene: &Scene) -> (Statics, State) {
-    let system = ParticleSystem::new(scene);
-    let state = ParticleSystem::initial_state(scene);
-    (Statics::new(scene, &system), state)
+    (Statics::new(scene), ParticleSystem::initial_state(scene))
 }
 
 #[test]
@@ -79,7 +77,7 @@ fn a_pendulum_pulls_most_at_the_bottom() {
     };
     scene.solver.gravity = -G;
     let system = ParticleSystem::new(&scene);
-    let statics = Statics::new(&scene, &system);
+    let statics = Statics::new(&scene);
     let setting = Setting::Steps {
         timestep: 1e-4,
         steps: 8000,
@@ -131,7 +129,7 @@ fn dampers_count_along_the_spring() {
 fn the_reaction_of_an_anchor_is_the_force_of_its_drive() {
     let scene = shipped("effects/driven_below.yml");
     let system = ParticleSystem::new(&scene);
-    let statics = Statics::new(&scene, &system);
+    let statics = Statics::new(&scene);
     let mut state = ParticleSystem::initial_state(&scene);
     state.x[3] = 1.3;
     state.v[3] = -0.4;
@@ -141,4 +139,36 @@ fn the_reaction_of_an_anchor_is_the_force_of_its_drive() {
     let mut f = vec![0.0; 6];
     let power = system.forces(state.t, &state.x, &state.v, &mut f);
     assert!((power.injected - reaction[0] * 0.5).abs() < 1e-13);
+}
+
+/// A plate of area 1/2 m² that three fixed corners hold in a wind of 10 m/s along its normal: 1/2 density C A u² = 30 N,
+/// a third at each; a spring between two of them, stretched by 0.5 m, pulls them together.
+#[test]
+fn what_acts_between_fixed_particles_is_held_too() {
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let mut scene = Scene {
+        particles: corners.map(fixed).into(),
+        springs: vec![spring([0, 1], 8.0, 0.5)],
+        triangles: vec![Triangle {
+            corners: [0, 1, 2],
+            air_drag: 1.0,
+        }],
+        air: Some(Air {
+            velocity: [0.0, 0.0, 10.0],
+            density: 1.2,
+        }),
+        wind: Some(Wind {
+            direction: [1.0, 0.0, 0.0],
+            strength: 7.0,
+        }),
+        ..empty()
+    };
+    scene.solver.gravity = -G;
+    let (statics, state) = start(&scene);
+    let reactions = statics.reactions(&state);
+    let wanted = [-4.0, 0.0, -10.0, 4.0, 0.0, -10.0, 0.0, 0.0, -10.0];
+    for (found, wanted) in reactions.iter().zip(wanted) {
+        // Some roundings of 30 N.
+        assert!((found - wanted).abs() < 1e-14, "{reactions:?}");
+    }
 }

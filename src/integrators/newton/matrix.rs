@@ -18,6 +18,9 @@ pub(super) struct Matrix {
     pub lower: Vec<Matrix3<f64>>,
     /// A_ji for the same places; empty where the matrix is symmetric.
     upper: Vec<Matrix3<f64>>,
+    /// Whether the matrix is not symmetric. It need not have blocks off the diagonal for that: a magnetic field
+    /// turns each particle for itself.
+    skew: bool,
     pattern: Pattern,
 }
 
@@ -135,7 +138,7 @@ impl Matrix {
     }
 
     pub(super) fn is_symmetric(&self) -> bool {
-        self.upper.is_empty()
+        !self.skew
     }
 
     /// The indices in `lower` and the block rows of the blocks below the diagonal in a column.
@@ -237,10 +240,11 @@ impl Matrix {
             }
         }
         self.pin();
-        if skew
-            && self.diagonal.iter().all(is_symmetric)
-            && (self.lower.iter().zip(&self.upper)).all(|(l, u)| *l == u.transpose())
-        {
+        let mirrored = |(l, u): (&Matrix3<f64>, &Matrix3<f64>)| *l == u.transpose();
+        self.skew = skew
+            && !(self.diagonal.iter().all(is_symmetric)
+                && self.lower.iter().zip(&self.upper).all(mirrored));
+        if !self.skew {
             self.upper.clear();
         }
         !kept
@@ -253,6 +257,7 @@ impl Matrix {
             lower,
             upper,
             pattern,
+            ..
         } = self;
         if !pattern.pinned.contains(&true) {
             return;
@@ -294,7 +299,7 @@ impl Matrix {
 
     /// A diagonal block of the symmetric part.
     pub(super) fn symmetric_diagonal(&self, at: usize) -> Matrix3<f64> {
-        if self.upper.is_empty() {
+        if self.is_symmetric() {
             self.diagonal[at]
         } else {
             symmetric(&self.diagonal[at])
@@ -312,7 +317,7 @@ impl Matrix {
 
     /// out = A z.
     pub(super) fn product(&self, z: &[f64], out: &mut [f64]) {
-        if self.upper.is_empty() {
+        if self.is_symmetric() {
             self.symmetric_product(z, out);
         } else {
             let blocks = |at: usize| (self.lower[at], self.upper[at]);
@@ -322,7 +327,7 @@ impl Matrix {
 
     /// out = ½ (A + Aᵀ) z.
     pub(super) fn symmetric_product(&self, z: &[f64], out: &mut [f64]) {
-        if self.upper.is_empty() {
+        if self.is_symmetric() {
             let blocks = |at: usize| (self.lower[at], self.lower[at].transpose());
             self.by_columns(z, out, |at| self.diagonal[at], blocks);
         } else {

@@ -47,6 +47,8 @@ pub(super) struct Newton {
     /// The present iterate, and a trial for the next.
     at: Trial,
     next: Trial,
+    /// Whether the last trial was accepted for being nothing but rounding.
+    rounded: bool,
     /// The direction, over all coordinates and over the matrix's rows.
     d: Vec<f64>,
     z: Vec<f64>,
@@ -65,6 +67,7 @@ impl Newton {
             jacobian: Jacobian::in_blocks(),
             at: Trial::default(),
             next: Trial::default(),
+            rounded: false,
             d: Vec::new(),
             z: Vec::new(),
             solves: 0,
@@ -115,6 +118,7 @@ impl Newton {
             let particle = self.at.particle();
             return Err(StepError::NotFinite { particle });
         }
+        self.rounded = false;
         let mut before = f64::INFINITY;
         let mut merit = Merit::Potential;
         let mut full_step_below = LINEAR;
@@ -125,9 +129,10 @@ impl Newton {
                 || (iteration > 0 && self.at.relative <= self.settings.tolerance);
             // Newton squares a small residual in each iteration until only rounding is left.
             let stalled = self.at.relative >= 0.5 * before;
-            if solved || (stalled && self.at.norm <= self.floor(stage)) {
+            if solved || (stalled && (self.rounded || self.at.norm <= self.floor(stage))) {
                 return Ok(());
             }
+            self.rounded = false;
             before = self.at.relative;
             self.iterations += 1;
             // The linear solve is as precise as Newton's squaring of the residual needs, and no more precise
@@ -256,7 +261,7 @@ impl Newton {
     }
 
     /// The norm of the change that a few roundings of positions and velocities make to the residual at `self.at`:
-    /// eps (γ |∂f/∂x| max(|y|, |γ u|) + M (|u| + |b|)), with the last Jacobian.
+    /// eps (γ |∂f/∂x| max(|y|, |γ u|) + γ |∂f/∂v| |u| + M (|u| + |b|)), with the last Jacobian.
     fn floor(&mut self, stage: &StageEquation) -> f64 {
         let (at, size) = (&self.at, &mut self.z);
         size.clear();
@@ -266,8 +271,12 @@ impl Newton {
         let reach: Vec<f64> = parts
             .map(|(y, u)| y.abs().max((stage.gamma * u).abs()))
             .collect();
-        let position = Derivative::Position;
-        (self.jacobian).add_magnitudes(position, stage.gamma, &reach, size);
+        for (by, reach) in [
+            (Derivative::Position, &reach),
+            (Derivative::Velocity, &at.u),
+        ] {
+            (self.jacobian).add_magnitudes(by, stage.gamma, reach, size);
+        }
         let mut squares = 0.0;
         for (i, &w) in stage.system.inverse_mass().iter().enumerate() {
             if w > 0.0 {
@@ -276,6 +285,17 @@ impl Newton {
             }
         }
         ROUNDING * f64::EPSILON * squares.sqrt()
+    }
+
+    /// What the roundings of the forces add to [`floor`](Self::floor): those that cancel, such as a weight and the drag
+    /// that holds it, have the rounding of the larger. As costly as an evaluation, so it is only asked where needed.
+    fn cancelled(&self, stage: &StageEquation) -> f64 {
+        let mut own = vec![0.0; self.at.u.len()];
+        (stage.system).rounding(stage.t, &self.at.x, &self.at.u, &mut own);
+        let weights = own.iter().zip(stage.system.inverse_mass());
+        let free = weights.filter(|(_, w)| **w > 0.0);
+        let squares: f64 = free.map(|(own, w)| (own / w) * (own / w)).sum();
+        ROUNDING * stage.gamma * squares.sqrt()
     }
 
     /// Replaces `u` by Newton's first iterate from it: u + (M - γ C - γ² K)⁻¹ r, with everything taken at

@@ -209,7 +209,7 @@ impl Newton {
     /// coordinates. The full step is tried first, and with `extend` longer ones after it. A trial that solves
     /// the equation, or leaves a residual of a few roundings, is accepted. False if none is.
     pub(super) fn advance(&mut self, stage: &StageEquation, merit: Merit, extend: bool) -> bool {
-        let (mut line, mut floor, mut alpha) = (None, None, 1.0);
+        let (mut line, mut floor, mut cancelled, mut alpha) = (None, None, None, 1.0);
         for _ in 0..TRIALS {
             self.next.step(stage, &self.at, alpha, &self.d);
             if !self.next.is_finite() {
@@ -222,9 +222,15 @@ impl Newton {
             let line = line.get_or_insert_with(|| self.line(stage));
             let slope = -dot(&self.next.residual, &self.d);
             let (before, off) = (self.at.norm, self.next.norm);
-            if line.accepts(stage, merit, before, &mut self.next, [alpha, slope])
-                || off <= *floor.get_or_insert_with(|| self.floor(stage))
-            {
+            let accepted = line.accepts(stage, merit, before, &mut self.next, [alpha, slope]);
+            let mut rounding = || {
+                let floor = *floor.get_or_insert_with(|| self.floor(stage));
+                off <= floor
+                    || (alpha < 1.0
+                        && off - floor <= *cancelled.get_or_insert_with(|| self.cancelled(stage)))
+            };
+            self.rounded = !accepted && rounding();
+            if accepted || self.rounded {
                 if extend && merit == Merit::Potential && alpha == 1.0 {
                     self.lengthen(stage, line, slope);
                 }

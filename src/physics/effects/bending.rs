@@ -40,6 +40,17 @@ impl BendingForce {
         (!hinges.is_empty()).then_some(Self { hinges })
     }
 
+    /// The first hinge of a scene that holds energy at the start and no force, since its angle has no direction: straight
+    /// with a rest angle, or folded back. The least turn releases it.
+    pub fn latent(scene: &Scene) -> Option<usize> {
+        let x: Vec<f64> = scene.starts().into_iter().flatten().collect();
+        scene.bending.iter().position(|hinge| {
+            let shape = Shape::of(hinge, &x);
+            hinge.stiffness != 0.0
+                && shape.is_some_and(|s| s.normal.is_none() && s.angle != hinge.rest_angle)
+        })
+    }
+
     /// Each hinge with its shape, where it has one.
     fn shapes(&self, x: &[f64]) -> impl Iterator<Item = (&Bending, Option<Shape>)> {
         self.hinges.iter().map(|hinge| (hinge, Shape::of(hinge, x)))

@@ -1,6 +1,6 @@
 //! A particle on a line under a constant force and drag with the square of its speed.
 
-use super::group::Group;
+use super::group::{Group, is_plain};
 use super::vector::{norm, unit};
 use nalgebra::Vector3;
 
@@ -54,7 +54,15 @@ impl Fall {
             drag: body.quadratic / body.mass,
             size: group.size,
         };
-        (fall.drag > 0.0 && fall.drag.is_finite()).then_some(fall)
+        // Ways are logarithms of 1 and these, over the drag.
+        let Self { drag, pull, .. } = fall;
+        let y = if pull > 0.0 {
+            start / (pull / drag).sqrt()
+        } else {
+            0.0
+        };
+        let plain = [drag, drag * start, drag * pull, y * y].map(is_plain);
+        (drag > 0.0 && plain == [true; 4]).then_some(fall)
     }
 
     /// Way against the force, way along it (m, both not negative) and relative velocity at `t`.
@@ -102,10 +110,11 @@ impl Fall {
     }
 
     /// Bound on the distance of any computed position in [0, t] from the exact one, m: 16 roundings of the size or of
-    /// the way gone. Each step above rounds a few times, and none of them makes more of it than the way itself.
+    /// the way gone. Each step above rounds a few times, and none of them makes more of it than the way itself. Early on
+    /// the logarithms are so small that they have lost digits.
     pub fn error_bar(&self, t: f64) -> f64 {
         let (against, along, _) = self.relative(t);
         let way = against + along + norm(self.air) * t;
-        16.0 * f64::EPSILON * self.size.max(way)
+        16.0 * f64::EPSILON * (self.size.max(way) + f64::MIN_POSITIVE / self.drag)
     }
 }

@@ -133,7 +133,36 @@ fn root(parent: &mut [usize], mut i: usize) -> usize {
     i
 }
 
+/// The smallest number of which a rounding is still a normal one.
+const SMALLEST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
+/// Whether a number is 0 or far from both ends of a double's range: then it is right to a rounding, and so are its sums.
+/// Nearer to 0 it has lost digits, and what is divided by it has lost as many.
+pub(super) fn is_plain(x: f64) -> bool {
+    x == 0.0 || (SMALLEST..=1.0 / SMALLEST).contains(&x.abs())
+}
+
 impl Group<'_> {
+    /// Whether all rates, accelerations and velocities are [plain](is_plain) numbers. Where one is not, no form's error
+    /// bar holds.
+    pub fn is_plain(&self) -> bool {
+        let bodies = self.bodies.iter().all(|body| {
+            let vectors = [body.velocity, body.constant, body.turning];
+            let rates = [body.drag, body.quadratic].map(|of| of / body.mass);
+            let vectors = vectors.iter().flat_map(|vector| vector.iter());
+            vectors.chain(&rates).copied().all(is_plain)
+        });
+        let links = self.links.iter().all(|link| {
+            let ends = link.ends.into_iter().flatten();
+            let mut rates = ends.flat_map(|end| {
+                let mass = self.bodies[end].mass;
+                [link.spring.stiffness, link.spring.damping].map(|of| of / mass)
+            });
+            rates.all(is_plain)
+        });
+        bodies && links
+    }
+
     /// Whether some spring ends at a driven particle.
     pub fn is_driven(&self) -> bool {
         self.links

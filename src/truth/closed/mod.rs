@@ -56,6 +56,9 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
     }
     let start = ParticleSystem::initial_state(scene);
     let groups = groups(scene, &start, until);
+    if !groups.iter().all(Group::is_plain) {
+        return None;
+    }
     let parts: Vec<Part> = groups.iter().map(Part::of).collect::<Option<_>>()?;
     let words: Vec<[&str; 2]> = parts.iter().map(Part::words).collect();
     let mut methods = each_once(words.iter().map(|words| words[0]));
@@ -72,12 +75,16 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
         drives: scene.drives(),
         parts,
     };
-    Some(Truth {
+    // A product on the way to the end may be too large for a double.
+    let end = motion.states(&[until]);
+    let error_bound = motion.error_bar(until);
+    let finite = end.x.iter().chain(&end.v).all(|c| c.is_finite()) && error_bound.is_finite();
+    finite.then(|| Truth {
         kind: TruthKind::ClosedForm,
         method: Some(method),
         reason,
         horizon: until,
-        error_bound: motion.error_bar(until),
+        error_bound,
         motion: Some(Box::new(motion)),
     })
 }

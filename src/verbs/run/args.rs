@@ -1,7 +1,6 @@
 //! `springcheck run SCENE...`
 
 use crate::measure::{CheckStatus, Statics};
-use crate::physics::ParticleSystem;
 use crate::report::json::Tool;
 use crate::scene::{self, Scene};
 use crate::trajectory::Plane;
@@ -189,7 +188,7 @@ fn one(
         folder: place.folder().to_owned(),
         every: args.every,
         columns: args.columns.clone(),
-        statics: Statics::new(scene, &ParticleSystem::new(scene)),
+        statics: Statics::new(scene),
         springs: scene.springs.len(),
     });
     let saving = files.is_some();

@@ -20,7 +20,7 @@ pub fn all(
     scale: Option<f64>,
 ) -> (Vec<Outcome>, Vec<Option<EnergySeries>>, Vec<String>) {
     let (limits, limits_left_out) = remarks::linearised(plan, budget::of_limits(plan));
-    let statics = plan.loads.then(|| Statics::new(plan.scene, &plan.system));
+    let statics = plan.loads.then(|| Statics::new(plan.scene));
     let one = |index: usize| {
         let (case, record) = (&plan.cases[index], &records[index]);
         let timestep = case.label.timestep;

@@ -4,7 +4,10 @@ use super::plan::{Case, Plan};
 use crate::integrators::{EnergyLaw, Method, PerStep, Settings, Stable};
 use crate::measure::stability::{Effort, Limit, Linearised, Prediction};
 use crate::measure::{Behaviour, Energy, EnergyClass};
-use crate::physics::{ParticleSystem, System};
+use crate::physics::effects::BendingForce;
+use crate::physics::{ForceKinds, ParticleSystem, System};
+use crate::report::words;
+use crate::scene::Scene;
 use crate::solvers::Status;
 use crate::verbs::run::Outcome;
 
@@ -34,7 +37,6 @@ pub fn remarks(
         Status::Diverged => {
             let cause = outcome.reason.as_deref().unwrap_or_default();
             let time = outcome.stopped_at_s.unwrap_or(0.0);
-            let damped = plan.system.kinds().depends_on_velocity();
             // The limit on this scene says more than the method's general facts.
             let limit = prediction.as_ref().map(|p| (&p.limit, p.error));
             let why = match (&warning, method, limit) {
@@ -43,7 +45,7 @@ pub fn remarks(
                      which the motion leaves",
                     known(*limit, error)
                 ),
-                (None, Some(method), _) => why_unstable(method, damped),
+                (None, Some(method), _) => why_unstable(plan, method),
                 _ => String::new(),
             };
             let time = short(time);
@@ -55,8 +57,41 @@ pub fn remarks(
         }
     }
     remarks.extend(warning);
+    remarks.extend(coarse_drive(plan.scene, case.label.timestep));
+    remarks.extend(latent(plan.scene));
     remarks.extend(loosely_solved(plan, case));
     remarks
+}
+
+/// Steps in a period of a drive below which they miss its motion.
+const STEPS_A_PERIOD: f64 = 6.0;
+
+/// The remark that steps are too coarse for the fastest drive by a sine.
+fn coarse_drive(scene: &Scene, h: f64) -> Option<String> {
+    let sines = scene
+        .driven
+        .iter()
+        .filter_map(|driven| driven.sine.as_ref());
+    let fastest = sines.map(|sine| sine.omega.abs()).reduce(f64::max)?;
+    let period = std::f64::consts::TAU / fastest;
+    (period < STEPS_A_PERIOD * h).then(|| {
+        let advice = round_below(period / (4.0 * STEPS_A_PERIOD));
+        format!(
+            "the fastest drive has a period of {} s, of which h = {} s sees little: take {} s or less",
+            words::quantity(period),
+            short(h),
+            advice.unwrap_or_default()
+        )
+    })
+}
+
+/// The remark that a hinge is in balance only because it cannot tell which way to turn.
+fn latent(scene: &Scene) -> Option<String> {
+    let hinge = BendingForce::latent(scene)?;
+    Some(format!(
+        "hinge {hinge} is in line and not at its rest angle: it cannot tell which way to turn, and acts only once \
+         something turns it"
+    ))
 }
 
 /// The remark that the scene's solver tolerance is looser than the default, for methods that iterate.
@@ -73,10 +108,19 @@ fn loosely_solved(plan: &Plan, case: &Case) -> Option<String> {
 }
 
 /// The cause of a divergence, from the method's facts.
-fn why_unstable(method: &Method, damped: bool) -> String {
-    if damped && method.oscillator.stable != Stable::Always {
-        return "; stiff springs and strong dampers each limit the step: take a smaller one"
-            .to_owned();
+fn why_unstable(plan: &Plan, method: &Method) -> String {
+    let kinds = plan.system.kinds();
+    if kinds.damps() && method.oscillator.stable != Stable::Always {
+        let springs = has_springs(plan);
+        return if springs {
+            "; stiff springs and strong damping each limit the step: take a smaller one"
+        } else {
+            "; strong damping limits the step: take a smaller one"
+        }
+        .to_owned();
+    }
+    if kinds.has(ForceKinds::GYROSCOPIC) && !has_springs(plan) {
+        return String::new();
     }
     match method.oscillator.stable {
         Stable::Never => {
@@ -103,19 +147,25 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<S
         return None;
     }
     let effects = plan.system.effects();
-    let has_springs = effects.iter().any(|(row, _)| row.elastic);
+    let kinds = plan.system.kinds();
     match case.solver.as_method() {
         Some(method) if effects.iter().all(|(row, _)| row.constant) => {
             under_constant_force(method, class)
         }
         Some(method) => {
-            let damped = plan.system.kinds().depends_on_velocity();
-            let law = by_law(method, class, damped).filter(|_| has_springs);
-            law.or_else(|| damped.then(|| by_balance(method, class, lost)))
+            let damped = kinds.depends_on_velocity();
+            // The work of what drives a scene is no part of an oscillator's law.
+            let driven = kinds.has(ForceKinds::DRIVEN);
+            let law = by_law(method, class, damped).filter(|_| has_springs(plan) && !driven);
+            law.or_else(|| (damped || driven).then(|| by_balance(method, class, lost)))
         }
-        None if has_springs => case.solver.by_design(class == EnergyClass::Growing),
+        None if has_springs(plan) => case.solver.by_design(class == EnergyClass::Growing),
         None => None,
     }
+}
+
+fn has_springs(plan: &Plan) -> bool {
+    plan.system.effects().iter().any(|(row, _)| row.elastic)
 }
 
 fn energy_change(class: EnergyClass) -> &'static str {

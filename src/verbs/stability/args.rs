@@ -1,6 +1,6 @@
 //! `springcheck stability SCENE`
 
-use crate::scene::{self, Scene, limits};
+use crate::scene::{self, Particle, Scene, limits};
 use crate::solvers;
 use crate::verbs::Report;
 use crate::verbs::cli::flags;
@@ -215,12 +215,19 @@ fn next(args: &Args, scene: &Scene, report: &Report) -> Option<String> {
             .springs
             .iter()
             .fold(0.0, |k: f64, s| k.max(s.stiffness));
-        return Some(if stiffest > 0.0 {
-            let [low, high] = [stiffest / 100.0, stiffest * 100.0].map(output::rounded);
-            format!("springcheck stability {path} --vary springs.stiffness={low}..{high}")
-        } else {
-            format!("springcheck stability {path} --vary particles.drag=0.01..100")
-        });
+        let particles = || scene.particles.iter().filter(|p| !p.fixed);
+        let most = |of: fn(&Particle) -> f64| particles().map(of).fold(0.0, f64::max);
+        let keys = [
+            ("springs.stiffness", stiffest),
+            ("particles.drag", most(|p| p.drag)),
+            ("particles.quadratic_drag", most(|p| p.quadratic_drag)),
+            ("particles.charge", most(|p| p.charge.abs())),
+        ];
+        let (key, largest) = keys.into_iter().find(|(_, largest)| *largest > 0.0)?;
+        let [low, high] = [largest / 100.0, largest * 100.0].map(output::rounded);
+        return Some(format!(
+            "springcheck stability {path} --vary {key}={low}..{high}"
+        ));
     }
     let own = report.stability().into_iter().flat_map(|s| &s.rows);
     let own = own.filter(|row| report.header.is_own(&row.engine));

@@ -71,15 +71,20 @@ pub struct StabilityRow {
 }
 
 impl StabilityRow {
-    /// The best known limit, seconds: measured (of a bracket the lower end), else predicted. Infinite where
-    /// every step is stable; None where neither is known.
+    /// The least limit that is known, s: measured (of a bracket the lower end), predicted at the start or where the
+    /// motion leads. Growth that ends, or is too slow to show over the steps of a search, is unstable all the same.
+    /// Infinite where every step is stable; None where nothing is known.
     pub fn limit(&self) -> Option<f64> {
         let endless = |yes: bool| yes.then_some(f64::INFINITY);
-        self.measured_limit_s
-            .or(endless(self.measured_unconditional))
-            .or(self.measured_between_s.map(|[low, _]| low))
-            .or(self.predicted_limit_s)
-            .or(endless(self.unconditional))
+        let known = [
+            self.measured_limit_s,
+            endless(self.measured_unconditional),
+            self.measured_between_s.map(|[low, _]| low),
+            self.predicted_limit_s,
+            endless(self.unconditional),
+            self.tightest.as_ref().map(|tightest| tightest.limit_s),
+        ];
+        known.into_iter().flatten().reduce(f64::min)
     }
 
     /// Whether a step, s, and all smaller ones are stable; None where no limit is known.

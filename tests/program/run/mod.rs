@@ -219,3 +219,54 @@ fn lists_show_every_row() {
         assert!(out.lines().all(|line| line.chars().count() <= 100));
     }
 }
+
+/// The remarks of rk4 on a scene of these lines.
+fn remarks(lines: &str) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("scene.yml");
+    std::fs::write(&file, lines).expect("a scene");
+    let of = [
+        "run",
+        word(&file),
+        "--engines",
+        "none",
+        "--integrators",
+        "rk4",
+    ];
+    let report = json(&of);
+    outcomes(&report)[0]["remarks"].to_string()
+}
+
+#[test]
+fn steps_too_coarse_for_a_drive_are_said_to_be() {
+    let scene = |h: f64| {
+        format!(
+            "solver: {{type: rk4, timestep: {h}}}\nduration: 1\nparticles: [{{pos: [0, 0, 0], fixed: true}}, \
+             {{pos: [0, 0, -1], mass: 1}}]\nsprings: [{{particle_ids: [0, 1], stiffness: 50}}]\ndriven: \
+             [{{particle_id: 0, sine: {{amplitude: [0, 0, 0.1], omega: 62.83185307179586}}}}]"
+        )
+    };
+    // Ten periods a second: a fourth of each step and more.
+    let said = remarks(&scene(0.025));
+    assert!(
+        said.contains("a period of 0.1 s, of which h = 0.025 s"),
+        "{said}"
+    );
+    let said = remarks(&scene(0.01));
+    assert!(!said.contains("period"), "{said}");
+}
+
+#[test]
+fn a_hinge_without_a_direction_is_named() {
+    let scene = |z: f64, rest: f64| {
+        format!(
+            "solver: {{type: rk4, timestep: 0.01, gravity: 0}}\nduration: 0.1\nparticles: [{{pos: [0, 0, 0], mass: 1}}, \
+             {{pos: [1, 0, 0], mass: 1}}, {{pos: [2, 0, {z}], mass: 1}}]\nbending: [{{particle_ids: [0, 1, 2], \
+             stiffness: 1, rest_angle: {rest}}}]"
+        )
+    };
+    assert!(remarks(&scene(0.0, 1.5)).contains("hinge 0 is in line and not at its rest angle"));
+    for (z, rest) in [(0.0, 0.0), (0.1, 1.5)] {
+        assert!(!remarks(&scene(z, rest)).contains("hinge"));
+    }
+}

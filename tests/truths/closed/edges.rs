@@ -4,7 +4,7 @@ use super::families::{self, empty, fixed, free, spring};
 use super::{exact, form, gauss};
 use crate::testkit::{Random, distance};
 use springcheck::physics::{ParticleSystem, State};
-use springcheck::scene::{DampingModel, Scene};
+use springcheck::scene::{Air, DampingModel, Magnetic, Scene, Wind};
 
 /// A mass an ulp beside the line of two compressed springs buckles; `far` puts the line where that
 /// ulp is large. The distance of its anchors is 2, `rest` the rest length of each spring.
@@ -108,7 +108,7 @@ fn extremes_stay_numbers() {
         };
         let mut extreme =
             |low: f64, high: f64| 10f64.powf(families::between(&mut random, low, high));
-        let (mass, stiffness) = (extreme(-30.0, 30.0), extreme(-18.0, 18.0));
+        let (mass, stiffness) = (extreme(-40.0, 30.0), extreme(-18.0, 18.0));
         scene.particles.iter_mut().for_each(|p| {
             p.mass *= mass;
             p.drag *= stiffness;
@@ -133,4 +133,143 @@ fn extremes_stay_numbers() {
         assert!(finite && bar.is_finite() && bar >= 0.0, "{case}: {scene:?}");
     }
     assert!(forms > 200, "{forms}");
+}
+
+/// A number that a scene may hold, and what puts it there.
+type Put = fn(&mut Scene, f64);
+
+/// Every number of which a trace moves nothing.
+const TRACES: [(&str, Put); 12] = [
+    ("quadratic drag", |s, x| s.particles[0].quadratic_drag = x),
+    ("drag", |s, x| s.particles[0].drag = x),
+    ("charge", |s, x| {
+        s.particles[0].charge = x;
+        s.magnetic = Some(Magnetic {
+            field: [1.0, 2.0, 3.0],
+        });
+    }),
+    ("field", |s, x| {
+        s.particles[0].charge = 1.0;
+        s.magnetic = Some(Magnetic {
+            field: [x, 0.0, 2.0 * x],
+        });
+    }),
+    ("gravity", |s, x| s.solver.gravity += x),
+    ("wind", |s, x| {
+        s.wind = Some(Wind {
+            direction: [0.6, 0.8, 0.0],
+            strength: x,
+        });
+    }),
+    ("velocity", |s, x| s.particles[0].velocity[1] += x),
+    ("stiffness", |s, x| linked(s, x, 0.0)),
+    ("damping", |s, x| linked(s, 0.0, x)),
+    ("both", |s, x| linked(s, x, x)),
+    ("air", |s, x| {
+        s.particles[0].quadratic_drag = x;
+        s.air = Some(Air {
+            velocity: [0.0, 0.0, 3.0],
+            ..Air::default()
+        });
+    }),
+    ("drag in air", |s, x| {
+        s.particles[0].drag = x;
+        s.air = Some(Air {
+            velocity: [1.0, 2.0, 3.0],
+            ..Air::default()
+        });
+    }),
+];
+
+/// A spring without rest length from the particle to a fixed one.
+fn linked(scene: &mut Scene, stiffness: f64, damping: f64) {
+    scene.damping_model = DampingModel::Isotropic;
+    scene.particles.push(fixed([1.0, 0.0, 0.0]));
+    scene.springs = vec![spring(0, 1, stiffness, damping, 0.0)];
+}
+
+/// A trace of a force moves nothing: the form is that of the scene without it, within its bar, or there is none.
+#[test]
+fn a_trace_of_a_force_moves_nothing() {
+    let mut forms = 0;
+    for (name, put) in TRACES {
+        // Also where the trace is that of an acceleration, of a light particle.
+        for (gravity, speed) in [(-9.81, 0.0), (0.0, 7.0), (-9.81, 20.0), (0.0, 0.0)] {
+            let mut scene = empty();
+            scene.solver.gravity = gravity;
+            scene.particles = vec![free([0.0; 3], [0.0, 0.0, speed], 0.3)];
+            for trace in [
+                5e-324, 1e-322, 1e-320, 1e-315, 1e-310, 1e-308, 1e-300, 1e-290, 1e-250,
+            ] {
+                let mut traced = scene.clone();
+                put(&mut traced, trace);
+                let Some(found) = form(&traced, 10.0) else {
+                    continue;
+                };
+                forms += 1;
+                let motion = found.motion().expect("a motion");
+                // Velocities are computed relative to the air.
+                let air = traced.air().velocity[2];
+                for t in [1e-6, 0.1, 3.0, 10.0] {
+                    let states = motion.states(&[t]);
+                    let at = gravity * t * t / 2.0 + speed * t;
+                    let v = gravity * t + speed;
+                    // Of the test's own sums, and what a trace does: 1e-250 times 1e3.
+                    let own = 2.0 * f64::EPSILON * (at.abs() + speed * t) + 1e-240;
+                    let off = (states.x(0)[2] - at).abs();
+                    assert!(
+                        off <= motion.error_bar(t) + own,
+                        "{name} {trace:e} {gravity} {speed}: {off:e}"
+                    );
+                    let faster = (states.v(0)[2] - v).abs();
+                    assert!(
+                        faster <= 16.0 * f64::EPSILON * (v.abs() + speed + air) + 1e-240,
+                        "{name} {trace:e}: {faster:e}"
+                    );
+                }
+            }
+        }
+    }
+    // Of 432; the rest have numbers that have lost digits.
+    assert!(forms > 100, "{forms}");
+}
+
+/// Numbers at the other end of what a scene may hold: never NaN, and no bar without end.
+#[test]
+fn the_largest_numbers_have_a_form_or_none() {
+    let mut random = Random(5);
+    for case in 0..400 {
+        let mut extreme =
+            |low: f64, high: f64| 10f64.powf(families::between(&mut random, low, high));
+        let mut scene = empty();
+        let particle = free(
+            [extreme(-12.0, 12.0), 0.0, 0.0],
+            [0.0, 0.0, extreme(-300.0, 12.0)],
+            extreme(-40.0, 30.0),
+        );
+        scene.particles = vec![particle];
+        scene.solver.gravity = if case % 3 == 0 {
+            0.0
+        } else {
+            -extreme(-300.0, 12.0)
+        };
+        if case % 2 == 0 {
+            scene.particles[0].quadratic_drag = extreme(-320.0, 18.0);
+        } else {
+            scene.particles[0].charge = extreme(-300.0, 12.0);
+            scene.particles[0].drag = extreme(-320.0, 18.0);
+            scene.magnetic = Some(Magnetic {
+                field: [0.0, extreme(-300.0, 12.0), 1.0],
+            });
+        }
+        let until = extreme(-30.0, 12.0);
+        let Some(found) = form(&scene, until) else {
+            continue;
+        };
+        let motion = found.motion().expect("a motion");
+        let states = motion.states(&[0.0, 1e-9 * until, 0.3 * until, until]);
+        let finite = states.x.iter().chain(&states.v).all(|c| c.is_finite());
+        let bar = motion.error_bar(until);
+        assert!(finite && bar.is_finite() && bar >= 0.0, "{case}: {scene:?}");
+    }
 }

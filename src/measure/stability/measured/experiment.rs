@@ -1,18 +1,18 @@
 //! A scene and a solver, ready to be probed: its perturbation, the energy watched and the limits known
 //! so far.
 
-use super::MakeRun;
 use super::perturbation::{Perturbation, Quadratic};
 use super::probe::{Budget, Probed, Runs, Watch, probe};
 use super::watched::{DifferenceEnergy, ExcessEnergy};
+use super::{DIVERGED, MakeRun};
 use crate::measure::energy_scale;
 use crate::measure::scale::gravity;
 use crate::measure::stability::Limit;
-use crate::physics::ParticleSystem;
+use crate::physics::{ForceKinds, ParticleSystem, System};
 use crate::scene::Scene;
 use crate::solvers::Unsupported;
 
-/// A run is lost once its energy is this many times the energy scale.
+/// A run is lost once its energy is this many times the energy scale, where nothing is put in.
 const LOST: f64 = 1e4;
 /// Steps of a full probe, where the budget allows.
 pub(super) const STEPS: u64 = 20_000;
@@ -152,7 +152,9 @@ impl<'a> Experiment<'a> {
             let mut runs = Runs::new(self.make, h, &[&scene])?;
             let system = self.system.clone();
             let never = f64::INFINITY;
-            let mut gauge = ExcessEnergy::new(&runs, system, &scene, self.scale, LOST, never);
+            let driven = system.kinds().has(ForceKinds::DRIVEN);
+            let lost = if driven { DIVERGED } else { LOST };
+            let mut gauge = ExcessEnergy::new(&runs, system, &scene, self.scale, lost, never);
             probe(&mut runs, &mut gauge, watch, &mut self.budget)
         };
         probed.ok_or(Stop::Spent)

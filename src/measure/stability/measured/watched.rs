@@ -4,15 +4,17 @@
 //! both alike, so the difference obeys the method's homogeneous linear map exactly, wherever the
 //! equilibrium is and whatever sign the energy has.
 //!
-//! Elsewhere it is E less the work of external forces of one run, which in truth falls by what is
-//! dissipated, and never rises. It is not the balance, which adds the dissipated energy back: near its limit
+//! Elsewhere it is the energy E of one run, which in truth falls by what is dissipated, and never rises. It is not the balance, which adds the dissipated energy back: near its limit
 //! explicit Euler dissipates without bound what it made out of nothing, and its balance rises while the
 //! motion decays.
+//!
+//! Where the scene is driven it is the lesser of E and of E less the work put in. A motion that sets in raises the first
+//! and not the second, whose error in turn, at large steps, grows while the motion does not. What explodes raises both.
 
 use super::perturbation::{Perturbation, Quadratic};
 use super::probe::{EnergyLevel, Gauge, Probed, Runs};
 use crate::measure::scale::free_fall;
-use crate::physics::{ParticleSystem, State, System};
+use crate::physics::{ForceKinds, ParticleSystem, State, System};
 use crate::scene::Scene;
 
 /// The energy of the difference between two runs, against its start.
@@ -92,6 +94,9 @@ const SATURATED: f64 = 1e3;
 const NEGLIGIBLE: f64 = 1e-2;
 /// Energy below this fraction of the scale is nothing.
 const FLOOR: f64 = 1e-3;
+/// Steps from which on what drives a scene may put in grows like the square of their number: a bounded force does no
+/// more.
+const SET_IN: f64 = 1e3;
 
 impl ExcessEnergy {
     /// The energy of one run at its start. `scale` is in J and positive; the run is lost beyond `bound`
@@ -106,7 +111,7 @@ impl ExcessEnergy {
     ) -> Self {
         Self {
             scale,
-            start: energy_less_work(&system, runs.state(0)),
+            start: energy(&system, runs.state(0)),
             system,
             fall: free_fall(scene),
             bound,
@@ -117,7 +122,7 @@ impl ExcessEnergy {
     /// The balance now, E + dissipated - injected, J.
     pub fn balance(&self, runs: &Runs) -> f64 {
         let state = runs.state(0);
-        energy_less_work(&self.system, state) + state.work.dissipated
+        energy(&self.system, state) + state.work.dissipated - state.work.injected
     }
 
     /// The largest balance since `late`, J.
@@ -126,16 +131,16 @@ impl ExcessEnergy {
     }
 }
 
-/// E less what was injected, J.
-fn energy_less_work(system: &ParticleSystem, state: &State) -> f64 {
-    system.kinetic(&state.v) + system.potential(state.t, &state.x) - state.work.injected
+/// E, J.
+fn energy(system: &ParticleSystem, state: &State) -> f64 {
+    system.kinetic(&state.v) + system.potential(state.t, &state.x)
 }
 
 impl Gauge for ExcessEnergy {
     fn level(&mut self, runs: &Runs, step: u64) -> Result<EnergyLevel, Probed> {
         let state = runs.state(0);
         let moving = self.system.kinetic(&state.v) + self.system.elastic(state.t, &state.x);
-        let excess = energy_less_work(&self.system, state) - self.start;
+        let excess = energy(&self.system, state) - state.work.injected.max(0.0) - self.start;
         if !state.is_finite() || !excess.is_finite() || !moving.is_finite() {
             return Err(Probed::not_finite(step));
         }
@@ -151,8 +156,16 @@ impl Gauge for ExcessEnergy {
         } else {
             excess
         };
+        if self.system.kinds().has(ForceKinds::DRIVEN) {
+            // A motion that is driven wanders; what explodes passes any bound.
+            let level = 1.0 + counted.max(0.0) / (SATURATED * self.scale);
+            let put_in = 1.0 + (step as f64 / SET_IN).powi(2);
+            let log = (level / put_in).ln();
+            return Ok(EnergyLevel { log, high: false });
+        }
+        let level = 1.0 + counted / self.scale;
         Ok(EnergyLevel {
-            log: (1.0 + counted / self.scale).max(FLOOR).ln(),
+            log: level.max(FLOOR).ln(),
             high: counted > SATURATED * self.scale && counted > 0.1 * moving,
         })
     }

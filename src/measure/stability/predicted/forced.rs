@@ -30,8 +30,13 @@ impl Part {
         });
         let svd = columns.thin_svd().ok()?;
         let values = svd.S().column_vector();
-        let tolerance = self.zero() / self.stiffness.norm().max(f64::MIN_POSITIVE);
-        let tolerance = tolerance.max(rounding(n));
+        // Positions blur directions as they blur K. Without K that is not known, and of no matter to drag.
+        let blurred = if self.stiffness.norm() > 0.0 {
+            self.zero() / self.stiffness.norm()
+        } else {
+            0.0
+        };
+        let tolerance = blurred.max(rounding(n));
         let rank = (0..n).filter(|&i| values[i] > tolerance).count();
         if rank == n {
             return None;
@@ -42,7 +47,8 @@ impl Part {
             let entries = (0..rank).flat_map(|i| (0..rank).map(move |j| (i, j)));
             Matrix::new(rank, entries.map(|(i, j)| (i, j, dense[(i, j)])))
         };
-        let left = Self::new(matrices.map(restricted), self.rounding, self.copies);
+        // A product with the basis rounds all of K.
+        let left = Self::new(matrices.map(restricted), 0.5 * self.zero(), self.copies);
         Some((left, n - rank))
     }
 

@@ -88,14 +88,18 @@ impl Linearised {
         for (count, what) in [
             (
                 at_rest,
-                "without restoring force (rigid motion, free particles)",
+                ["without restoring force (rigid motion, free particles)"; 2],
             ),
             (
                 unstable,
-                "that grow in truth (compressed springs, attraction)",
+                [
+                    "that grows in truth (compressed springs, attraction)",
+                    "that grow in truth (compressed springs, attraction)",
+                ],
             ),
         ] {
-            let s = if count == 1 { "" } else { "s" };
+            let one = count == 1;
+            let [s, what] = if one { ["", what[0]] } else { ["s", what[1]] };
             let some = (count > 0).then(|| format!("{count} mode{s} {what}"));
             linearised.excluded.extend(some);
         }
@@ -149,7 +153,7 @@ impl Linearised {
     pub fn predict(&self, method: &Method, timestep: f64) -> Prediction {
         let refused = self.kinds.without(method.takes());
         if refused != ForceKinds::NONE {
-            return Prediction::unknown(format!("{} takes no force that is {refused}", method.id));
+            return Prediction::unknown(format!("no force that is {refused} is taken"));
         }
         let parts = self
             .parts

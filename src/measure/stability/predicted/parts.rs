@@ -23,8 +23,14 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Matrices that are symmetric but for rounding are made so.
-    pub fn new(matrices: [Matrix; 3], rounding: f64, copies: usize) -> Self {
+    /// Matrices that are symmetric but for rounding are made so, and stiffnesses that are nothing but rounding 0:
+    /// no rank or ratio can be read off them.
+    pub fn new(mut matrices: [Matrix; 3], rounding: f64, copies: usize) -> Self {
+        for at in [0, 2] {
+            if matrices[at].norm() <= 2.0 * rounding {
+                matrices[at] = Matrix::new(matrices[at].n(), []);
+            }
+        }
         let mut symmetric = true;
         let [stiffness, damping, material] = matrices.map(|matrix| {
             if matrix.skewness() <= SYMMETRIC * matrix.norm() {

@@ -110,8 +110,12 @@ impl Prediction {
             Limit::Unconditional => (self.smooth_below_s == Some(f64::INFINITY))
                 .then(|| "smooth at every step: nothing oscillates".to_owned()),
             Limit::Never if undamped > 0 && undamped < modes => mode.map(|mode| {
+                let (are, those) = match undamped {
+                    1 => ("is", "that"),
+                    _ => ("are", "those"),
+                };
                 format!(
-                    "{mode}; {undamped} of {modes} modes are undamped, and on those it is stable at \
+                    "{mode}; {undamped} of {modes} modes {are} undamped, and on {those} it is stable at \
                      no step"
                 )
             }),

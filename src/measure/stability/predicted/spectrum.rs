@@ -177,7 +177,7 @@ fn modes(part: Part, damping: (f64, f64)) -> Option<Spectrum> {
     let zero = part.zero();
     let mut left_out = LeftOut::default();
     let mut modes = Vec::new();
-    let rounding = zero / part.stiffness.norm().max(f64::MIN_POSITIVE) * part.damping.norm();
+    let rounding = damping.0.abs() * zero;
     for stiffness in stiffnesses(&part)? {
         if stiffness < -zero {
             left_out.unstable += 1;

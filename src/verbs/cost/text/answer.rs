@@ -23,9 +23,13 @@ pub fn reached(reached: &CostReached) -> String {
 /// A label and a paragraph for each target. Targets that cannot be judged for the same reason have one
 /// paragraph.
 pub fn paragraphs(cost: &Cost) -> Vec<(String, String)> {
+    let mut above = Vec::new();
     let said = cost.targets.iter().enumerate().map(|(at, target)| {
         let alone = target.reason.is_none().then_some(at);
-        (metres(target.error_m), (alone, paragraph(target)))
+        (
+            metres(target.error_m),
+            (alone, paragraph(target, &mut above)),
+        )
     });
     let labelled = grouped(said).into_iter();
     labelled
@@ -33,8 +37,8 @@ pub fn paragraphs(cost: &Cost) -> Vec<(String, String)> {
         .collect()
 }
 
-/// The paragraph of one target, without its label.
-fn paragraph(target: &CostTarget) -> String {
+/// The paragraph of one target, without its label. Reasons that stand `above` are not said again.
+fn paragraph(target: &CostTarget, above: &mut Vec<String>) -> String {
     let mut clauses = Vec::new();
     if let Some(reason) = &target.reason {
         clauses.push(words::one_line(reason));
@@ -48,7 +52,7 @@ fn paragraph(target: &CostTarget) -> String {
         clauses.extend(fewest(target, first));
         clauses.extend(extrapolated(target));
     }
-    let missing = misses(&target.ranking, true);
+    let missing = misses(&target.ranking, true, above);
     let unreached = "no integrator reaches it";
     clauses.extend(match (first, &target.reason) {
         (None, None) if missing.is_empty() => Some(unreached.to_owned()),
@@ -63,7 +67,7 @@ fn paragraph(target: &CostTarget) -> String {
     if !beside.is_empty() {
         clauses.push(format!("beside them, not ranked: {}", listed(&beside)));
     }
-    clauses.extend(not_reached(misses(&target.reference, false)));
+    clauses.extend(not_reached(misses(&target.reference, false, above)));
     clauses.join("; ")
 }
 
@@ -113,9 +117,12 @@ fn not_reached(by: String) -> Option<String> {
     (!by.is_empty()).then(|| format!("not reached by {by}"))
 }
 
+/// Characters from which a reason is not said twice.
+const LONG: usize = 40;
+
 /// The engines that do not reach the target, and why. Equal reasons stand once. Where a reason differs
 /// from the one before in a number alone, only the number stands.
-fn misses(ranks: &[CostRank], ranked: bool) -> String {
+fn misses(ranks: &[CostRank], ranked: bool, above: &mut Vec<String>) -> String {
     // Integrators with an extrapolated cost are left out: `extrapolated` names them.
     let priced = |rank: &&CostRank| rank.extrapolated_wall_ratio.is_some() && ranked;
     let missing = ranks.iter().filter(|rank| rank.reached.is_none());
@@ -131,12 +138,17 @@ fn misses(ranks: &[CostRank], ranked: bool) -> String {
             .filter(|_| reason.starts_with("nearest"));
         match number.map_or(reason.to_owned(), str::to_owned).as_str() {
             "" => String::new(),
+            text if text.len() > LONG && above.iter().any(|known| known == text) => {
+                " (as above)".to_owned()
+            }
             text => format!(" ({text})"),
         }
     };
     let texts = said.iter().enumerate();
     let texts = texts.map(|(at, (reason, names))| listed(names) + &because(at, reason));
-    texts.collect::<Vec<_>>().join(", ")
+    let text = texts.collect::<Vec<_>>().join(", ");
+    above.extend(said.into_iter().map(|(reason, _)| reason));
+    text
 }
 
 /// The one number in which `text` differs from `known`; None where they differ otherwise.

@@ -98,7 +98,7 @@ pub fn own_loads(report: &Report) -> Vec<(&'static str, String)> {
         lines.push(("tension", format!("{engine}: at most {}", tension(most))));
     }
     for (at, held) in loads.reactions_final.iter().take(HELD).enumerate() {
-        let label = if at == 0 { "reactions" } else { "" };
+        let label = if at == 0 { "reaction" } else { "" };
         lines.push((label, format!("{engine} at the end: {}", reaction(held))));
     }
     lines

@@ -125,7 +125,10 @@ fn legend(report: &Report) -> String {
         ),
         None => "(this scene has no scale)".into(),
     };
-    let mut text = format!("▸ own integrator | energy: largest error {scale}");
+    let mut own = report.outcomes().iter();
+    let own = own.any(|o| report.header.is_own(&o.engine));
+    let own = if own { "▸ own integrator | " } else { "" };
+    let mut text = format!("{own}energy: largest error {scale}");
     for (one, meaning) in [
         (Behaviour::Steady, "off by less than a millionth of S"),
         (Behaviour::Unsteady, "off by more than S, without a trend"),

@@ -53,6 +53,7 @@ fn own(report: &Report) -> Option<String> {
             format!("has a balance that grows by {}", words::share(error))
         }
         (Behaviour::Growing, Some(error)) => format!("gains {}", words::share(error)),
+        (Behaviour::FewSamples, None) => "takes too few steps to show a trend of energy".to_owned(),
         // The scene has no S.
         (_, None) => format!("has a {} energy", behaviour.word()),
     };

@@ -8,7 +8,7 @@ use springcheck::conformance::systems::Across;
 use springcheck::integrators::{Amplification, Method, Rational, Stable, fixed};
 use springcheck::measure::stability::{Effort, Limit, Linearised, LinearisedTrajectory, is_linear};
 use springcheck::physics::{Jacobian, Linearization, Power, State, System};
-use springcheck::scene::{Air, DampingModel, Particle, Scene, Spring};
+use springcheck::scene::{Air, DampingModel, Particle, Scene, Spring, Triangle};
 
 mod large;
 mod linearised;
