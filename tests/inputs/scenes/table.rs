@@ -258,7 +258,12 @@ fn numbers_are_read_at_their_bounds_and_refused_beyond() {
             // A direction is read as a unit vector.
             assert!(read == wanted || row.key == "direction", "{text}{read:?}");
         }
-        let mut beyond = vec![(2.0 * high, format!("at most {high:e} ({unit})"))];
+        // As people write it.
+        let most = match high {
+            high if high < 1e4 => format!("{}", (high * 1e5).round() / 1e5),
+            _ => format!("{high:e}"),
+        };
+        let mut beyond = vec![(2.0 * high, format!("at most {most} ({unit})"))];
         beyond.push((f64::NAN, format!("a finite number ({unit})")));
         if low < 0.0 {
             beyond.push((2.0 * low, format!("at least {low:e} ({unit})")));
