@@ -231,15 +231,17 @@ impl Race<'_> {
 
     /// Those of a class that follow longer and longer stretches.
     fn narrowed(&self, mut class: Vec<usize>, told: &mut Vec<(usize, f64)>) -> Vec<usize> {
+        let mut budget = self.budget / 2;
         for apart in APART {
             let stretches = stretches(self.replay.rows, apart, STRETCHES);
             let effort = class
                 .iter()
                 .map(|&i| self.effort(&self.entries[i].candidate, &stretches));
             let effort = effort.fold(0, u64::saturating_add);
-            if class.len() < 2 || stretches.len() < 2 || effort > self.budget / 4 {
+            if class.len() < 2 || stretches.len() < 2 || effort > budget {
                 break;
             }
+            budget -= effort;
             let run = |&i: &usize| defects(self.replay, &self.entries[i].candidate, &stretches);
             let defects: Vec<Vec<Defect>> = class.par_iter().map(run).collect();
             // The unit follows rounding that goes either way from step to step. Where a motion repeats itself it may

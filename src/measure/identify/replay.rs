@@ -8,7 +8,7 @@ use super::velocity;
 use crate::integrators::{Settings, StepError};
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{Drive, Scene};
-use crate::trajectory::Rows;
+use crate::trajectory::{Precision, Rows};
 
 /// A transition follows a scheme if its defect is at most this many units.
 ///
@@ -374,7 +374,9 @@ impl<'a> Replay<'a> {
             roundings: total as f64,
             to: transition.to,
         });
-        replayer.nudge(pattern);
+        // Beside the digits of coarser data, the rounding of a force in doubles is nothing.
+        let doubles = rows.precision == Precision::Double;
+        replayer.nudge(pattern.filter(|_| doubles));
         let mut state = self.state(transition.from, nudge);
         let mut before = transition.before.map(|k| (k, self.state(k, nudge)));
         if rows.v.is_none() {
