@@ -283,7 +283,7 @@ fn fitted(question: &Question, race: &Race) -> Option<Explanation> {
         if group.members {
             let single = models.par_iter().map(|(model, _)| of_one_member(model));
             let single: Vec<Vec<Explanation>> = single.collect();
-            if let Some(best) = best_of(single.into_iter().flatten()) {
+            if let Some(best) = best_of(question.scene, single.into_iter().flatten()) {
                 return Some(best);
             }
         }
@@ -295,7 +295,7 @@ fn fitted(question: &Question, race: &Race) -> Option<Explanation> {
                 .collect::<Vec<_>>()
                 .into_iter()
                 .partition(Explanation::is_exact);
-            if let Some(best) = best_of(exact) {
+            if let Some(best) = best_of(question.scene, exact) {
                 return Some(best);
             }
             let rough = rough.into_iter().filter(|fit| fit.deviations.len() == 1);
@@ -307,12 +307,13 @@ fn fitted(question: &Question, race: &Race) -> Option<Explanation> {
     best.filter(|fit| fit.left <= LEFT && near::is_near(question, race, &fit.candidate))
 }
 
-/// The first of several that explain equally well, one of plain numbers if there is any, with the others beside it.
-fn best_of(exact: impl IntoIterator<Item = Explanation>) -> Option<Explanation> {
+/// The first of several that explain equally well, one of plain numbers and of the scene's own method if there is any,
+/// with the others beside it.
+fn best_of(scene: &Scene, exact: impl IntoIterator<Item = Explanation>) -> Option<Explanation> {
     let mut exact: Vec<Explanation> = exact.into_iter().collect();
     // Gravity of another direction is three numbers, which one is before.
     let rank = |explanation: &Explanation| (!explanation.plain, explanation.numbers);
-    exact.sort_by_key(rank);
+    exact.sort_by_key(|e| (rank(e), e.candidate.id != scene.solver.method));
     let mut exact = exact.into_iter();
     let mut first = exact.next()?;
     let best = rank(&first);
