@@ -7,8 +7,10 @@ use super::expect::engine;
 use super::expectation::{Names, Scope};
 use super::limits::{self, DRIVEN_ACCELERATION, DRIVEN_SPEED};
 use super::model::{Driven, Knots, NO_PARTICLES, Particle, Scene, Triangle, Wind};
+use super::objects;
 use super::place::Problem;
 use super::read::Reading;
+use super::table::Value;
 use super::values::Number;
 use nalgebra::Vector3;
 use std::fmt::Display;
@@ -51,6 +53,12 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
     externals(&scene, reading.names)?;
     check_times(scene.solver.timestep, scene.duration)
         .map_err(|refusal| Problem::new("solver.timestep", refusal))?;
+    objects::expand(&mut scene)?;
+    for named in &reading.named {
+        let found = scene.particle_named(&named.name);
+        let id = found.map_err(|refusal| Problem::new(named.path(), refusal))?;
+        (named.row.set)(&mut scene, named.at, named.component, Value::Id(id));
+    }
     particles(&scene.particles)?;
     let count = scene.particles.len();
     for (at, motion) in scene.driven.iter().enumerate() {

@@ -14,6 +14,7 @@ mod expect;
 mod expectation;
 pub mod limits;
 pub mod model;
+pub mod objects;
 mod place;
 mod read;
 mod table;
@@ -72,6 +73,7 @@ pub fn parse(bytes: &[u8], file: &str, names: &Names) -> Result<Scene, SceneErro
         scene,
         names,
         no_id: None,
+        named: Vec::new(),
         problem: None,
     };
     read::document(text, &mut reading).map_err(located)?;

@@ -14,6 +14,7 @@
 
 use super::expectation::{Expectation, Scope, Skipped};
 use super::limits::{self, Bounds, Form};
+use super::objects::{Body, Object};
 use super::table::{Field, Value, Vectors, declare, member, words};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
@@ -128,6 +129,8 @@ pub enum ValueKind {
     Part(&'static Part),
     /// Expectations, by engine and key.
     Expect,
+    /// A list of [`Object`]s.
+    Objects,
 }
 
 /// The meaning of an absent key.
@@ -135,20 +138,26 @@ pub enum ValueKind {
 pub enum Absent {
     /// The file is refused, with this advice.
     Required(&'static str),
+    /// The same, unless this other key is there.
+    Unless(&'static str, &'static str),
     /// The default of the model.
     Usual,
     /// A number that follows from the rest of the scene. It is NaN until the whole file is read.
     Derived,
 }
-use Absent::{Derived, Required, Usual};
+use Absent::{Derived, Required, Unless, Usual};
 
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    reserved ["colliders", "objects", "rods", "strain_limit"];
+    reserved ["colliders", "rods", "strain_limit"];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
+    ]
+    [
+        /// What objects made of their particles, in the order of the file.
+        bodies: Vec<Body> = Vec::new()
     ]
     [
         /// The checks that are not made, in the order of the file's `expect.skip`.
@@ -174,7 +183,9 @@ declare! {
     plot: Option<Plot> = None, "plot" => ValueKind::Part(&PLOT), Usual, None;
     /// The particles, at least one of them free.
     particles: Vec<Particle> = Vec::new(),
-        "particles" => ValueKind::Part(&PARTICLES), Required(NO_PARTICLES), None;
+        "particles" => ValueKind::Part(&PARTICLES), Unless("objects", NO_PARTICLES), None;
+    /// Strings, hair, cloth and the like. A scene that was read has none: they are [expanded](Scene::expand).
+    objects: Vec<Object> = Vec::new(), "objects" => ValueKind::Objects, Usual, None;
     /// Springs with dampers.
     springs: Vec<Spring> = Vec::new(), "springs" => ValueKind::Part(&SPRINGS), Usual, None;
     /// Triangles of particles, which the air drags at.

@@ -10,7 +10,7 @@
 
 use super::error::{Fault, MARK, Refusal};
 use super::values::{Any, Key};
-use super::words::shorten;
+use super::words::{about_key, did_you_mean, shorten};
 use serde::de::{Deserialize, DeserializeSeed, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
@@ -46,11 +46,45 @@ pub(super) fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
         ),
         None => said,
     };
-    if let Some((path, kinds)) = said.split_once("invalid type: ")
-        && let Some((found, expected)) = kinds.rsplit_once(", expected ")
-    {
-        let message = format!("expected {expected}, found {}", kind(found));
-        return place(path, &message, "");
+    for what in ["invalid type: ", "invalid length ", "invalid value: "] {
+        if let Some((path, kinds)) = said.split_once(what)
+            && let Some((found, expected)) = kinds.rsplit_once(", expected ")
+        {
+            let message = format!("expected {}, found {}", wanted(expected), kind(found));
+            return place(path, &message, "");
+        }
+    }
+    let below = |path: &str, key: &str| format!("{}.{key}", path.trim_end_matches(": "));
+    if let Some((path, key)) = quoted(&said, "missing field `") {
+        return place(&below(path, key), "missing", "");
+    }
+    if let Some((path, key)) = quoted(&said, "duplicate field `") {
+        return place(
+            &below(path, key),
+            "this key is given twice",
+            "keep one of them",
+        );
+    }
+    if let Some((path, key)) = quoted(&said, "unknown field `") {
+        let known: Vec<&str> = said.split('`').skip(3).step_by(2).collect();
+        return place(
+            path,
+            &format!("unknown key `{}`", shorten(key)),
+            &about_key(key, &known),
+        );
+    }
+    if let Some((path, word)) = quoted(&said, "unknown variant `") {
+        let known: Vec<&str> = said.split('`').skip(3).step_by(2).collect();
+        let message = format!(
+            "expected one of {}, found `{}`",
+            known.join(", "),
+            shorten(word)
+        );
+        return place(
+            path,
+            &message,
+            &did_you_mean(word, &known).unwrap_or_default(),
+        );
     }
     let help = if text.as_bytes().get(offset) == Some(&b'\t') {
         "YAML indents with spaces, not with tabs"
@@ -60,6 +94,26 @@ pub(super) fn fault(error: &serde_yaml::Error, text: &str) -> Fault {
         ""
     };
     place("", &format!("not valid YAML: {said}"), help)
+}
+
+/// What stands before these words, and the text between them and the next quote.
+fn quoted<'a>(said: &'a str, words: &str) -> Option<(&'a str, &'a str)> {
+    let (path, rest) = said.split_once(words)?;
+    Some((path, rest.split_once('`')?.0))
+}
+
+/// serde's name of what it expected, in words for the scene's author.
+fn wanted(expected: &str) -> String {
+    match expected {
+        "u64" => "a whole number from 0".into(),
+        "f64" => "a number".into(),
+        "a sequence" => "a list".into(),
+        other if other.starts_with("struct ") => "a mapping".into(),
+        other => match other.strip_prefix("an array of length ") {
+            Some(count) => format!("a list of {count} numbers"),
+            None => other.to_owned(),
+        },
+    }
 }
 
 /// serde's name of what it found, in words for the scene's author.
@@ -96,6 +150,11 @@ impl Problem {
             path,
             of_key: false,
         }
+    }
+
+    /// What is wrong, without its place.
+    pub(super) fn refusal(self) -> Refusal {
+        self.refusal
     }
 
     /// The problem as a result.

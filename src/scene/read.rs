@@ -12,8 +12,11 @@ use super::limits::{EXPECTED, known, method};
 use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
-use super::values::{Any, Key, Maybe, Number, Numbers, Table, Texts, flag, index_of, number, text};
+use super::values::{
+    Any, Id, Ids, Key, Maybe, Number, Numbers, Table, Texts, flag, id, index_of, number, text,
+};
 use super::vectors::{Either, NumberOrList, vectors};
+use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
@@ -24,9 +27,31 @@ pub(super) struct Reading<'n> {
     /// The first id that is no whole number from 0, with its path. The message needs the number of particles,
     /// so it waits for the end.
     pub(super) no_id: Option<(String, Number)>,
+    /// Particles that are named, in the order of the file: objects, which may stand below, make the names.
+    pub(super) named: Vec<Named>,
     /// The first key that is missing, or unknown under `expect`. Errors of the parser in the rest of the
     /// file take precedence.
     pub(super) problem: Option<Problem>,
+}
+
+/// A particle that a key names, such as `sheet[3,4]`.
+pub(super) struct Named {
+    pub(super) part: &'static Part,
+    pub(super) row: &'static Row,
+    pub(super) at: usize,
+    pub(super) component: usize,
+    pub(super) name: String,
+}
+
+impl Named {
+    /// The path of the value.
+    pub(super) fn path(&self) -> String {
+        let path = self.part.path(Some(self.at), self.row.key);
+        match self.row.kind {
+            ValueKind::Ids(_) => format!("{path}[{}]", self.component),
+            _ => path,
+        }
+    }
 }
 
 /// Reads the one document the file holds.
@@ -100,7 +125,13 @@ impl<'de> Visitor<'de> for Mapping<'_, '_> {
         for (index, row) in part.rows.iter().enumerate() {
             match row.absent {
                 _ if given & (1 << index) != 0 => {}
-                Absent::Required(help) => {
+                Absent::Unless(other, _)
+                    if part
+                        .rows
+                        .iter()
+                        .enumerate()
+                        .any(|(i, row)| row.key == other && given & (1 << i) != 0) => {}
+                Absent::Required(help) | Absent::Unless(_, help) => {
                     let path = part.path(Some(at), row.key);
                     let missing = || Problem::new(path, Refusal::new("missing", help));
                     reading.problem.get_or_insert_with(missing);
@@ -160,6 +191,24 @@ impl<'n> Entry<'_, 'n> {
         Ok(())
     }
 
+    /// Sets an id, or keeps a name for later.
+    fn particle(&mut self, component: usize, id: Id<'_>) -> Result<(), Refusal> {
+        let name = match id {
+            Id::Number(number) => return self.number(component, number),
+            Id::Name(name) => name.to_owned(),
+        };
+        let Entry { part, row, at, .. } = *self;
+        self.set(component, Value::Id(usize::MAX));
+        self.reading.named.push(Named {
+            part,
+            row,
+            at,
+            component,
+            name,
+        });
+        Ok(())
+    }
+
     /// The id. A number that is no id is recorded, and the largest integer stands for it, which is no id either.
     fn id(&mut self, component: usize, number: Number) -> usize {
         number.whole().unwrap_or_else(|| {
@@ -183,7 +232,8 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
             }
             // Its number's row reads it.
             ValueKind::Vectors(_) => Ok(()),
-            ValueKind::Number(_) | ValueKind::Id | ValueKind::Coordinate => {
+            ValueKind::Id => from.deserialize_any(id(|id: Id<'_>| self.particle(0, id))),
+            ValueKind::Number(_) | ValueKind::Coordinate => {
                 from.deserialize_any(number(|n| self.number(0, n)))
             }
             ValueKind::Numbers(count, _) => {
@@ -192,7 +242,9 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
             ValueKind::Table(width, _) => {
                 from.deserialize_any(Table(width, |i, n| self.number(i, n)))
             }
-            ValueKind::Ids(count) => from.deserialize_any(Numbers(count, |i, n| self.number(i, n))),
+            ValueKind::Ids(count) => {
+                from.deserialize_any(Ids(count, |i, id: Id<'_>| self.particle(i, id)))
+            }
             ValueKind::Flag => {
                 let flag = from.deserialize_any(flag())?;
                 self.set(0, Value::Flag(flag));
@@ -226,6 +278,10 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
             }
             ValueKind::Part(part) if part.list => from.deserialize_any(List(part, self)),
             ValueKind::Part(part) => from.deserialize_any(self.member(part)),
+            ValueKind::Objects => {
+                self.reading.scene.objects = Vec::deserialize(from)?;
+                Ok(())
+            }
             ValueKind::Expect => from.deserialize_any(Engines {
                 names: self.reading.names,
                 expect: &mut self.reading.scene.expect,

@@ -130,6 +130,25 @@ pub(super) fn number<'de, T>(
     One("a number", number)
 }
 
+/// A particle, by its id or by its name.
+pub(super) enum Id<'a> {
+    Number(Number),
+    Name(&'a str),
+}
+
+pub(super) fn id<'de, T>(
+    mut judge: impl FnMut(Id<'_>) -> Result<T, Refusal>,
+) -> impl Visitor<'de, Value = T> {
+    One("a particle: its id, or its name", move |scalar: Scalar| {
+        let id = match scalar {
+            Scalar::Number(number) => Id::Number(number),
+            Scalar::Text(name) => Id::Name(name),
+            Scalar::Flag(_) => return None,
+        };
+        Some(judge(id).map_err(Refusal::judged))
+    })
+}
+
 /// Reads `true` or `false`.
 pub(super) fn flag<'de>() -> impl Visitor<'de, Value = bool> {
     One("true or false", |scalar: Scalar| match scalar {
@@ -235,21 +254,48 @@ impl<'de, F: FnMut(usize, Number) -> Result<(), Refusal>> Visitor<'de> for Numbe
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
         let Numbers(wanted, mut judge) = self;
-        let mut count = 0;
-        while count < wanted
-            && let Some(()) = list.next_element_seed(Any(number(|n| judge(count, n))))?
-        {
-            count += 1;
-        }
-        while list.next_element::<IgnoredAny>()?.is_some() {
-            count += 1;
-        }
-        if count != wanted {
-            let message = format!("expected a list of {wanted} numbers, found {count}");
-            return Err(refuse(Refusal::new(message, "")));
-        }
-        Ok(())
+        counted(wanted, &mut list, |list, at| {
+            list.next_element_seed(Any(number(|n| judge(at, n))))
+        })
     }
+}
+
+/// Reads a list of this many particles, by id or name. The function also gets the index in the list.
+pub(super) struct Ids<F>(pub(super) usize, pub(super) F);
+
+impl<'de, F: FnMut(usize, Id<'_>) -> Result<(), Refusal>> Visitor<'de> for Ids<F> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "a list of {} numbers", self.0)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let Ids(wanted, mut judge) = self;
+        counted(wanted, &mut list, |list, at| {
+            list.next_element_seed(Any(id(|found| judge(at, found))))
+        })
+    }
+}
+
+/// Reads the elements of a list that has to have so many.
+fn counted<'de, A: SeqAccess<'de>>(
+    wanted: usize,
+    list: &mut A,
+    mut next: impl FnMut(&mut A, usize) -> Result<Option<()>, A::Error>,
+) -> Result<(), A::Error> {
+    let mut count = 0;
+    while count < wanted && next(list, count)?.is_some() {
+        count += 1;
+    }
+    while list.next_element::<IgnoredAny>()?.is_some() {
+        count += 1;
+    }
+    if count != wanted {
+        let message = format!("expected a list of {wanted} numbers, found {count}");
+        return Err(refuse(Refusal::new(message, "")));
+    }
+    Ok(())
 }
 
 /// Reads a list of lists of this many numbers each. The function also gets the index among all of them.

@@ -16,6 +16,7 @@ mod implicit;
 mod kernel;
 mod magnetic;
 mod momentum;
+mod objects;
 mod order;
 mod oscillator;
 mod solver;

@@ -6,6 +6,7 @@
 use crate::report::words::short;
 use crate::scene::limits::{Bounds, EXPECTED, EXTERNAL, WORD_BYTES};
 use crate::scene::model::{Absent, Part, Row, SCENE, ValueKind};
+use crate::scene::objects::{Object, PARTICLE_NAME};
 use crate::scene::{ALL, KeyKind, Names, OutcomeKey, REST, SKIP, Scene, Value};
 use serde_json::{Map, Value as Json, json};
 
@@ -36,6 +37,13 @@ fn part(part: &'static Part, names: &Names) -> Json {
     let required: Vec<&str> = required.map(|row| row.key).collect();
     let mut schema = mapping(properties);
     schema["required"] = required.into();
+    let unless = part.rows.iter().filter_map(|row| match row.absent {
+        Absent::Unless(other, _) => Some((row.key, other)),
+        _ => None,
+    });
+    for (key, other) in unless {
+        schema["anyOf"] = json!([{"required": [key]}, {"required": [other]}]);
+    }
     schema
 }
 
@@ -64,7 +72,7 @@ fn key(part: &'static Part, row: &'static Row, names: &Names) -> Json {
     if let Some(default) = default(part, row) {
         schema["default"] = default;
     }
-    if !is_required(row) {
+    if matches!(row.absent, Absent::Usual | Absent::Derived) {
         if let Some(Json::Array(words)) = schema.get_mut("enum") {
             words.push(Json::Null);
         }
@@ -146,7 +154,20 @@ fn value(row: &Row, names: &Names) -> Json {
         }
         ValueKind::Part(of) => part(of, names),
         ValueKind::Expect => expect(names),
+        ValueKind::Objects => objects(),
     }
+}
+
+/// A list of objects.
+fn objects() -> Json {
+    let settings = schemars::generate::SchemaSettings::draft07();
+    let schema = settings.with(|s| s.inline_subschemas = true);
+    let mut schema = schema
+        .into_generator()
+        .into_root_schema_for::<Vec<Object>>();
+    schema.remove("$schema");
+    schema.remove("title");
+    schema.to_value()
 }
 
 fn number(Bounds { low, high, .. }: &Bounds) -> Json {
@@ -154,7 +175,7 @@ fn number(Bounds { low, high, .. }: &Bounds) -> Json {
 }
 
 fn id() -> Json {
-    json!({"type": "integer", "minimum": 0})
+    json!({"type": ["integer", "string"], "minimum": 0, "pattern": PARTICLE_NAME})
 }
 
 fn list(items: Json, least: usize, most: usize) -> Json {

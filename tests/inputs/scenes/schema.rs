@@ -178,7 +178,29 @@ fn inside_and_outside(row: &Row) -> (Vec<Value>, Vec<Value>) {
         ValueKind::Part(part) if part.list && matches!(row.absent, Absent::Required(_)) => {
             (vec![], vec![json!([])])
         }
+        ValueKind::Part(_) if matches!(row.absent, Absent::Unless(..)) => (vec![], vec![]),
         ValueKind::Part(part) if part.list => (vec![json!([])], vec![]),
+        ValueKind::Objects => {
+            let string = json!({"from": [0, 0, 0], "to": [1, 0, 0], "particles": 3, "mass": 1, "stiffness": 3});
+            let mut pinned = string.clone();
+            pinned["pins"] = json!(["start", 1, [2]]);
+            let mut misspelt = string.clone();
+            misspelt["stifness"] = json!(3);
+            (
+                vec![
+                    json!([]),
+                    json!([{"string": string}]),
+                    json!([{"chain": pinned}]),
+                ],
+                vec![
+                    json!(3),
+                    json!([{}]),
+                    json!([{"rope": string}]),
+                    json!([{"string": misspelt}]),
+                    json!([{"string": string, "chain": string}]),
+                ],
+            )
+        }
         ValueKind::Part(_) | ValueKind::Expect => (vec![], vec![]),
     };
     outside.push(json!("text that is nothing here".to_owned() + "\u{7}"));
@@ -186,7 +208,7 @@ fn inside_and_outside(row: &Row) -> (Vec<Value>, Vec<Value>) {
     // A key without a value is as good as absent. Whether a particle needs its mass, other keys say.
     match row.absent {
         _ if row.key == "mass" => {}
-        Absent::Required(_) => outside.push(Value::Null),
+        Absent::Required(_) | Absent::Unless(..) => outside.push(Value::Null),
         Absent::Usual | Absent::Derived => inside.push(Value::Null),
     }
     (inside, outside)
@@ -260,7 +282,7 @@ fn the_schema_and_the_reader_agree_on_every_key() {
         }
         // Particles that attract each other need their mass: two keys, which no schema holds together.
         if path != "particles.mass" && path != "driven.sine" {
-            let optional = !matches!(row.absent, Absent::Required(_));
+            let optional = !matches!(row.absent, Absent::Required(_) | Absent::Unless(..));
             agree(&without, optional, &format!("without {path}"));
         }
     }

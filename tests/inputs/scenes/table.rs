@@ -13,7 +13,12 @@ use springcheck::verbs::stability::Vary;
 /// Each row that holds values itself, with its part.
 fn rows() -> impl Iterator<Item = (&'static Part, &'static Row)> {
     let of = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
-    let holds = |(_, row): &(_, &Row)| !matches!(row.kind, ValueKind::Part(_) | ValueKind::Expect);
+    let holds = |(_, row): &(_, &Row)| {
+        !matches!(
+            row.kind,
+            ValueKind::Part(_) | ValueKind::Expect | ValueKind::Objects
+        )
+    };
     PARTS.into_iter().flat_map(of).filter(holds)
 }
 
@@ -308,7 +313,7 @@ fn a_key_left_out_means_the_default_or_is_missed() {
                 let default: Vec<_> = row.values(&defaults, 0).collect();
                 assert_eq!(read, default, "{title}");
             }
-            Absent::Required(help) => {
+            Absent::Required(help) | Absent::Unless(_, help) => {
                 // A key without a value counts as absent.
                 let error = parse(&written(Some((part, row, "")))).expect_err(&title);
                 assert_eq!(error.refusal.message, "missing", "{title}");

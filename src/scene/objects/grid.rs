@@ -1,0 +1,356 @@
+//! Particles in rows and columns: cloth, nets, and blocks of them.
+
+use super::read::object;
+use super::{Along, Body, Frame, Generator, Link, Maker, Options, Pin, Pinned, Scaling, length};
+use crate::scene::limits::Bounds;
+use crate::scene::model::Triangle;
+use crate::scene::place::Problem;
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+object! {
+    /// A sheet of particles in a plane, with springs along its threads and across.
+    ///
+    /// Refined n times it keeps its springs and has an nth² of their masses: a membrane of square cells is as stiff
+    /// whatever their number. Flexion springs have no such limit.
+    Cloth {
+        /// The corner [0, 0], m.
+        origin: [f64; 3],
+        /// From there to the last particle of the first direction, m.
+        u: Option<[f64; 3]>,
+        /// From there to the last particle of the second direction, m.
+        v: Option<[f64; 3]>,
+        /// In the place of `u` and `v`: xy, xz or yz, with `size`.
+        plane: Option<String>,
+        /// Its two sides in that plane, m.
+        size: Option<[f64; 2]>,
+        /// How many particles it has along u and v.
+        particles: [u64; 2],
+        /// Springs between neighbours along u and v.
+        structural: Link,
+        /// Springs across each cell, both ways.
+        shear: Option<Link>,
+        /// Springs between every second particle along u and v.
+        flexion: Option<Link>,
+        /// Drag coefficient C of its triangles, two a cell.
+        air_drag: Option<f64>,
+        /// Rest lengths over the distances at the start, 1 by default.
+        rest_ratio: Option<f64>,
+    }
+}
+
+object! {
+    /// A sheet with springs along its threads alone.
+    Net {
+        /// The corner [0, 0], m.
+        origin: [f64; 3],
+        /// From there to the last particle of the first direction, m.
+        u: Option<[f64; 3]>,
+        /// From there to the last particle of the second direction, m.
+        v: Option<[f64; 3]>,
+        /// In the place of `u` and `v`: xy, xz or yz, with `size`.
+        plane: Option<String>,
+        /// Its two sides in that plane, m.
+        size: Option<[f64; 2]>,
+        /// How many particles it has along u and v.
+        particles: [u64; 2],
+        /// Springs between neighbours.
+        structural: Link,
+        /// Rest lengths over the distances at the start, 1 by default, 0 for springs without a rest length.
+        rest_ratio: Option<f64>,
+    }
+}
+
+object! {
+    /// A block of particles.
+    ///
+    /// Refined n times its springs have an nth of their stiffness, and its particles an nth³ of their mass.
+    Lattice {
+        /// The corner [0, 0, 0], m.
+        origin: [f64; 3],
+        /// From there to the last particle of the first direction, m.
+        u: [f64; 3],
+        /// Of the second, m.
+        v: [f64; 3],
+        /// Of the third, m.
+        w: [f64; 3],
+        /// How many particles it has along u, v and w.
+        particles: [u64; 3],
+        /// Springs between neighbours.
+        structural: Link,
+        /// Springs across each face of a cell, both ways.
+        shear: Option<Link>,
+        /// Springs through each cell, all four ways.
+        diagonal: Option<Link>,
+        /// Rest lengths over the distances at the start, 1 by default.
+        rest_ratio: Option<f64>,
+    }
+}
+
+/// The two edges of a sheet.
+fn sides(
+    maker: &Maker,
+    edges: [Option<[f64; 3]>; 2],
+    plane: Option<&str>,
+    size: Option<[f64; 2]>,
+) -> Result<Vec<[f64; 3]>, Problem> {
+    let (axes, [width, height]) = match (edges, plane, size) {
+        ([Some(u), Some(v)], None, None) => {
+            let (u, v) = (maker.point("u", u)?, maker.point("v", v)?);
+            let [a, b] = [u, v].map(Vector3::from);
+            if a.cross(&b).norm() <= 1e-12 * a.norm() * b.norm() {
+                return maker.problem(
+                    "v",
+                    "expected two directions, found `u` and `v` along one line",
+                    "",
+                );
+            }
+            return Ok(vec![u, v]);
+        }
+        ([None, None], Some(plane), Some(size)) => match plane {
+            "xy" => ([0, 1], size),
+            "xz" => ([0, 2], size),
+            "yz" => ([1, 2], size),
+            other => {
+                let found = crate::scene::words::shorten(other);
+                let message = format!("unknown plane `{found}`: expected one of xy, xz, yz");
+                return maker.problem("plane", message, "`u` and `v` give any other");
+            }
+        },
+        _ => {
+            let message = "expected two sides: `u` and `v`, or `plane` and `size`";
+            return Problem::because(
+                maker.path.clone(),
+                message,
+                "such as `u: [1, 0, 0], v: [0, 1, 0]`",
+            );
+        }
+    };
+    let along = |axis: usize, length: f64| {
+        let mut edge = [0.0; 3];
+        edge[axis] = maker.judge("size", length, Bounds::from(1e-12, 1e12, "m"))?;
+        Ok(edge)
+    };
+    Ok(vec![along(axes[0], width)?, along(axes[1], height)?])
+}
+
+/// Words for pins: each corner by its ends along the directions, each side by its direction and end.
+fn words(directions: usize) -> Vec<(&'static str, Pinned)> {
+    const ENDS: [Option<Along>; 2] = [Some(Along::At(0)), Some(Along::Last)];
+    let corner = |ends: &[usize]| Pinned(ends.iter().map(|end| ENDS[*end]).collect());
+    let side = |direction: usize, end: usize| {
+        let mut all = vec![None; directions];
+        all[direction] = ENDS[end];
+        Pinned(all)
+    };
+    match directions {
+        2 => vec![
+            ("corner00", corner(&[0, 0])),
+            ("corner10", corner(&[1, 0])),
+            ("corner01", corner(&[0, 1])),
+            ("corner11", corner(&[1, 1])),
+            ("edge_u0", side(0, 0)),
+            ("edge_u1", side(0, 1)),
+            ("edge_v0", side(1, 0)),
+            ("edge_v1", side(1, 1)),
+        ],
+        _ => vec![
+            ("corner000", corner(&[0, 0, 0])),
+            ("corner100", corner(&[1, 0, 0])),
+            ("corner010", corner(&[0, 1, 0])),
+            ("corner110", corner(&[1, 1, 0])),
+            ("corner001", corner(&[0, 0, 1])),
+            ("corner101", corner(&[1, 0, 1])),
+            ("corner011", corner(&[0, 1, 1])),
+            ("corner111", corner(&[1, 1, 1])),
+            ("face_u0", side(0, 0)),
+            ("face_u1", side(0, 1)),
+            ("face_v0", side(1, 0)),
+            ("face_v1", side(1, 1)),
+            ("face_w0", side(2, 0)),
+            ("face_w1", side(2, 1)),
+        ],
+    }
+}
+
+/// The pins of a sheet or block. `rim` holds every side.
+fn pins(maker: &Maker, options: &Options, frame: &Frame) -> Result<Vec<Pinned>, Problem> {
+    let words = words(frame.links.len());
+    let sides = words.iter().filter(|(word, _)| word.starts_with("edge_"));
+    let rim: Vec<Pin> = sides
+        .map(|(word, _)| Pin::Word((*word).to_owned()))
+        .collect();
+    let named = options.pins.iter().flat_map(|pin| match pin {
+        Pin::Word(word) if word == "rim" && !rim.is_empty() => rim.clone(),
+        pin => vec![pin.clone()],
+    });
+    let options = Options {
+        pins: named.collect(),
+        ..options.clone()
+    };
+    maker.pins(&options, frame, &words)
+}
+
+/// Adds springs by these steps from every particle that has one there.
+fn springs(maker: &mut Maker, body: &Body, steps: &[&[isize]], link: Link, ratio: f64) {
+    for step in steps {
+        let count: usize = body.shape.iter().product();
+        for id in body.first..body.first + count {
+            let Some(place) = body.place(id) else {
+                continue;
+            };
+            let moved = place
+                .iter()
+                .zip(*step)
+                .map(|(at, by)| at.checked_add_signed(*by));
+            let there: Option<Vec<usize>> = moved.collect();
+            if let Some(end) = there.and_then(|there| body.id(&there)) {
+                maker.spring([id, end], link, ratio);
+            }
+        }
+    }
+}
+
+const NEIGHBOURS: [&[isize]; 2] = [&[1, 0], &[0, 1]];
+const ACROSS: [&[isize]; 2] = [&[1, 1], &[1, -1]];
+const SECOND: [&[isize]; 2] = [&[2, 0], &[0, 2]];
+
+impl Generator for Cloth {
+    fn options(&self) -> Options {
+        self.common()
+    }
+
+    fn make(&self, maker: &mut Maker) -> Result<(), Problem> {
+        let options = self.common();
+        let edges = sides(maker, [self.u, self.v], self.plane.as_deref(), self.size)?;
+        let frame = maker.frame(
+            &options,
+            maker.point("origin", self.origin)?,
+            edges,
+            &self.particles,
+        )?;
+        let pins = pins(maker, &options, &frame)?;
+        let kinds = [
+            ("structural", Some(self.structural), NEIGHBOURS),
+            ("shear", self.shear, ACROSS),
+            ("flexion", self.flexion, SECOND),
+        ];
+        let mut links = Vec::new();
+        for (key, link, steps) in kinds {
+            if let Some(link) = link {
+                links.push((maker.link(key, link, 1.0)?, steps));
+            }
+        }
+        let ratio = maker.rest_ratio(self.rest_ratio)?;
+        let air_drag = self.air_drag.unwrap_or_default();
+        maker.judge(
+            "air_drag",
+            air_drag,
+            Bounds::not_negative(1e12, "a pure number"),
+        )?;
+        let body = maker.particles(&options, &frame, &pins)?;
+        for (link, steps) in links {
+            springs(maker, &body, &steps, link, ratio);
+        }
+        if air_drag > 0.0 {
+            let [along, across] = [body.shape[0], body.shape[1]];
+            for i in 1..along {
+                for j in 1..across {
+                    let [a, b, c, d] = [[i - 1, j - 1], [i, j - 1], [i, j], [i - 1, j]]
+                        .map(|[i, j]| body.first + i * across + j);
+                    for corners in [[a, b, c], [a, c, d]] {
+                        maker.scene.triangles.push(Triangle { corners, air_drag });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Generator for Net {
+    fn options(&self) -> Options {
+        self.common()
+    }
+
+    fn make(&self, maker: &mut Maker) -> Result<(), Problem> {
+        let options = self.common();
+        let edges = sides(maker, [self.u, self.v], self.plane.as_deref(), self.size)?;
+        let frame = maker.frame(
+            &options,
+            maker.point("origin", self.origin)?,
+            edges,
+            &self.particles,
+        )?;
+        let pins = pins(maker, &options, &frame)?;
+        let link = maker.link("structural", self.structural, 1.0)?;
+        let ratio = maker.rest_ratio(self.rest_ratio)?;
+        let body = maker.particles(&options, &frame, &pins)?;
+        springs(maker, &body, &NEIGHBOURS, link, ratio);
+        Ok(())
+    }
+}
+
+impl Generator for Lattice {
+    fn options(&self) -> Options {
+        self.common()
+    }
+
+    fn make(&self, maker: &mut Maker) -> Result<(), Problem> {
+        let options = self.common();
+        let edges = [("u", self.u), ("v", self.v), ("w", self.w)];
+        for (key, edge) in edges {
+            maker.point(key, edge)?;
+        }
+        let [u, v, w] = edges.map(|(_, edge)| Vector3::from(edge));
+        let size = u.norm() * v.norm() * w.norm();
+        if u.cross(&v).dot(&w).abs() <= 1e-12 * size
+            || edges.iter().any(|(_, edge)| length(*edge) == 0.0)
+        {
+            return maker.problem(
+                "w",
+                "expected three directions, found them in one plane",
+                "",
+            );
+        }
+        let frame = maker.frame(
+            &options,
+            maker.point("origin", self.origin)?,
+            edges.map(|(_, edge)| edge).to_vec(),
+            &self.particles,
+        )?;
+        let pins = pins(maker, &options, &frame)?;
+        let scale = match options.scaling {
+            Scaling::Continuum => 1.0 / frame.refine as f64,
+            Scaling::None => 1.0,
+        };
+        const AXES: &[&[isize]] = &[&[1, 0, 0], &[0, 1, 0], &[0, 0, 1]];
+        const FACES: &[&[isize]] = &[
+            &[1, 1, 0],
+            &[1, -1, 0],
+            &[1, 0, 1],
+            &[1, 0, -1],
+            &[0, 1, 1],
+            &[0, 1, -1],
+        ];
+        const THROUGH: &[&[isize]] = &[&[1, 1, 1], &[1, 1, -1], &[1, -1, 1], &[1, -1, -1]];
+        let kinds = [
+            ("structural", Some(self.structural), AXES),
+            ("shear", self.shear, FACES),
+            ("diagonal", self.diagonal, THROUGH),
+        ];
+        let mut links = Vec::new();
+        for (key, link, steps) in kinds {
+            if let Some(link) = link {
+                links.push((maker.link(key, link, scale)?, steps));
+            }
+        }
+        let ratio = maker.rest_ratio(self.rest_ratio)?;
+        let body = maker.particles(&options, &frame, &pins)?;
+        for (link, steps) in links {
+            springs(maker, &body, steps, link, ratio);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,195 @@
+//! Particles in a row: strings, chains, hair.
+
+use super::read::object;
+use super::{Along, Frame, Generator, Hinge, Link, Maker, Options, Pin, Pinned, Scaling, length};
+use crate::scene::limits::Bounds;
+use crate::scene::model::{Bending, Particle};
+use crate::scene::place::Problem;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+object! {
+    /// Particles in a row, joined by springs.
+    ///
+    /// Refined n times, a link becomes n links of n times its stiffness and damping, with an nth of its mass: N
+    /// springs in a row are as stiff as one of k/N.
+    Strand {
+        /// The first particle, m.
+        from: [f64; 3],
+        /// The last, m.
+        to: [f64; 3],
+        /// How many particles it has, both ends included.
+        particles: u64,
+        /// k of each spring, N/m.
+        stiffness: f64,
+        /// c of each spring, N s/m.
+        damping: Option<f64>,
+        /// Rest lengths over the distances at the start, 1 by default.
+        rest_ratio: Option<f64>,
+    }
+}
+
+object! {
+    /// A string that resists bending, and may be clamped at its root.
+    ///
+    /// A hinge at the middle of links of length l has kb = EI/l: refined n times it is n times as stiff.
+    Hair {
+        /// The root, m.
+        from: [f64; 3],
+        /// The tip, m.
+        to: [f64; 3],
+        /// How many particles it has, both ends included.
+        particles: u64,
+        /// The springs between neighbours.
+        structural: Link,
+        /// The hinges at all particles between two.
+        bending: Hinge,
+        /// The direction in which it leaves its root, which is fixed then. The hinge there stands for half a link and
+        /// has 2 kb; a fixed particle of no motion behind the root is its third.
+        clamp: Option<[f64; 3]>,
+        /// Rest lengths over the distances at the start, 1 by default.
+        rest_ratio: Option<f64>,
+    }
+}
+
+/// The words for pins of a row.
+fn words() -> [(&'static str, Pinned); 2] {
+    [
+        ("start", Pinned(vec![Some(Along::At(0))])),
+        ("end", Pinned(vec![Some(Along::Last)])),
+    ]
+}
+
+/// The frame from one end to the other.
+fn frame(
+    maker: &Maker,
+    options: &Options,
+    from: [f64; 3],
+    to: [f64; 3],
+    particles: u64,
+) -> Result<Frame, Problem> {
+    let (from, to) = (maker.point("from", from)?, maker.point("to", to)?);
+    let edge = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+    if length(edge) == 0.0 {
+        return maker.problem("to", "expected two ends apart, found both in one place", "");
+    }
+    maker.frame(options, from, vec![edge], &[particles])
+}
+
+/// What refining multiplies stiffness and damping by.
+fn scale(options: &Options, frame: &Frame) -> f64 {
+    match options.scaling {
+        Scaling::Continuum => frame.refine as f64,
+        Scaling::None => 1.0,
+    }
+}
+
+impl Generator for Strand {
+    fn options(&self) -> Options {
+        self.common()
+    }
+
+    fn make(&self, maker: &mut Maker) -> Result<(), Problem> {
+        let options = self.common();
+        let frame = frame(maker, &options, self.from, self.to, self.particles)?;
+        let pins = maker.pins(&options, &frame, &words())?;
+        let link = Link {
+            stiffness: self.stiffness,
+            damping: self.damping.unwrap_or_default(),
+        };
+        let link = maker.link("", link, scale(&options, &frame))?;
+        let ratio = maker.rest_ratio(self.rest_ratio)?;
+        let body = maker.particles(&options, &frame, &pins)?;
+        for at in 1..body.shape[0] {
+            maker.spring([body.first + at - 1, body.first + at], link, ratio);
+        }
+        Ok(())
+    }
+}
+
+impl Generator for Hair {
+    fn options(&self) -> Options {
+        self.common()
+    }
+
+    fn make(&self, maker: &mut Maker) -> Result<(), Problem> {
+        let options = self.common();
+        let frame = frame(maker, &options, self.from, self.to, self.particles)?;
+        let mut pins = maker.pins(&options, &frame, &words())?;
+        let scale = scale(&options, &frame);
+        let link = maker.link("structural", self.structural, scale)?;
+        let hinge = self.hinge(maker, scale)?;
+        let ratio = maker.rest_ratio(self.rest_ratio)?;
+        let clamp = match self.clamp {
+            Some(clamp) if length(maker.point("clamp", clamp)?) == 0.0 => {
+                return maker.problem(
+                    "clamp",
+                    "expected a direction, found a vector of length 0",
+                    "",
+                );
+            }
+            clamp => clamp,
+        };
+        if clamp.is_some() {
+            pins.push(Pinned(vec![Some(Along::At(0))]));
+        }
+        let body = maker.particles(&options, &frame, &pins)?;
+        let (root, count) = (body.first, body.shape[0]);
+        for at in 1..count {
+            maker.spring([root + at - 1, root + at], link, ratio);
+        }
+        for at in 1..count.saturating_sub(1) {
+            maker.scene.bending.push(Bending {
+                particles: [root + at - 1, root + at, root + at + 1],
+                ..hinge.clone()
+            });
+        }
+        if let Some(clamp) = clamp {
+            let link = length(frame.edges[0]) / frame.links[0] as f64;
+            let back = link / length(clamp);
+            let ghost = maker.scene.particles.len();
+            maker.scene.particles.push(Particle {
+                position: [0, 1, 2].map(|axis| frame.origin[axis] - back * clamp[axis]),
+                fixed: true,
+                ..maker.scene.particles[root].clone()
+            });
+            maker.scene.bending.push(Bending {
+                particles: [ghost, root, root + 1],
+                stiffness: 2.0 * hinge.stiffness,
+                damping: 2.0 * hinge.damping,
+                rest_angle: 0.0,
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Hair {
+    /// A hinge with its numbers scaled and within their bounds.
+    fn hinge(&self, maker: &Maker, scale: f64) -> Result<Bending, Problem> {
+        let Hinge {
+            stiffness,
+            damping,
+            rest_angle,
+        } = self.bending;
+        let within = |key: &str, x: f64, unit| {
+            // The one at the root has twice as much.
+            let bounds = Bounds::not_negative(0.5e18, unit);
+            maker.judge(key, x, bounds)?;
+            maker.judge(key, x * scale, bounds)
+        };
+        let angle = Bounds::not_negative(std::f64::consts::PI, "rad");
+        let most = match self.common().scaling {
+            // The angle of a curve is shared by its links.
+            Scaling::Continuum => rest_angle / scale,
+            Scaling::None => rest_angle,
+        };
+        maker.judge("bending.rest_angle", rest_angle, angle)?;
+        Ok(Bending {
+            stiffness: within("bending.stiffness", stiffness, "N m/rad")?,
+            damping: within("bending.damping", damping, "N m s/rad")?,
+            rest_angle: most,
+            ..Bending::default()
+        })
+    }
+}
