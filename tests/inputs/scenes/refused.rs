@@ -33,7 +33,7 @@ const PARTS: &[Row] = &[
     ("object, no object", "objects: [»3]", &["objects[0]", "expected a mapping, found the number `3`"]),
     ("object, unknown kind", "objects: [{»rope: {}}]", &["objects[0]", "unknown key `rope`", "string, chain, hair, cloth, net, lattice"]),
     ("object, of no kind", "objects: [»{}]", &["objects[0]", "expected one of string, chain, hair"]),
-    ("object, of two kinds", "objects:\n- »string: {from: [0, 0, 0], to: [1, 0, 0], particles: 3, mass: 1, stiffness: 3}\n  chain: {from: [0, 0, 0], to: [1, 0, 0], particles: 3, mass: 1, stiffness: 3}", &["objects[0]", "expected one of string, chain, hair"]),
+    ("object, of two kinds", "objects:\n- »string: {from: [0,0,0], to: [1,0,0], particles: 3, mass: 1, stiffness: 3}\n  chain: {from: [0,0,0], to: [1,0,0], particles: 3, mass: 1, stiffness: 3}", &["objects[0]", "expected one of string, chain, hair"]),
     ("object, a key missing", "objects: [{string: »{from: [0, 0, 0], to: [1, 0, 0], particles: 3, mass: 1}}]", &["objects[0].string.stiffness", "missing"]),
     ("object, a key misspelt", "objects: [{string: {from: [0, 0, 0], to: [1, 0, 0], particles: 3, mass: 1, »stifness: 3}}]", &["objects[0].string", "unknown key `stifness`", "did you mean `stiffness`?"]),
     ("object, a word misspelt", "objects: [{string: {from: [0, 0, 0], to: [1, 0, 0], particles: 3, mass: 1, stiffness: 3, scaling: »contin}}]", &["objects[0].string.scaling", "expected one of continuum, none, found `contin`"]),
