@@ -97,6 +97,30 @@ fn a_refined_string_keeps_its_lowest_frequency() {
     near(frequencies(&plain, &[0])[0], wanted, 1e-12);
 }
 
+/// A string of N links that hangs from one end stretches by M g/(2 K) where its ends weigh half, as the continuum does at
+/// every N, and by m g N (N + 1)/(2 k) where all N free masses are equal: 0.53955 m of ten.
+#[test]
+fn a_hanging_string_stretches_as_its_closed_form() {
+    const G: f64 = 9.81;
+    let sag = |scene: &Scene| {
+        let (matrix, masses) = stiffness(scene, &[2]);
+        let weight = DVector::from_iterator(masses.len(), masses.iter().map(|m| m * G));
+        let down = matrix.lu().solve(&weight).expect("no mechanism");
+        down[down.len() - 1]
+    };
+    // Sums of so many terms, each to a rounding or two.
+    for refine in [1, 2, 5] {
+        let scene = with(&format!(
+            "- string: {{from: [0, 0, 3], to: [0, 0, 0], particles: 5, mass: 2, stiffness: 400, pins: [start], refine: {refine}}}"
+        ));
+        near(sag(&scene), 2.0 * G / (2.0 * 100.0), 1e-13);
+    }
+    let equal = with(
+        "- chain: {from: [0, 0, 3], to: [0, 0, 0], particles: 11, particle_mass: 0.1, stiffness: 100, pins: [0]}",
+    );
+    near(sag(&equal), 0.53955, 1e-13);
+}
+
 /// A net of 9 x 9 free knots on springs without rest length: w² = (4 k/m) (sin²(i pi/20) + sin²(j pi/20)).
 #[test]
 fn a_net_sounds_as_its_closed_form() {

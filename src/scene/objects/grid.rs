@@ -1,7 +1,9 @@
 //! Particles in rows and columns: cloth, nets, and blocks of them.
 
 use super::read::object;
-use super::{Along, Body, Frame, Generator, Link, Maker, Options, Pin, Pinned, Scaling, length};
+use super::{
+    Along, Body, Frame, Generator, Link, Maker, Options, Pin, Pinned, Scaling, each_place, length,
+};
 use crate::scene::limits::Bounds;
 use crate::scene::model::Triangle;
 use crate::scene::place::Problem;
@@ -195,20 +197,21 @@ fn pins(maker: &Maker, options: &Options, frame: &Frame) -> Result<Vec<Pinned>, 
 /// Adds springs by these steps from every particle that has one there.
 fn springs(maker: &mut Maker, body: &Body, steps: &[&[isize]], link: Link, ratio: f64) {
     for step in steps {
-        let count: usize = body.shape.iter().product();
-        for id in body.first..body.first + count {
-            let Some(place) = body.place(id) else {
-                continue;
-            };
-            let moved = place
-                .iter()
-                .zip(*step)
-                .map(|(at, by)| at.checked_add_signed(*by));
-            let there: Option<Vec<usize>> = moved.collect();
-            if let Some(end) = there.and_then(|there| body.id(&there)) {
+        // Ids differ by as much wherever both particles are.
+        let apart = step.iter().zip(&body.shape);
+        let apart = apart.fold(0, |sum, (by, count)| sum * *count as isize + by);
+        let mut id = body.first;
+        each_place(&body.shape, |place| {
+            let mut along = place.iter().zip(*step).zip(&body.shape);
+            let inside = along.all(|((at, by), count)| {
+                at.checked_add_signed(*by)
+                    .is_some_and(|there| there < *count)
+            });
+            if let (true, Some(end)) = (inside, id.checked_add_signed(apart)) {
                 maker.spring([id, end], link, ratio);
             }
-        }
+            id += 1;
+        });
     }
 }
 

@@ -279,17 +279,20 @@ impl Frame {
         }
         position
     }
+}
 
-    /// Every place, the last direction fastest.
-    fn places(&self) -> impl Iterator<Item = Vec<usize>> + use<> {
-        let shape = self.shape();
-        let count: usize = shape.iter().product();
-        let body = Body {
-            name: String::new(),
-            first: 0,
-            shape,
-        };
-        (0..count).filter_map(move |id| body.place(id))
+/// Visits every place of such a shape, the last direction fastest.
+fn each_place(shape: &[usize], mut visit: impl FnMut(&[usize])) {
+    let mut place = vec![0; shape.len()];
+    for _ in 0..shape.iter().product() {
+        visit(&place);
+        for (at, count) in place.iter_mut().zip(shape).rev() {
+            *at += 1;
+            if *at < *count {
+                break;
+            }
+            *at = 0;
+        }
     }
 }
 
@@ -411,27 +414,34 @@ impl Maker<'_> {
             first: self.scene.particles.len(),
             shape: frame.shape(),
         };
-        for place in frame.places() {
-            let ends = place
-                .iter()
-                .zip(&frame.links)
-                .filter(|(at, links)| **at == 0 || **at as u64 == **links);
+        // The lightest, at a corner.
+        let least = if lumped {
+            0.5_f64.powi(directions)
+        } else {
+            1.0
+        };
+        self.judge(key, inner, mass)?;
+        self.judge(key, inner * least, mass)?;
+        let particles = &mut self.scene.particles;
+        each_place(&body.shape, |place| {
+            let ends = place.iter().zip(&frame.links);
+            let ends = ends.filter(|(at, links)| **at == 0 || **at as u64 == **links);
             let part = if lumped {
                 0.5_f64.powi(ends.count() as i32)
             } else {
                 1.0
             };
-            let fixed = pins.iter().any(|pin| pin.holds(&place, &frame.links));
-            self.scene.particles.push(Particle {
-                position: frame.position(&place),
+            let fixed = pins.iter().any(|pin| pin.holds(place, &frame.links));
+            particles.push(Particle {
+                position: frame.position(place),
                 velocity: if fixed { [0.0; 3] } else { velocity },
                 fixed,
-                mass: self.judge(key, inner * part, mass)?,
+                mass: inner * part,
                 radius,
                 drag: drag * part,
                 ..Particle::default()
             });
-        }
+        });
         self.scene.bodies.push(body.clone());
         Ok(body)
     }
