@@ -1,9 +1,10 @@
-"""Errors of three methods, computed apart from the program: what scenes/effects expects of them.
+"""Errors of three methods, computed apart from the program: what scenes expect of them.
 
     pip install numpy mpmath; python3 tests/apart.py
 
 The largest distance of a particle from the truth over the whole steps of a run, m, in numbers of 80 bits. The truth
-is Kepler's equation, Jacobi's cn, or where there is no closed form rk4 at steps so small that two of them agree.
+is Kepler's equation, Jacobi's cn, the modes of a network, or where there is no closed form rk4 at steps so small that
+two of them agree.
 """
 
 import mpmath
@@ -100,6 +101,29 @@ def scene(name, acceleration, x, v, h, duration, truth=None):
         print(f"{name:16} {method.__name__:16} {np.sqrt((off**2).sum(-1)).max():.4e}")
 
 
+def network(stiffness, masses, gravity):
+    """Motion from rest under this matrix and gravity: its acceleration, and its truth by modes."""
+    roots = np.sqrt(masses)
+    squares, modes = np.linalg.eigh(stiffness / np.outer(roots, roots))
+    sag = modes.T @ (gravity * roots) / squares
+
+    def acceleration(x):
+        return (gravity - (stiffness @ x[:, 0] / masses))[:, None]
+
+    def truth(times):
+        swing = sag * (1 - np.cos(np.outer(times.astype(float), np.sqrt(squares))))
+        return (swing @ modes.T / roots)[..., None]
+
+    return acceleration, truth
+
+
+def path_matrix(free, loose_end):
+    """Springs of 1 N/m between a wall and masses in a row, and from the last one to a wall unless its end is loose."""
+    matrix = 2 * np.eye(free) - np.eye(free, k=1) - np.eye(free, k=-1)
+    matrix[-1, -1] -= loose_end
+    return matrix
+
+
 eight = real(["0.97000436", "-0.24308753"], ["-0.97000436", "0.24308753"], ["0", "0"])
 third = real("-0.93240737", "-0.86473146")
 
@@ -107,3 +131,12 @@ scene("kepler", sun, real(["0.5", "0"]), np.sqrt(real(["0", "3"])), "0.01", 10 *
 scene("duffing", duffing, real(["1"]), real(["0"]), "0.005", 10, jacobi_cn)
 scene("figure_eight", attraction, eight, np.array([-third / 2, -third / 2, third]), "0.001", 6.32591398)
 scene("elastic_pendulum", pendulum, real(["1.2", "0"]), real(["0", "0"]), "0.001", 10)
+
+ends = np.full(10, 0.1)
+ends[-1] = 0.05
+string = network(1000.0 * path_matrix(10, 1), ends, -9.81)
+scene("string/hanging", string[0], np.zeros((10, 1)), np.zeros((10, 1)), "0.0005", 2, string[1])
+row = path_matrix(9, 0)
+both = np.kron(row, np.eye(9)) + np.kron(np.eye(9), row)
+net = network(100.0 * both, np.full(81, 0.01), -9.81)
+scene("cloth/net", net[0], np.zeros((81, 1)), np.zeros((81, 1)), "0.0005", 1, net[1])

@@ -3,11 +3,11 @@
 
 use super::drive::Drive;
 use super::error::Refusal;
+use super::expand;
 use super::expect::engine;
 use super::expectation::{Names, Scope};
 use super::limits::{self, DRIVEN_ACCELERATION, DRIVEN_SPEED};
 use super::model::{Driven, Knots, NO_PARTICLES, Particle, Scene, Triangle, Wind};
-use super::objects;
 use super::place::Problem;
 use super::read::Reading;
 use super::table::Value;
@@ -53,7 +53,7 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
     externals(&scene, reading.names)?;
     check_times(scene.solver.timestep, scene.duration)
         .map_err(|refusal| Problem::new("solver.timestep", refusal))?;
-    objects::expand(&mut scene)?;
+    expand::expand(&mut scene)?;
     for named in &reading.named {
         let found = scene.particle_named(&named.name);
         let id = found.map_err(|refusal| Problem::new(named.path(), refusal))?;

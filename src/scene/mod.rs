@@ -10,11 +10,12 @@
 mod complete;
 mod drive;
 mod error;
+mod expand;
 mod expect;
 mod expectation;
 pub mod limits;
 pub mod model;
-pub mod objects;
+pub mod object;
 mod place;
 mod read;
 mod table;

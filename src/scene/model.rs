@@ -14,7 +14,7 @@
 
 use super::expectation::{Expectation, Scope, Skipped};
 use super::limits::{self, Bounds, Form};
-use super::objects::{Body, Object};
+use super::object::{Body, Object};
 use super::table::{Field, Value, Vectors, declare, member, words};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;

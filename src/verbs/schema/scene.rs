@@ -6,7 +6,7 @@
 use crate::report::words::short;
 use crate::scene::limits::{Bounds, EXPECTED, EXTERNAL, WORD_BYTES};
 use crate::scene::model::{Absent, Part, Row, SCENE, ValueKind};
-use crate::scene::objects::{Object, PARTICLE_NAME};
+use crate::scene::object::{Object, PARTICLE_NAME};
 use crate::scene::{ALL, KeyKind, Names, OutcomeKey, REST, SKIP, Scene, Value};
 use serde_json::{Map, Value as Json, json};
 

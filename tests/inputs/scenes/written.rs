@@ -13,7 +13,12 @@ fn a_scene_written_out_is_the_same_scene() {
         let text = scene::yaml(scene);
         let again = scene::parse(text.as_bytes(), &scene.file, names());
         let again = again.unwrap_or_else(|error| panic!("{error}\n{text}"));
-        assert_eq!(again, *scene, "{text}");
+        // Names of particles are not written out.
+        let plain = Scene {
+            bodies: Vec::new(),
+            ..scene.clone()
+        };
+        assert_eq!(again, plain, "{text}");
         // Nothing is left to fill in.
         assert_eq!(scene::yaml(&again), text);
     };

@@ -1,94 +1,11 @@
 //! Particles in rows and columns: cloth, nets, and blocks of them.
 
-use super::read::object;
-use super::{
-    Along, Body, Frame, Generator, Link, Maker, Options, Pin, Pinned, Scaling, each_place, length,
-};
+use super::{Along, Frame, Generator, Maker, Pinned, each_place, length};
 use crate::scene::limits::Bounds;
 use crate::scene::model::Triangle;
+use crate::scene::object::{Body, Cloth, Lattice, Link, Net, Options, Pin, Scaling};
 use crate::scene::place::Problem;
 use nalgebra::Vector3;
-use schemars::JsonSchema;
-use serde::Deserialize;
-
-object! {
-    /// A sheet of particles in a plane, with springs along its threads and across.
-    ///
-    /// Refined n times it keeps its springs and has an nth² of their masses: a membrane of square cells is as stiff
-    /// whatever their number. Flexion springs have no such limit.
-    Cloth {
-        /// The corner [0, 0], m.
-        origin: [f64; 3],
-        /// From there to the last particle of the first direction, m.
-        u: Option<[f64; 3]>,
-        /// From there to the last particle of the second direction, m.
-        v: Option<[f64; 3]>,
-        /// In the place of `u` and `v`: xy, xz or yz, with `size`.
-        plane: Option<String>,
-        /// Its two sides in that plane, m.
-        size: Option<[f64; 2]>,
-        /// How many particles it has along u and v.
-        particles: [u64; 2],
-        /// Springs between neighbours along u and v.
-        structural: Link,
-        /// Springs across each cell, both ways.
-        shear: Option<Link>,
-        /// Springs between every second particle along u and v.
-        flexion: Option<Link>,
-        /// Drag coefficient C of its triangles, two a cell.
-        air_drag: Option<f64>,
-        /// Rest lengths over the distances at the start, 1 by default.
-        rest_ratio: Option<f64>,
-    }
-}
-
-object! {
-    /// A sheet with springs along its threads alone.
-    Net {
-        /// The corner [0, 0], m.
-        origin: [f64; 3],
-        /// From there to the last particle of the first direction, m.
-        u: Option<[f64; 3]>,
-        /// From there to the last particle of the second direction, m.
-        v: Option<[f64; 3]>,
-        /// In the place of `u` and `v`: xy, xz or yz, with `size`.
-        plane: Option<String>,
-        /// Its two sides in that plane, m.
-        size: Option<[f64; 2]>,
-        /// How many particles it has along u and v.
-        particles: [u64; 2],
-        /// Springs between neighbours.
-        structural: Link,
-        /// Rest lengths over the distances at the start, 1 by default, 0 for springs without a rest length.
-        rest_ratio: Option<f64>,
-    }
-}
-
-object! {
-    /// A block of particles.
-    ///
-    /// Refined n times its springs have an nth of their stiffness, and its particles an nth³ of their mass.
-    Lattice {
-        /// The corner [0, 0, 0], m.
-        origin: [f64; 3],
-        /// From there to the last particle of the first direction, m.
-        u: [f64; 3],
-        /// Of the second, m.
-        v: [f64; 3],
-        /// Of the third, m.
-        w: [f64; 3],
-        /// How many particles it has along u, v and w.
-        particles: [u64; 3],
-        /// Springs between neighbours.
-        structural: Link,
-        /// Springs across each face of a cell, both ways.
-        shear: Option<Link>,
-        /// Springs through each cell, all four ways.
-        diagonal: Option<Link>,
-        /// Rest lengths over the distances at the start, 1 by default.
-        rest_ratio: Option<f64>,
-    }
-}
 
 /// The two edges of a sheet.
 fn sides(

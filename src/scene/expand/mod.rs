@@ -1,92 +1,22 @@
-//! Objects: a few lines of a file that stand for many particles, springs, hinges and triangles.
+//! What objects make of a scene: particles, springs, hinges and triangles.
 //!
-//! [`expand`] adds what they make to the scene, behind the members that are written out, in the order of the file.
+//! [`expand`] adds them behind the members that are written out, in the order of the file.
 //! What comes after sees plain members alone; [`Body`] keeps their names.
 
 mod grid;
 mod line;
-mod read;
-
-pub use grid::{Cloth, Lattice, Net};
-pub use line::{Hair, Strand};
-pub use read::{Hinge, Link, Pin, Scaling};
 
 use super::error::Refusal;
 use super::limits::{self, Bounds};
 use super::model::{Particle, Scene, Spring};
+use super::object::{Body, Link, Object, Options, Pin, Scaling};
 use super::place::Problem;
-use super::table::Field;
 use super::values::Number;
-use schemars::JsonSchema;
-use serde::Deserialize;
 
 /// The most particles that objects make.
 pub const PARTICLES: u64 = 4_000_000;
-/// The name of a particle of an object, as a regular expression of ECMA-262.
-pub const PARTICLE_NAME: &str =
-    r"^ *[A-Za-z][A-Za-z0-9_-]{0,63} *\[ *[0-9]+ *(, *[0-9]+ *){0,2}\] *$";
 /// The longest name of an object, in characters.
 const NAME_CHARS: usize = 64;
-
-/// One entry under `objects`: one of these.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
-pub struct Object {
-    /// Particles in a row, joined by springs.
-    pub string: Option<Strand>,
-    /// The same as `string`.
-    pub chain: Option<Strand>,
-    /// A string that resists bending, and may be clamped at its root.
-    pub hair: Option<Hair>,
-    /// A sheet of particles with structural, shear and flexion springs.
-    pub cloth: Option<Cloth>,
-    /// A sheet with structural springs alone.
-    pub net: Option<Net>,
-    /// A block of particles.
-    pub lattice: Option<Lattice>,
-}
-
-/// Objects have a reader of their own, and no rows.
-impl Field for Vec<Object> {}
-
-/// The particles of an object, by their places in it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Body {
-    /// The object's name.
-    pub name: String,
-    /// The id of its first particle.
-    pub first: usize,
-    /// How many particles it has along each of its directions, the first of which counts slowest.
-    pub shape: Vec<usize>,
-}
-
-impl Body {
-    /// The id of the particle at this place; None outside.
-    pub fn id(&self, place: &[usize]) -> Option<usize> {
-        let inside = place.len() == self.shape.len()
-            && place.iter().zip(&self.shape).all(|(at, count)| at < count);
-        let along = |sum, (at, count): (&usize, &usize)| sum * count + at;
-        inside.then(|| self.first + place.iter().zip(&self.shape).fold(0, along))
-    }
-
-    /// Where particle `id` is in it; None where it is not.
-    pub fn place(&self, id: usize) -> Option<Vec<usize>> {
-        let mut rest = id.checked_sub(self.first)?;
-        let mut place = vec![0; self.shape.len()];
-        for (at, count) in place.iter_mut().zip(&self.shape).rev() {
-            *at = rest % count;
-            rest /= count;
-        }
-        (rest == 0).then_some(place)
-    }
-
-    /// `sheet[0..29, 0..19]`
-    fn range(&self) -> String {
-        let ranges = self.shape.iter().map(|count| format!("0..{}", count - 1));
-        format!("{}[{}]", self.name, ranges.collect::<Vec<_>>().join(", "))
-    }
-}
 
 impl Scene {
     /// The name of a particle that an object made, such as `sheet[3,4]`.
@@ -220,20 +150,6 @@ fn named(name: &str, scene: &Scene) -> Result<(), Refusal> {
         return Refusal::because(message, "give each a name of its own: `name: ...`");
     }
     Ok(())
-}
-
-/// What every kind of object may say.
-#[derive(Debug, Clone, Default)]
-struct Options {
-    name: Option<String>,
-    mass: Option<f64>,
-    particle_mass: Option<f64>,
-    radius: Option<f64>,
-    drag: Option<f64>,
-    velocity: Option<[f64; 3]>,
-    refine: Option<u64>,
-    scaling: Scaling,
-    pins: Vec<Pin>,
 }
 
 /// A kind of object.

@@ -1,56 +1,10 @@
 //! Particles in a row: strings, chains, hair.
 
-use super::read::object;
-use super::{Along, Frame, Generator, Hinge, Link, Maker, Options, Pin, Pinned, Scaling, length};
+use super::{Along, Frame, Generator, Maker, Pinned, length};
 use crate::scene::limits::Bounds;
 use crate::scene::model::{Bending, Particle};
+use crate::scene::object::{Hair, Hinge, Link, Options, Scaling, Strand};
 use crate::scene::place::Problem;
-use schemars::JsonSchema;
-use serde::Deserialize;
-
-object! {
-    /// Particles in a row, joined by springs.
-    ///
-    /// Refined n times, a link becomes n links of n times its stiffness and damping, with an nth of its mass: N
-    /// springs in a row are as stiff as one of k/N.
-    Strand {
-        /// The first particle, m.
-        from: [f64; 3],
-        /// The last, m.
-        to: [f64; 3],
-        /// How many particles it has, both ends included.
-        particles: u64,
-        /// k of each spring, N/m.
-        stiffness: f64,
-        /// c of each spring, N s/m.
-        damping: Option<f64>,
-        /// Rest lengths over the distances at the start, 1 by default.
-        rest_ratio: Option<f64>,
-    }
-}
-
-object! {
-    /// A string that resists bending, and may be clamped at its root.
-    ///
-    /// A hinge at the middle of links of length l has kb = EI/l: refined n times it is n times as stiff.
-    Hair {
-        /// The root, m.
-        from: [f64; 3],
-        /// The tip, m.
-        to: [f64; 3],
-        /// How many particles it has, both ends included.
-        particles: u64,
-        /// The springs between neighbours.
-        structural: Link,
-        /// The hinges at all particles between two.
-        bending: Hinge,
-        /// The direction in which it leaves its root, which is fixed then. The hinge there stands for half a link and
-        /// has 2 kb; a fixed particle of no motion behind the root is its third.
-        clamp: Option<[f64; 3]>,
-        /// Rest lengths over the distances at the start, 1 by default.
-        rest_ratio: Option<f64>,
-    }
-}
 
 /// The words for pins of a row.
 fn words() -> [(&'static str, Pinned); 2] {
