@@ -132,9 +132,44 @@ fn springs(maker: &mut Maker, body: &Body, steps: &[&[isize]], link: Link, ratio
     }
 }
 
-const NEIGHBOURS: [&[isize]; 2] = [&[1, 0], &[0, 1]];
-const ACROSS: [&[isize]; 2] = [&[1, 1], &[1, -1]];
-const SECOND: [&[isize]; 2] = [&[2, 0], &[0, 2]];
+/// Springs of one kind: their key, what the file says of them, and the steps to their other ends.
+type Kind<'k> = (&'static str, Option<Link>, &'k [&'k [isize]]);
+
+/// A sheet or a block: what its directions, particles and springs are.
+struct Grid<'g> {
+    origin: [f64; 3],
+    edges: Vec<[f64; 3]>,
+    particles: &'g [u64],
+    kinds: &'g [Kind<'g>],
+    /// What refining multiplies stiffness and damping by.
+    scale: f64,
+    rest_ratio: Option<f64>,
+}
+
+impl Grid<'_> {
+    /// Adds its particles and springs.
+    fn make(self, maker: &mut Maker, options: &Options) -> Result<Body, Problem> {
+        let origin = maker.point("origin", self.origin)?;
+        let frame = maker.frame(options, origin, self.edges, self.particles)?;
+        let pins = pins(maker, options, &frame)?;
+        let mut links = Vec::new();
+        for &(key, link, steps) in self.kinds {
+            if let Some(link) = link {
+                links.push((maker.link(key, link, self.scale)?, steps));
+            }
+        }
+        let ratio = maker.rest_ratio(self.rest_ratio)?;
+        let body = maker.particles(options, &frame, &pins)?;
+        for (link, steps) in links {
+            springs(maker, &body, steps, link, ratio);
+        }
+        Ok(body)
+    }
+}
+
+const NEIGHBOURS: &[&[isize]] = &[&[1, 0], &[0, 1]];
+const ACROSS: &[&[isize]] = &[&[1, 1], &[1, -1]];
+const SECOND: &[&[isize]] = &[&[2, 0], &[0, 2]];
 
 impl Generator for Cloth {
     fn options(&self) -> Options {
@@ -142,37 +177,25 @@ impl Generator for Cloth {
     }
 
     fn make(&self, maker: &mut Maker) -> Result<(), Problem> {
-        let options = self.common();
-        let edges = sides(maker, [self.u, self.v], self.plane.as_deref(), self.size)?;
-        let frame = maker.frame(
-            &options,
-            maker.point("origin", self.origin)?,
-            edges,
-            &self.particles,
-        )?;
-        let pins = pins(maker, &options, &frame)?;
-        let kinds = [
-            ("structural", Some(self.structural), NEIGHBOURS),
-            ("shear", self.shear, ACROSS),
-            ("flexion", self.flexion, SECOND),
-        ];
-        let mut links = Vec::new();
-        for (key, link, steps) in kinds {
-            if let Some(link) = link {
-                links.push((maker.link(key, link, 1.0)?, steps));
-            }
-        }
-        let ratio = maker.rest_ratio(self.rest_ratio)?;
+        let grid = Grid {
+            edges: sides(maker, [self.u, self.v], self.plane.as_deref(), self.size)?,
+            origin: self.origin,
+            particles: &self.particles,
+            kinds: &[
+                ("structural", Some(self.structural), NEIGHBOURS),
+                ("shear", self.shear, ACROSS),
+                ("flexion", self.flexion, SECOND),
+            ],
+            scale: 1.0,
+            rest_ratio: self.rest_ratio,
+        };
+        let body = grid.make(maker, &self.common())?;
         let air_drag = self.air_drag.unwrap_or_default();
         maker.judge(
             "air_drag",
             air_drag,
             Bounds::not_negative(1e12, "a pure number"),
         )?;
-        let body = maker.particles(&options, &frame, &pins)?;
-        for (link, steps) in links {
-            springs(maker, &body, &steps, link, ratio);
-        }
         if air_drag > 0.0 {
             let [along, across] = [body.shape[0], body.shape[1]];
             for i in 1..along {
@@ -195,20 +218,15 @@ impl Generator for Net {
     }
 
     fn make(&self, maker: &mut Maker) -> Result<(), Problem> {
-        let options = self.common();
-        let edges = sides(maker, [self.u, self.v], self.plane.as_deref(), self.size)?;
-        let frame = maker.frame(
-            &options,
-            maker.point("origin", self.origin)?,
-            edges,
-            &self.particles,
-        )?;
-        let pins = pins(maker, &options, &frame)?;
-        let link = maker.link("structural", self.structural, 1.0)?;
-        let ratio = maker.rest_ratio(self.rest_ratio)?;
-        let body = maker.particles(&options, &frame, &pins)?;
-        springs(maker, &body, &NEIGHBOURS, link, ratio);
-        Ok(())
+        let grid = Grid {
+            edges: sides(maker, [self.u, self.v], self.plane.as_deref(), self.size)?,
+            origin: self.origin,
+            particles: &self.particles,
+            kinds: &[("structural", Some(self.structural), NEIGHBOURS)],
+            scale: 1.0,
+            rest_ratio: self.rest_ratio,
+        };
+        grid.make(maker, &self.common()).map(|_| ())
     }
 }
 
@@ -218,6 +236,16 @@ impl Generator for Lattice {
     }
 
     fn make(&self, maker: &mut Maker) -> Result<(), Problem> {
+        const AXES: &[&[isize]] = &[&[1, 0, 0], &[0, 1, 0], &[0, 0, 1]];
+        const FACES: &[&[isize]] = &[
+            &[1, 1, 0],
+            &[1, -1, 0],
+            &[1, 0, 1],
+            &[1, 0, -1],
+            &[0, 1, 1],
+            &[0, 1, -1],
+        ];
+        const THROUGH: &[&[isize]] = &[&[1, 1, 1], &[1, 1, -1], &[1, -1, 1], &[1, -1, -1]];
         let options = self.common();
         let edges = [("u", self.u), ("v", self.v), ("w", self.w)];
         for (key, edge) in edges {
@@ -234,43 +262,21 @@ impl Generator for Lattice {
                 "",
             );
         }
-        let frame = maker.frame(
-            &options,
-            maker.point("origin", self.origin)?,
-            edges.map(|(_, edge)| edge).to_vec(),
-            &self.particles,
-        )?;
-        let pins = pins(maker, &options, &frame)?;
-        let scale = match options.scaling {
-            Scaling::Continuum => 1.0 / frame.refine as f64,
-            Scaling::None => 1.0,
+        let grid = Grid {
+            edges: edges.map(|(_, edge)| edge).to_vec(),
+            origin: self.origin,
+            particles: &self.particles,
+            kinds: &[
+                ("structural", Some(self.structural), AXES),
+                ("shear", self.shear, FACES),
+                ("diagonal", self.diagonal, THROUGH),
+            ],
+            scale: match options.scaling {
+                Scaling::Continuum => 1.0 / options.refine.unwrap_or(1) as f64,
+                Scaling::None => 1.0,
+            },
+            rest_ratio: self.rest_ratio,
         };
-        const AXES: &[&[isize]] = &[&[1, 0, 0], &[0, 1, 0], &[0, 0, 1]];
-        const FACES: &[&[isize]] = &[
-            &[1, 1, 0],
-            &[1, -1, 0],
-            &[1, 0, 1],
-            &[1, 0, -1],
-            &[0, 1, 1],
-            &[0, 1, -1],
-        ];
-        const THROUGH: &[&[isize]] = &[&[1, 1, 1], &[1, 1, -1], &[1, -1, 1], &[1, -1, -1]];
-        let kinds = [
-            ("structural", Some(self.structural), AXES),
-            ("shear", self.shear, FACES),
-            ("diagonal", self.diagonal, THROUGH),
-        ];
-        let mut links = Vec::new();
-        for (key, link, steps) in kinds {
-            if let Some(link) = link {
-                links.push((maker.link(key, link, scale)?, steps));
-            }
-        }
-        let ratio = maker.rest_ratio(self.rest_ratio)?;
-        let body = maker.particles(&options, &frame, &pins)?;
-        for (link, steps) in links {
-            springs(maker, &body, steps, link, ratio);
-        }
-        Ok(())
+        grid.make(maker, &options).map(|_| ())
     }
 }
