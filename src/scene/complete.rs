@@ -7,13 +7,14 @@ use super::expand;
 use super::expect::engine;
 use super::expectation::{Names, Scope};
 use super::limits::{self, DRIVEN_ACCELERATION, DRIVEN_SPEED};
-use super::model::{Driven, Knots, NO_PARTICLES, Particle, Scene, Triangle, Wind};
+use super::model::{Driven, Knots, NO_PARTICLES, Named, Particle, Scene, Triangle, Wind, Written};
 use super::place::Problem;
 use super::read::Reading;
 use super::table::Value;
 use super::values::Number;
 use nalgebra::Vector3;
 use std::fmt::Display;
+use std::sync::Arc;
 
 /// Checks that the duration holds at least one step, and no more than a run can take; both in seconds.
 ///
@@ -46,15 +47,41 @@ pub fn check_times(timestep: f64, duration: f64) -> Result<(), Refusal> {
 
 /// Completes the scene that was read. The first problem ends the check.
 pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
-    let Reading { mut scene, .. } = reading;
-    if let Some(problem) = reading.problem {
+    let Reading {
+        scene,
+        names,
+        no_id,
+        named,
+        problem,
+    } = reading;
+    if let Some(problem) = problem {
         return Err(problem);
     }
-    externals(&scene, reading.names)?;
+    externals(&scene, names)?;
     check_times(scene.solver.timestep, scene.duration)
         .map_err(|refusal| Problem::new("solver.timestep", refusal))?;
+    if scene.objects.is_empty() {
+        return expanded(scene, &named, no_id);
+    }
+    let written = Arc::new(Written {
+        scene: scene.clone(),
+        named,
+    });
+    let scene = expanded(scene, &written.named, no_id)?;
+    Ok(Scene {
+        written: Some(written),
+        ..scene
+    })
+}
+
+/// Expands the objects of a scene, finds the particles that are named, and checks what is there then.
+pub(super) fn expanded(
+    mut scene: Scene,
+    named: &[Named],
+    no_id: Option<(String, Number)>,
+) -> Result<Scene, Problem> {
     expand::expand(&mut scene)?;
-    for named in &reading.named {
+    for named in named {
         let found = scene.particle_named(&named.name);
         let id = found.map_err(|refusal| Problem::new(named.path(), refusal))?;
         (named.row.set)(&mut scene, named.at, named.component, Value::Id(id));
@@ -65,7 +92,7 @@ pub(super) fn scene(reading: Reading) -> Result<Scene, Problem> {
         driven(at, motion, &scene)?;
     }
     let starts = scene.starts();
-    if let Some((path, number)) = reading.no_id {
+    if let Some((path, number)) = no_id {
         return Err(Problem::new(path, no_particle(number, count)));
     }
     for (at, spring) in scene.springs.iter_mut().enumerate() {

@@ -18,6 +18,7 @@ pub mod model;
 pub mod object;
 mod place;
 mod read;
+mod remake;
 mod table;
 mod text;
 mod values;

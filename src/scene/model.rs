@@ -19,6 +19,7 @@ use super::table::{Field, Value, Vectors, declare, member, words};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// All parts: the mappings a file consists of.
 pub static PARTS: [&Part; 13] = [
@@ -99,6 +100,41 @@ impl Row {
     }
 }
 
+/// A particle that a key names, such as `sheet[3,4]`.
+#[derive(Debug, Clone)]
+pub(super) struct Named {
+    pub(super) part: &'static Part,
+    pub(super) row: &'static Row,
+    pub(super) at: usize,
+    pub(super) component: usize,
+    pub(super) name: String,
+}
+
+impl PartialEq for Named {
+    fn eq(&self, other: &Self) -> bool {
+        (self.path(), &self.name) == (other.path(), &other.name)
+    }
+}
+
+impl Named {
+    /// The path of the value.
+    pub(super) fn path(&self) -> String {
+        let path = self.part.path(Some(self.at), self.row.key);
+        match self.row.kind {
+            ValueKind::Ids(_) => format!("{path}[{}]", self.component),
+            _ => path,
+        }
+    }
+}
+
+/// A scene as its file has it, before objects were expanded.
+#[derive(Debug, PartialEq)]
+pub struct Written {
+    pub(super) scene: Scene,
+    /// The particles that it names.
+    pub(super) named: Vec<Named>,
+}
+
 /// The kind of value under a key.
 #[derive(Debug)]
 pub enum ValueKind {
@@ -158,6 +194,10 @@ declare! {
     [
         /// What objects made of their particles, in the order of the file.
         bodies: Vec<Body> = Vec::new()
+    ]
+    [
+        /// The scene before its objects were expanded; None without objects, and for a scene built in code.
+        written: Option<Arc<Written>> = None
     ]
     [
         /// The checks that are not made, in the order of the file's `expect.skip`.

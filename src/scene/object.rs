@@ -30,6 +30,35 @@ pub struct Object {
     pub lattice: Option<Lattice>,
 }
 
+impl Object {
+    /// Cuts each of its links into so many.
+    pub(super) fn refine(&mut self, links: u64, scaling: Scaling) {
+        let Self {
+            string,
+            chain,
+            hair,
+            cloth,
+            net,
+            lattice,
+        } = self;
+        for strand in [string, chain].into_iter().flatten() {
+            strand.refine(links, scaling);
+        }
+        if let Some(hair) = hair {
+            hair.refine(links, scaling);
+        }
+        if let Some(cloth) = cloth {
+            cloth.refine(links, scaling);
+        }
+        if let Some(net) = net {
+            net.refine(links, scaling);
+        }
+        if let Some(lattice) = lattice {
+            lattice.refine(links, scaling);
+        }
+    }
+}
+
 /// The particles of an object, by their places in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
@@ -59,6 +88,12 @@ impl Body {
             rest /= count;
         }
         (rest == 0).then_some(place)
+    }
+
+    /// `sheet[3,4]`
+    pub fn called(&self, place: &[usize]) -> String {
+        let place: Vec<String> = place.iter().map(usize::to_string).collect();
+        format!("{}[{}]", self.name, place.join(","))
     }
 
     /// `sheet[0..29, 0..19]`
@@ -210,6 +245,12 @@ macro_rules! object {
         }
 
         impl $name {
+            /// Cuts each of its links into so many.
+            fn refine(&mut self, links: u64, scaling: Scaling) {
+                self.refine = Some(self.refine.unwrap_or(1).saturating_mul(links));
+                self.scaling = scaling;
+            }
+
             pub(super) fn common(&self) -> Options {
                 Options {
                     name: self.name.clone(),

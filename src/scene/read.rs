@@ -9,7 +9,7 @@ use super::error::{Fault, Refusal};
 use super::expect::Engines;
 use super::expectation::Names;
 use super::limits::{EXPECTED, known, method};
-use super::model::{Absent, Part, Row, SCENE, Scene, ValueKind};
+use super::model::{Absent, Named, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
 use super::values::{
@@ -32,26 +32,6 @@ pub(super) struct Reading<'n> {
     /// The first key that is missing, or unknown under `expect`. Errors of the parser in the rest of the
     /// file take precedence.
     pub(super) problem: Option<Problem>,
-}
-
-/// A particle that a key names, such as `sheet[3,4]`.
-pub(super) struct Named {
-    pub(super) part: &'static Part,
-    pub(super) row: &'static Row,
-    pub(super) at: usize,
-    pub(super) component: usize,
-    pub(super) name: String,
-}
-
-impl Named {
-    /// The path of the value.
-    pub(super) fn path(&self) -> String {
-        let path = self.part.path(Some(self.at), self.row.key);
-        match self.row.kind {
-            ValueKind::Ids(_) => format!("{path}[{}]", self.component),
-            _ => path,
-        }
-    }
 }
 
 /// Reads the one document the file holds.

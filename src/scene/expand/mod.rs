@@ -23,8 +23,7 @@ impl Scene {
     pub fn particle_name(&self, id: usize) -> Option<String> {
         self.bodies.iter().find_map(|body| {
             let place = body.place(id)?;
-            let place: Vec<String> = place.iter().map(usize::to_string).collect();
-            Some(format!("{}[{}]", body.name, place.join(",")))
+            Some(body.called(&place))
         })
     }
 

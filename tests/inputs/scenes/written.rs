@@ -16,6 +16,7 @@ fn a_scene_written_out_is_the_same_scene() {
         // Names of particles are not written out.
         let plain = Scene {
             bodies: Vec::new(),
+            written: None,
             ..scene.clone()
         };
         assert_eq!(again, plain, "{text}");

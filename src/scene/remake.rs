@@ -1,0 +1,66 @@
+//! A scene once more, from other objects.
+
+use super::complete::expanded;
+use super::error::Refusal;
+use super::model::Scene;
+use super::object::{Object, Scaling};
+use super::place::Problem;
+
+impl Scene {
+    /// The scene with other objects; solver and duration stay. What has no objects stays as it is.
+    ///
+    /// # Errors
+    /// [`Refusal`] with the key of what cannot be made.
+    pub fn remade(&self, change: impl FnOnce(&mut Vec<Object>)) -> Result<Self, Refusal> {
+        self.renamed(change, &|name| name.to_owned())
+    }
+
+    /// The scene with every link of its objects cut into so many. Particles that are named stay at their places.
+    ///
+    /// # Errors
+    /// As [`remade`](Self::remade).
+    pub fn refined(&self, links: u64, scaling: Scaling) -> Result<Self, Refusal> {
+        let finer = |name: &str| {
+            let found = self.particle_named(name).ok().and_then(|id| {
+                let mut bodies = self.bodies.iter();
+                bodies.find_map(|body| Some((body, body.place(id)?)))
+            });
+            found.map_or_else(
+                || name.to_owned(),
+                |(body, place)| {
+                    let finer: Vec<usize> = place.iter().map(|at| at * links as usize).collect();
+                    body.called(&finer)
+                },
+            )
+        };
+        let change = |objects: &mut Vec<Object>| {
+            objects.iter_mut().for_each(|o| o.refine(links, scaling));
+        };
+        self.renamed(change, &finer)
+    }
+
+    fn renamed(
+        &self,
+        change: impl FnOnce(&mut Vec<Object>),
+        name: &dyn Fn(&str) -> String,
+    ) -> Result<Self, Refusal> {
+        let Some(written) = &self.written else {
+            return Ok(self.clone());
+        };
+        let mut scene = Self {
+            solver: self.solver.clone(),
+            duration: self.duration,
+            ..written.scene.clone()
+        };
+        change(&mut scene.objects);
+        let mut named = written.named.clone();
+        named
+            .iter_mut()
+            .for_each(|named| named.name = name(&named.name));
+        let scene = expanded(scene, &named, None).map_err(Problem::refusal)?;
+        Ok(Self {
+            written: self.written.clone(),
+            ..scene
+        })
+    }
+}
