@@ -74,6 +74,20 @@ mod tests {
     use super::sentence;
     use crate::scene::object::Body;
 
+    /// A report that is read may hold anything.
+    #[test]
+    fn bodies_that_hold_nothing_name_nothing() {
+        for shape in [vec![], vec![0], vec![0, 3], vec![usize::MAX, 0]] {
+            let name = "sheet".into();
+            let body = Body {
+                name,
+                first: 2,
+                shape,
+            };
+            assert_eq!(sentence("particle 7", &[body]), "particle 7");
+        }
+    }
+
     #[test]
     fn ids_become_names_and_other_numbers_stay() {
         let sheet = Body {
