@@ -1,6 +1,7 @@
 //! The header that the reports of all verbs have: the scene, the truth, the checks.
 
 use crate::measure::Check;
+use crate::scene::object::Body;
 use crate::truth::TruthKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -44,6 +45,9 @@ pub struct SceneFacts {
     pub file: String,
     /// How many.
     pub particles: usize,
+    /// The particles that have names, by the objects that made them; left out where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objects: Vec<Body>,
     /// How many.
     pub springs: usize,
     /// The effects that act in this scene.

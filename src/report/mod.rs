@@ -6,6 +6,7 @@ mod header;
 pub mod json;
 pub mod junit;
 pub mod markdown;
+pub mod names;
 pub mod svg;
 pub mod table;
 pub mod terminal;

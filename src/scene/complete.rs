@@ -8,6 +8,7 @@ use super::expect::engine;
 use super::expectation::{Names, Scope};
 use super::limits::{self, DRIVEN_ACCELERATION, DRIVEN_SPEED};
 use super::model::{Driven, Knots, NO_PARTICLES, Named, Particle, Scene, Triangle, Wind, Written};
+use super::object::{Body, called};
 use super::place::Problem;
 use super::read::Reading;
 use super::table::Value;
@@ -96,21 +97,41 @@ pub(super) fn expanded(
         return Err(Problem::new(path, no_particle(number, count)));
     }
     for (at, spring) in scene.springs.iter_mut().enumerate() {
-        ends(&spring.ends, count, &format_args!("springs[{at}]"))?;
+        ends(
+            &spring.ends,
+            &scene.bodies,
+            count,
+            &format_args!("springs[{at}]"),
+        )?;
         if spring.rest_length.is_nan() {
             spring.rest_length = distance(&starts, spring.ends);
         }
     }
     for (at, found) in scene.triangles.iter().enumerate() {
-        ends(&found.corners, count, &format_args!("triangles[{at}]"))?;
-        triangle(at, found, &starts)?;
+        ends(
+            &found.corners,
+            &scene.bodies,
+            count,
+            &format_args!("triangles[{at}]"),
+        )?;
+        triangle(at, found, &scene.bodies, &starts)?;
     }
     for (at, hinge) in scene.bending.iter().enumerate() {
-        ends(&hinge.particles, count, &format_args!("bending[{at}]"))?;
-        links(at, hinge.particles, &starts)?;
+        ends(
+            &hinge.particles,
+            &scene.bodies,
+            count,
+            &format_args!("bending[{at}]"),
+        )?;
+        links(at, hinge.particles, &scene.bodies, &starts)?;
     }
     for (at, pair) in scene.gravitational.iter().enumerate() {
-        ends(&pair.ends, count, &format_args!("gravitational[{at}]"))?;
+        ends(
+            &pair.ends,
+            &scene.bodies,
+            count,
+            &format_args!("gravitational[{at}]"),
+        )?;
         attraction(pair.ends, &scene.particles, &starts).map_err(|refusal| {
             Problem::new(format!("gravitational[{at}].particle_ids"), refusal)
         })?;
@@ -188,7 +209,7 @@ fn particles(particles: &[Particle]) -> Result<(), Problem> {
 }
 
 /// Checks that the ends, or corners, exist and differ.
-fn ends(ends: &[usize], count: usize, of: &impl Display) -> Result<(), Problem> {
+fn ends(ends: &[usize], bodies: &[Body], count: usize, of: &impl Display) -> Result<(), Problem> {
     if let Some(index) = ends.iter().position(|&end| end >= count) {
         let refusal = no_particle(whole(ends[index]), count);
         return Err(Problem::new(format!("{of}.particle_ids[{index}]"), refusal));
@@ -196,6 +217,7 @@ fn ends(ends: &[usize], count: usize, of: &impl Display) -> Result<(), Problem> 
     let twice = |(at, end): (usize, &usize)| ends[..at].contains(end);
     if let Some((_, end)) = ends.iter().enumerate().find(|end| twice(*end)) {
         let many = if ends.len() == 2 { "two" } else { "three" };
+        let end = called(bodies, *end);
         let message = format!("expected {many} different particles, found {end} twice");
         return Problem::because(format!("{of}.particle_ids"), message, "");
     }
@@ -216,13 +238,14 @@ fn driven(at: usize, driven: &Driven, scene: &Scene) -> Result<(), Problem> {
             return Err(Problem::new(format!("{of}.particle_id"), refusal));
         }
         Some(particle) if !particle.fixed => {
+            let id = called(&scene.bodies, id);
             let message = format!("expected a fixed particle, found that {id} is free");
             return because(message, "a motion decides where it is: add `fixed: true`");
         }
         Some(_) => {}
     }
     if scene.driven[..at].iter().any(|other| other.particle == id) {
-        let message = format!("particle {id} has two motions");
+        let message = format!("particle {} has two motions", called(&scene.bodies, id));
         return because(message, "keep one of them; a table can be any motion");
     }
     let motions = [
@@ -267,14 +290,18 @@ fn driven(at: usize, driven: &Driven, scene: &Scene) -> Result<(), Problem> {
 }
 
 /// Checks that no two corners start in one place, nor all three on one line.
-fn triangle(at: usize, triangle: &Triangle, starts: &[[f64; 3]]) -> Result<(), Problem> {
+fn triangle(
+    at: usize,
+    triangle: &Triangle,
+    bodies: &[Body],
+    starts: &[[f64; 3]],
+) -> Result<(), Problem> {
     let [a, b, c] = triangle.corners;
     for ends in [[a, b], [b, c], [a, c]] {
         if distance(starts, ends) == 0.0 {
-            let message = format!(
-                "expected three corners apart, found {} and {} in one place",
-                ends[0], ends[1]
-            );
+            let [one, other] = ends.map(|id| called(bodies, id));
+            let message =
+                format!("expected three corners apart, found {one} and {other} in one place");
             let help = "a triangle needs an area";
             return Problem::because(format!("triangles[{at}].particle_ids"), message, help);
         }
@@ -291,10 +318,15 @@ fn triangle(at: usize, triangle: &Triangle, starts: &[[f64; 3]]) -> Result<(), P
 }
 
 /// Checks that both links of a hinge have a direction at the start.
-fn links(at: usize, [a, b, c]: [usize; 3], starts: &[[f64; 3]]) -> Result<(), Problem> {
+fn links(
+    at: usize,
+    [a, b, c]: [usize; 3],
+    bodies: &[Body],
+    starts: &[[f64; 3]],
+) -> Result<(), Problem> {
     for link in [[a, b], [b, c]] {
         if distance(starts, link) == 0.0 {
-            let [one, other] = link;
+            let [one, other] = link.map(|id| called(bodies, id));
             let message =
                 format!("expected neighbours apart, found {one} and {other} in one place");
             let help = "the angle at the middle particle needs two directions";

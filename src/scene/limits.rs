@@ -98,6 +98,8 @@ fn plain(bound: f64) -> String {
 pub const POSITION: Bounds = Bounds::signed(1e12, "m");
 /// A spring's stiffness.
 pub const STIFFNESS: Bounds = Bounds::not_negative(1e18, "N/m");
+/// Rest lengths over the distances at the start.
+pub const REST_RATIO: Bounds = Bounds::not_negative(1e6, "a ratio");
 /// An acceleration of gravity, or a component of it.
 pub const GRAVITY: Bounds = Bounds::signed(1e12, "m/s²");
 /// The timestep.

@@ -15,6 +15,7 @@ mod expect;
 mod expectation;
 pub mod limits;
 pub mod model;
+mod number;
 pub mod object;
 mod place;
 mod read;
@@ -35,6 +36,7 @@ pub use model::{
     Air, Axis, Bending, DampingModel, Driven, GravitationalPair, Knots, Magnetic, Particle, Plot,
     Scene, Sine, SolverSpec, Spring, Triangle, Wind, steps,
 };
+pub use number::ObjectNumber;
 pub use table::{Value, Vectors};
 pub use write::yaml;
 

@@ -3,8 +3,8 @@
 
 use super::table::Field;
 use schemars::JsonSchema;
-use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// The name of a particle of an object, as a regular expression of ECMA-262.
@@ -12,7 +12,7 @@ pub const PARTICLE_NAME: &str =
     r"^ *[A-Za-z][A-Za-z0-9_-]{0,63} *\[ *[0-9]+ *(, *[0-9]+ *){0,2}\] *$";
 
 /// One entry under `objects`: one of these.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
 pub struct Object {
@@ -60,7 +60,8 @@ impl Object {
 }
 
 /// The particles of an object, by their places in it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "NamedParticles")]
 pub struct Body {
     /// The object's name.
     pub name: String,
@@ -84,7 +85,7 @@ impl Body {
         let mut rest = id.checked_sub(self.first)?;
         let mut place = vec![0; self.shape.len()];
         for (at, count) in place.iter_mut().zip(&self.shape).rev() {
-            *at = rest % count;
+            *at = rest.checked_rem(*count)?;
             rest /= count;
         }
         (rest == 0).then_some(place)
@@ -103,11 +104,24 @@ impl Body {
     }
 }
 
+/// The name of a particle that an object made, such as `sheet[3,4]`.
+pub fn particle_name(bodies: &[Body], id: usize) -> Option<String> {
+    let mut names = bodies
+        .iter()
+        .filter_map(|body| Some(body.called(&body.place(id)?)));
+    names.next()
+}
+
+/// The same, or the id of a particle without a name: what people call it.
+pub fn called(bodies: &[Body], id: usize) -> String {
+    particle_name(bodies, id).unwrap_or_else(|| id.to_string())
+}
+
 /// Objects have a reader of their own, and no rows.
 impl Field for Vec<Object> {}
 
 /// A spring of an object.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Link {
     /// k, N/m.
@@ -118,7 +132,7 @@ pub struct Link {
 }
 
 /// A hinge of an object.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hinge {
     /// kb, N m/rad.
@@ -132,7 +146,7 @@ pub struct Hinge {
 }
 
 /// What refining does to masses, stiffnesses and dampers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Scaling {
     /// They follow the links, so that the object stays the same.
@@ -143,7 +157,8 @@ pub enum Scaling {
 }
 
 /// What is fixed: a word, such as `start` or `corner00`, or a place, such as 3 or [3, 4].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Pin {
     /// A corner, an edge, an end.
     Word(String),
@@ -218,7 +233,7 @@ pub(super) struct Options {
 macro_rules! object {
     ($(#[$about:meta])* $name:ident { $($(#[$note:meta])* $field:ident: $of:ty,)* }) => {
         $(#[$about])*
-        #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(deny_unknown_fields)]
         pub struct $name {
             /// What its particles are called by: `name[3]`; the kind of the object where there is none.

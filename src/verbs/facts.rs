@@ -49,6 +49,7 @@ pub fn scene(
         name: scene.name.clone(),
         file: scene.file.clone(),
         particles: scene.particles.len(),
+        objects: scene.bodies.clone(),
         springs: scene.springs.len(),
         effects: effects.collect(),
         timestep: scene.solver.timestep,

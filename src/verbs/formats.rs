@@ -4,10 +4,11 @@ use super::{Body, Report, check, cost, run, stability};
 use crate::report::json::{self, Tool};
 use crate::report::svg::{Chart, Figure};
 use crate::report::words::one_line;
-use crate::report::{Note, View, github, junit, terminal, verdict};
+use crate::report::{Note, View, github, junit, names, terminal, verdict};
 use crate::scene;
 use schemars::{JsonSchema, Schema};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// One format of reports.
 pub struct Format {
@@ -64,7 +65,7 @@ pub const FORMATS: &[Format] = &[
         id: "junit",
         extension: "xml",
         file: false,
-        render: |_, reports| junit::render(reports.iter().map(|report| &report.header)),
+        render: |_, reports| junit::render(named(reports).iter().map(|report| &report.header)),
     },
     Format {
         id: "github",
@@ -72,7 +73,7 @@ pub const FORMATS: &[Format] = &[
         file: false,
         render: |_, reports| {
             github::render(
-                reports.iter().map(|report| &report.header),
+                named(reports).iter().map(|report| &report.header),
                 &scene::place_in,
             )
         },
@@ -93,7 +94,8 @@ struct InWords<'a> {
 
 fn in_words(reports: &[Report]) -> Vec<InWords<'_>> {
     fn one(report: &Report) -> InWords<'_> {
-        let view = report.view();
+        let shown = report.named();
+        let view = shown.view();
         InWords {
             report,
             verdict: verdict::verdict(&view),
@@ -101,6 +103,11 @@ fn in_words(reports: &[Report]) -> Vec<InWords<'_>> {
         }
     }
     reports.iter().map(one).collect()
+}
+
+/// The reports as people read them.
+fn named(reports: &[Report]) -> Vec<Cow<'_, Report>> {
+    reports.iter().map(Report::named).collect()
 }
 
 /// The JSON Schema of the format `json`.
@@ -151,7 +158,22 @@ impl Report {
         }
     }
 
-    /// The parts that the terminal and the page show, as the verb words them, for a terminal of the usual width.
+    /// The report as people read it: its sentences say the names of particles that have one, where the data have ids.
+    pub fn named(&self) -> Cow<'_, Self> {
+        let objects = &self.header.scene.objects;
+        let named = || {
+            Some(Self {
+                header: names::in_sentences(&self.header, objects)?,
+                body: names::in_sentences(&self.body, objects)?,
+                series: self.series.clone(),
+            })
+        };
+        let named = if objects.is_empty() { None } else { named() };
+        named.map_or(Cow::Borrowed(self), Cow::Owned)
+    }
+
+    /// The parts that the terminal and the page show, as the verb words them, for a terminal of the usual width. Its
+    /// sentences are those of the report: [`named`](Self::named) comes before.
     pub fn view(&self) -> View<'_> {
         self.view_in(terminal::WIDTH)
     }
@@ -170,9 +192,10 @@ impl Report {
 
     /// The text for people, for a terminal of so many columns.
     pub fn human(&self, columns: usize) -> String {
-        match &self.body {
-            Body::Check { .. } => check::human(self, columns),
-            _ => terminal::render(self.view_in(columns)),
+        let shown = self.named();
+        match &shown.body {
+            Body::Check { .. } => check::human(&shown, columns),
+            _ => terminal::render(shown.view_in(columns)),
         }
     }
 
@@ -184,16 +207,22 @@ impl Report {
         }
         let name = one_line(&self.header.scene.file);
         let room = columns.saturating_sub(terminal::width(&name) + ": ".len());
-        format!("{name}: {}", verdict::within(&self.view_in(columns), room))
+        format!(
+            "{name}: {}",
+            verdict::within(&self.named().view_in(columns), room)
+        )
     }
 
     /// The whole page. It links its figures, which are files beside it.
     pub fn markdown(&self) -> String {
-        let view = self.view();
-        match &self.body {
-            Body::Run { .. } | Body::Check { .. } | Body::Compare { .. } => run::page(self, &view),
-            Body::Stability { stability, .. } => stability::page(self, stability, &view),
-            Body::Cost { cost, .. } => cost::page(self, cost, &view),
+        let shown = self.named();
+        let view = shown.view();
+        match &shown.body {
+            Body::Run { .. } | Body::Check { .. } | Body::Compare { .. } => {
+                run::page(&shown, &view)
+            }
+            Body::Stability { stability, .. } => stability::page(&shown, stability, &view),
+            Body::Cost { cost, .. } => cost::page(&shown, cost, &view),
         }
     }
 

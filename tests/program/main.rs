@@ -13,6 +13,7 @@ mod external;
 mod gate;
 #[cfg(unix)] // signals are POSIX's
 mod interrupted;
+mod names;
 mod run;
 mod schema;
 mod show;

@@ -9,7 +9,7 @@ mod line;
 use super::error::Refusal;
 use super::limits::{self, Bounds};
 use super::model::{Particle, Scene, Spring};
-use super::object::{Body, Link, Object, Options, Pin, Scaling};
+use super::object::{self, Body, Link, Object, Options, Pin, Scaling};
 use super::place::Problem;
 use super::values::Number;
 
@@ -21,10 +21,7 @@ const NAME_CHARS: usize = 64;
 impl Scene {
     /// The name of a particle that an object made, such as `sheet[3,4]`.
     pub fn particle_name(&self, id: usize) -> Option<String> {
-        self.bodies.iter().find_map(|body| {
-            let place = body.place(id)?;
-            Some(body.called(&place))
-        })
+        object::particle_name(&self.bodies, id)
     }
 
     /// The id of a particle by its [name](Self::particle_name).
@@ -395,11 +392,7 @@ impl Maker<'_> {
     }
 
     fn rest_ratio(&self, ratio: Option<f64>) -> Result<f64, Problem> {
-        self.judge(
-            "rest_ratio",
-            ratio.unwrap_or(1.0),
-            Bounds::not_negative(1e6, "a ratio"),
-        )
+        self.judge("rest_ratio", ratio.unwrap_or(1.0), limits::REST_RATIO)
     }
 
     /// What the pins of an object hold, by these words and by places of the file.

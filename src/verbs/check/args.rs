@@ -335,7 +335,8 @@ fn summarise(reports: &[Report]) -> anyhow::Result<()> {
     let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()) else {
         return Ok(());
     };
-    let mut summary = github::summary(reports.iter().map(|report| &report.header));
+    let shown: Vec<_> = reports.iter().map(Report::named).collect();
+    let mut summary = github::summary(shown.iter().map(|report| &report.header));
     summary += &format!("\n{}\n", text::closing(reports));
     let mut options = std::fs::OpenOptions::new();
     let file = options.create(true).append(true).open(&path);

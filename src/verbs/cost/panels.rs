@@ -4,6 +4,7 @@ use super::runs::{Curve, Setup};
 use super::samples::Samples;
 use super::settings::Sweep;
 use crate::scene::Scene;
+use crate::scene::object::called;
 use crate::verbs::cost::{CostLine, CostPanel, CostPanels, CostPoint};
 
 /// Points of the truth's curve.
@@ -22,7 +23,11 @@ pub fn panels(setup: &Setup, sweeps: &[Sweep], curves: &[Curve]) -> CostPanels {
             .collect(),
     };
     CostPanels {
-        label: format!("particle {particle}, {} (m)", ["x", "y", "z"][axis]),
+        label: format!(
+            "particle {}, {} (m)",
+            called(&setup.scene.bodies, particle),
+            ["x", "y", "z"][axis]
+        ),
         truth: truth(setup, at),
         panels: sweeps.iter().zip(curves).map(panel).collect(),
     }

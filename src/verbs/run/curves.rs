@@ -5,6 +5,7 @@ use super::record::Record;
 use super::truths::Truths;
 use crate::measure::{EnergySeries, TrueStates};
 use crate::scene::Scene;
+use crate::scene::object::called;
 use crate::solvers::Status;
 use crate::verbs::run::{Curves, PlotAxis, RunSeries, TruthCurves};
 
@@ -52,7 +53,7 @@ pub fn series(
         plot: scene.plot.as_ref().map(|plot| PlotAxis {
             label: format!(
                 "particle {}, {} (m)",
-                plot.particle,
+                called(&scene.bodies, plot.particle),
                 ["x", "y", "z"][plot.dof]
             ),
             y_range: plot.y_range,

@@ -9,6 +9,7 @@
 use crate::integrators::{self, Integrator, Settings};
 use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
+use crate::scene::object::called;
 use crate::solvers::advance;
 use crate::verbs::stability::{Admissible, AdmissiblePanel, StabilityError};
 use rayon::prelude::*;
@@ -80,6 +81,7 @@ fn check(scene: &Scene) -> Result<(), String> {
         return Err(format!("particles: {particles}, springs: {springs}"));
     }
     if let Some(fixed) = scene.particles.iter().position(|p| p.fixed) {
+        let fixed = called(&scene.bodies, fixed);
         return Err(format!("particle {fixed} is fixed"));
     }
     if scene.springs.iter().any(|spring| spring.rest_length == 0.0) {

@@ -43,7 +43,8 @@ pub struct Args {
     duration: Option<f64>,
 
     /// Draw a map of timestep against this: `springs.stiffness=1e2..1e8`, of one member
-    /// `particles[1].mass=0.01..100`, with `:N` for N values (default 24).
+    /// `particles[1].mass=0.01..100` or `sheet[3,4].mass=...`, of an object `rope.stiffness=...`, with `:N` for N values
+    /// (default 24).
     #[arg(long, value_name = "KEY=A..B[:N]", allow_hyphen_values = true)]
     vary: Option<String>,
 
@@ -62,7 +63,7 @@ pub struct Args {
     budget: Option<u64>,
 
     /// Find the largest value of this that is stable at the timestep: `springs.stiffness`, of one member
-    /// `particles[1].drag`.
+    /// `particles[1].drag`, of an object `rope.stiffness`.
     #[arg(long, value_name = "KEY")]
     largest: Option<String>,
 

@@ -5,6 +5,7 @@ use super::vary::VariedKey;
 use crate::measure::stability::{Effort, Limit, Linearised};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
+use crate::scene::limits::Bounds;
 use crate::solvers::Solver;
 use crate::verbs::stability::{Largest, LargestFound, LargestRow};
 use rayon::prelude::*;
@@ -21,10 +22,13 @@ const ROUNDING: f64 = 1e-9;
 
 /// The largest value of `key` for which each solver is stable at `timestep`, s, by the predicted limit of the
 /// scene with that value.
-pub fn find(key: VariedKey, scene: &Scene, solvers: &[Solver], timestep: f64) -> Largest {
-    let values = tried(key, scene);
-    let about = |value: &f64| linearised(&key.apply(scene, *value));
-    let scenes: Vec<Linearised> = values.par_iter().map(about).collect();
+pub fn find(key: &VariedKey, scene: &Scene, solvers: &[Solver], timestep: f64) -> Largest {
+    let about = |value: f64| Some((value, linearised(&key.apply(scene, value).ok()?)));
+    let found: Vec<_> = tried(key, scene)
+        .into_par_iter()
+        .filter_map(about)
+        .collect();
+    let (values, scenes): (Vec<f64>, Vec<Linearised>) = found.into_iter().unzip();
     let search = Search {
         key,
         scene,
@@ -47,7 +51,7 @@ pub fn find(key: VariedKey, scene: &Scene, solvers: &[Solver], timestep: f64) ->
     };
     Largest {
         vary: key.to_string(),
-        unit: key.quantity.unit.to_owned(),
+        unit: key.quantity().unit.to_owned(),
         timestep_s: timestep,
         tried: [values.first(), values.last()].map(|end| end.copied().unwrap_or_default()),
         rows: solvers.par_iter().map(row).collect(),
@@ -56,12 +60,13 @@ pub fn find(key: VariedKey, scene: &Scene, solvers: &[Solver], timestep: f64) ->
 
 /// Values evenly spaced in their logarithm, ascending, within what a scene may have; around 1 where the scene has
 /// none.
-fn tried(key: VariedKey, scene: &Scene) -> Vec<f64> {
+fn tried(key: &VariedKey, scene: &Scene) -> Vec<f64> {
     let own = Some(key.largest(scene)).filter(|own| *own > 0.0);
     let own = own.unwrap_or(1.0);
     let places = -DECADES * PER_DECADE..=DECADES * PER_DECADE;
     let value = |place| own * 10_f64.powf(f64::from(place) / f64::from(PER_DECADE));
-    let allowed = |value: &f64| (key.quantity.low..=key.quantity.high).contains(value);
+    let Bounds { low, high, .. } = key.quantity();
+    let allowed = |value: &f64| (low..=high).contains(value);
     places.map(value).filter(allowed).collect()
 }
 
@@ -72,7 +77,7 @@ fn linearised(scene: &Scene) -> Linearised {
 }
 
 struct Search<'a> {
-    key: VariedKey,
+    key: &'a VariedKey,
     scene: &'a Scene,
     timestep: f64,
     /// The values tried first, ascending, and the scene with each.
@@ -111,6 +116,7 @@ impl Search<'_> {
     fn between(&self, solver: &Solver, mut low: f64, mut high: f64) -> Result<f64, String> {
         let stable = |value: f64| {
             let varied = self.key.apply(self.scene, value);
+            let varied = varied.map_err(|error| error.to_string())?;
             self.is_stable(solver, &linearised(&varied))
         };
         while high - low > WIDTH * low {

@@ -1,7 +1,8 @@
 //! The stability map: timestep against one quantity of the scene, with the outcome of a run in each cell.
 
+use super::range::{COUNT, Range, VaryError};
 use super::rows::{as_keys, predicted, start};
-use super::vary::{COUNT, Range, Vary};
+use super::vary::Vary;
 use crate::measure::stability::{Cell, Effort, Linearised, classify};
 use crate::physics::ParticleSystem;
 use crate::scene::{Scene, limits};
@@ -57,18 +58,27 @@ impl MapPlan {
         Ok([cells, steps.min(MAX_STEPS)])
     }
 
-    /// Runs all cells: a panel for each solver. `steps_per_cell` comes from [`cells`](Self::cells).
+    /// The scene with each value.
+    ///
+    /// # Errors
+    /// Objects with one of these values cannot be made.
+    pub fn scenes(&self, scene: &Scene) -> Result<Vec<Scene>, VaryError> {
+        let values = self.vary.values.iter();
+        values.map(|value| self.vary.apply(scene, *value)).collect()
+    }
+
+    /// Runs all cells: a panel for each solver. `scenes` come from [`scenes`](Self::scenes), and `steps_per_cell` from
+    /// [`cells`](Self::cells).
     pub fn run(
         &self,
         scene: &Scene,
+        scenes: &[Scene],
         solvers: &[Solver],
         steps_per_cell: u64,
         tally: &Arc<Tally>,
         session: &dyn Session,
     ) -> StabilityMap {
         let values = &self.vary.values;
-        let scenes = values.iter().map(|value| self.vary.apply(scene, *value));
-        let scenes: Vec<Scene> = scenes.collect();
         let linearised: Vec<Linearised> = scenes.par_iter().map(linearised).collect();
         // Indexed by solver, then by value.
         let limits: Vec<Vec<(Option<f64>, bool)>> = solvers

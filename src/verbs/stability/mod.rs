@@ -8,6 +8,7 @@ mod figures;
 mod largest;
 mod map;
 mod path;
+mod range;
 mod result;
 mod rows;
 mod text;
@@ -15,8 +16,9 @@ mod vary;
 
 pub(super) use figures::FIGURES;
 pub use map::MapPlan;
+pub use range::{COUNT, Range, VaryError};
 pub(super) use text::{page, view};
-pub use vary::{COUNT, Range, VariedKey, Vary, VaryError};
+pub use vary::{VariedKey, Vary};
 
 pub use args::{Args, stability};
 pub use result::{
@@ -69,12 +71,13 @@ impl StabilityPlan<'_> {
     /// without an answer is a row with its reason.
     ///
     /// # Errors
-    /// Before anything runs: the budget leaves the map's cells too few steps, or a picture is wanted of a
-    /// scene that is not two free particles on one spring.
+    /// Before anything runs: the budget leaves the map's cells too few steps, objects with a value of the map cannot be
+    /// made, or a picture is wanted of a scene that is not two free particles on one spring.
     pub fn execute(&self, session: &dyn Session) -> Result<Report, StabilityError> {
         let scene = self.scene;
         let admissible = self.picture()?;
         let [_, steps_per_cell] = self.cells()?;
+        let varied = self.map.as_ref().map(|map| map.scenes(scene)).transpose()?;
         let system = ParticleSystem::new(scene);
         let start = ParticleSystem::initial_state(scene);
         let linearised = Linearised::new(&system, &start, Effort::FULL);
@@ -90,9 +93,10 @@ impl StabilityPlan<'_> {
         let (solvers, tally) = (&self.solvers, &shared.tally);
         let row = |solver| rows::row(&shared, solver, session);
         let rows = solvers.par_iter().map(row).collect();
-        let map = self.map.as_ref();
-        let map = map.map(|map| map.run(scene, solvers, steps_per_cell, tally, session));
-        let largest = self.largest;
+        let map = self.map.iter().zip(&varied).next();
+        let map = map
+            .map(|(map, varied)| map.run(scene, varied, solvers, steps_per_cell, tally, session));
+        let largest = self.largest.as_ref();
         let largest =
             largest.map(|key| Box::new(largest::find(key, scene, solvers, self.timestep)));
         let Shared {
@@ -187,6 +191,9 @@ pub enum StabilityError {
         particles: u64,
         needed: u64,
     },
+    /// A value that objects cannot have.
+    #[error(transparent)]
+    Vary(#[from] VaryError),
     /// A scene the picture cannot be drawn for, and what it has instead.
     #[error(
         "the admissible region is a picture of two free particles and one spring with a rest length, \

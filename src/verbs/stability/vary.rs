@@ -1,100 +1,41 @@
-//! `springs.stiffness=1e2..1e8:24`: the quantity that varies, its range, and the number of values.
+//! `springs.stiffness=1e2..1e8:24`: the quantity that varies.
 
+use super::range::{Range, VaryError};
 use crate::scene::limits::Bounds;
 use crate::scene::model::{PARTICLES, PARTS, Part, Row, ValueKind};
+use crate::scene::object::called;
 use crate::scene::words::aside;
-use crate::scene::{Scene, Value};
+use crate::scene::{ObjectNumber, Refusal, Scene, Value};
 use std::fmt;
-use std::str::FromStr;
 
-/// The number of values where the text does not give one.
-pub const COUNT: usize = 24;
-/// The most values: a picture of more cannot be read.
-const MAX_COUNT: usize = 200;
-
-/// Why a text is not a range of one quantity of the scene.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct VaryError(String);
-
-/// `A..B` or `A..B:N`, A below B.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
-    /// The first value.
-    pub low: f64,
-    /// The last value.
-    pub high: f64,
-    /// The number of values, with both ends.
-    pub count: usize,
-}
-
-impl FromStr for Range {
-    type Err = VaryError;
-
-    fn from_str(text: &str) -> Result<Self, VaryError> {
-        let form = || VaryError(format!("expected A..B or A..B:N, found `{text}`"));
-        let (low, rest) = text.split_once("..").ok_or_else(form)?;
-        let (high, count) = match rest.split_once(':') {
-            Some((high, count)) => (high, Some(count)),
-            None => (rest, None),
-        };
-        let number = |text: &str| {
-            let number = text.trim().parse::<f64>().ok().filter(|n| n.is_finite());
-            number.ok_or_else(|| VaryError(format!("expected a finite number, found `{text}`")))
-        };
-        let (low, high) = (number(low)?, number(high)?);
-        if low >= high {
-            let message = format!("expected a range that rises, found {low} to {high}");
-            return Err(VaryError(message));
-        }
-        let count = count.map_or(Ok(COUNT), |count| {
-            let parsed = count
-                .trim()
-                .parse()
-                .ok()
-                .filter(|n| (2..=MAX_COUNT).contains(n));
-            parsed.ok_or_else(|| {
-                VaryError(format!("expected 2 to {MAX_COUNT} values, found `{count}`"))
-            })
-        })?;
-        Ok(Self { low, high, count })
-    }
-}
-
-impl Range {
-    /// Values evenly spaced in their logarithm where both ends are positive, else evenly. The ends are exact.
-    pub fn values(&self) -> Vec<f64> {
-        let last = self.count.saturating_sub(1).max(1);
-        let at = |i: usize| {
-            let part = i as f64 / last as f64;
-            match i {
-                0 => self.low,
-                i if i == last => self.high,
-                _ if self.low > 0.0 => {
-                    (self.low.ln() + part * (self.high.ln() - self.low.ln())).exp()
-                }
-                _ => self.low + part * (self.high - self.low),
-            }
-        };
-        (0..self.count).map(at).collect()
-    }
-}
-
-/// A number of the scene that acts on the motion, in one member of its part or in all that are free.
-#[derive(Debug, Clone, Copy)]
+/// A number that acts on the motion: of one member of a part of the scene or of all that are free, or of an object.
+#[derive(Debug, Clone)]
 pub struct VariedKey {
+    /// As the command line writes it: `springs.stiffness`, `particles[1].mass`, `sheet[3,4].drag`, `rope.stiffness`.
+    id: String,
+    of: Of,
+}
+
+#[derive(Debug, Clone)]
+enum Of {
+    Members(Members),
+    Object(ObjectNumber),
+}
+
+/// One key of a part, in one member or in all that are free.
+#[derive(Debug, Clone, Copy)]
+struct Members {
     part: &'static Part,
     row: &'static Row,
-    /// The values a scene file may give it, and their unit.
-    pub quantity: Bounds,
+    quantity: Bounds,
     member: Option<usize>,
 }
 
-/// Every key, for all members at once.
-fn keys() -> impl Iterator<Item = VariedKey> {
+/// Every key of members, for all at once.
+fn keys() -> impl Iterator<Item = Members> {
     let of = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
     let number = |(part, row): (_, &'static Row)| match row.kind {
-        ValueKind::Number(quantity) if row.flat.is_some() => Some(VariedKey {
+        ValueKind::Number(quantity) if row.flat.is_some() => Some(Members {
             part,
             row,
             quantity,
@@ -106,46 +47,163 @@ fn keys() -> impl Iterator<Item = VariedKey> {
 }
 
 impl VariedKey {
-    /// Reads `springs.stiffness`, or `springs[3].stiffness` for one member where there is a list.
+    /// Reads `springs.stiffness`, `springs[3].stiffness` for one member where there is a list, `sheet[3,4].mass` for a
+    /// particle by its name, or `rope.stiffness` for a number of an object. Where an object has the name of a part, the
+    /// part is meant.
     ///
     /// # Errors
     /// [`VaryError`] when the key is unknown, or acts on nothing in this scene.
     pub fn parse(id: &str, scene: &Scene) -> Result<Self, VaryError> {
-        let key = Self::find(id)?;
-        let refused = |why: String| Err(VaryError(format!("{id}: {why}")));
-        let count = (key.part.count)(scene);
-        match key.member {
-            Some(at) if at >= count => refused(format!("the scene has {count} of these, from 0")),
-            Some(at) if !key.free(scene, at) && key.part.key == PARTICLES.key => {
-                refused(format!("particle {at} is fixed: it changes nothing"))
+        let refused = |why: String| VaryError(format!("{id}: {why}"));
+        let of = match Members::find(id, scene).map_err(|refusal| refused(said(refusal)))? {
+            Some(members) => {
+                members.check(scene).map_err(refused)?;
+                Of::Members(members)
             }
-            Some(at) if !key.free(scene, at) => refused("this one has none".into()),
-            None if key.members(scene).next().is_none() => refused("the scene has none".into()),
-            _ if key.is_vector(scene) => {
-                refused("the scene gives vectors here: only a number can be varied".into())
+            None => {
+                let mut numbers = scene.object_numbers().into_iter();
+                let number = numbers.find(|number| number.id == id);
+                Of::Object(number.ok_or_else(|| unknown(id, scene))?)
             }
-            _ => Ok(key),
+        };
+        let id = id.to_owned();
+        let key = Self { id, of };
+        if let Of::Object(_) = &key.of {
+            // Two values that every object may have, with any number of particles.
+            let [one, other] = [1e-3, 2e-3].map(|value| key.apply(scene, value));
+            if one? == other? {
+                return Err(refused("the object has none, or it changes nothing".into()));
+            }
+        }
+        Ok(key)
+    }
+
+    /// The values a scene file may give it, and their unit.
+    pub fn quantity(&self) -> Bounds {
+        match &self.of {
+            Of::Members(members) => members.quantity,
+            Of::Object(number) => number.bounds,
         }
     }
 
-    fn find(id: &str) -> Result<Self, VaryError> {
+    /// The scene with this value, in the one member or in all that are free.
+    ///
+    /// # Errors
+    /// [`VaryError`] where an object with this value cannot be made.
+    pub fn apply(&self, scene: &Scene, value: f64) -> Result<Scene, VaryError> {
+        match &self.of {
+            Of::Members(members) => Ok(members.apply(scene, value)),
+            Of::Object(number) => scene
+                .with_number(number, value)
+                .map_err(|refusal| VaryError(format!("{}: {}", self.id, said(refusal)))),
+        }
+    }
+
+    /// The largest magnitude among the values the scene has; of an object that which the file gives, or 0.
+    pub fn largest(&self, scene: &Scene) -> f64 {
+        match &self.of {
+            Of::Members(members) => members.largest(scene),
+            Of::Object(number) => number.given.unwrap_or_default().abs(),
+        }
+    }
+}
+
+/// A refusal on one line.
+fn said(Refusal { message, help, .. }: Refusal) -> String {
+    match help.as_str() {
+        "" => message,
+        help => format!("{message} ({help})"),
+    }
+}
+
+/// The error of a key that neither the scene nor its objects have.
+fn unknown(id: &str, scene: &Scene) -> VaryError {
+    let aside = |id: &str, known: &[String]| {
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        aside(id, &known)
+    };
+    let (name, _) = id.split_once(['.', '[']).unwrap_or((id, ""));
+    let members: Vec<String> = keys().map(|key| key.to_string()).collect();
+    let objects = scene.object_numbers().into_iter().map(|number| number.id);
+    let objects: Vec<String> = objects.collect();
+    if scene.bodies.iter().any(|body| body.name == name) {
+        let of =
+            |key: &String, name: &str| key.strip_prefix(name)?.strip_prefix('.').map(String::from);
+        // Of one of its particles the keys of particles.
+        let (owner, own): (_, Vec<String>) = match id.split_once("].") {
+            Some((place, _)) => (
+                format!("{place}]"),
+                members
+                    .iter()
+                    .filter_map(|key| of(key, PARTICLES.key))
+                    .collect(),
+            ),
+            None => (
+                name.to_owned(),
+                objects.iter().filter_map(|key| of(key, name)).collect(),
+            ),
+        };
+        let own: Vec<String> = own.iter().map(|key| format!("{owner}.{key}")).collect();
+        let (aside, known) = (aside(id, &own), own.join(", "));
+        return VaryError(format!("unknown key `{id}`{aside}; known of it: {known}"));
+    }
+    let of_objects = objects.first().map_or_else(String::new, |first| {
+        format!(", and of an object such as {first}")
+    });
+    let known = members.join(", ");
+    let aside = aside(&plain(id), &[members, objects].concat());
+    VaryError(format!(
+        "unknown key `{id}`{aside}; known: {known}, and of one member such as springs[3].stiffness or \
+         particles[1].mass{of_objects}"
+    ))
+}
+
+/// The key without the member: `springs.stiffness` of `springs[3].stiffness`.
+fn plain(id: &str) -> String {
+    let (list, rest) = id.split_once('[').unwrap_or((id, ""));
+    let (_, field) = rest.split_once(']').unwrap_or(("", rest));
+    format!("{list}{field}")
+}
+
+impl Members {
+    /// The members that a key means; None where it is no key of members.
+    fn find(id: &str, scene: &Scene) -> Result<Option<Self>, Refusal> {
+        let plain = plain(id);
         let (list, rest) = id.split_once('[').unwrap_or((id, ""));
-        let (index, field) = rest.split_once(']').unwrap_or(("", rest));
-        let plain = format!("{list}{field}");
+        let (index, field) = rest.split_once(']').unwrap_or(("", ""));
+        let is_part = |part: &&Part| part.inside().map_or(part.key, |(list, _)| list) == list;
+        if !field.is_empty() && !scene.bodies.is_empty() && !PARTS.iter().any(is_part) {
+            let member = scene.particle_named(&format!("{list}[{index}]"))?;
+            let plain = format!("{}{field}", PARTICLES.key);
+            let found = keys().find(|key| key.to_string() == plain);
+            return Ok(found.map(|key| Self {
+                member: Some(member),
+                ..key
+            }));
+        }
         let member = index.parse().ok();
         let found = keys().find(|key| {
             let listed = key.part.list || key.part.inside().is_some();
             key.to_string() == plain && (plain == id || listed && member.is_some())
         });
-        found.map(|key| VariedKey { member, ..key }).ok_or_else(|| {
-            let known: Vec<String> = keys().map(|key| key.to_string()).collect();
-            let words: Vec<&str> = known.iter().map(String::as_str).collect();
-            VaryError(format!(
-                "unknown key `{id}`{}; known: {}, and of one member such as springs[3].stiffness \
-                 or particles[1].mass",
-                aside(&plain, &words),
-                known.join(", ")
-            ))
+        Ok(found.map(|key| Self { member, ..key }))
+    }
+
+    /// Whether it acts on something in this scene, or why not.
+    fn check(&self, scene: &Scene) -> Result<(), String> {
+        let count = (self.part.count)(scene);
+        Err(match self.member {
+            Some(at) if at >= count => format!("the scene has {count} of these, from 0"),
+            Some(at) if !self.free(scene, at) && self.part.key == PARTICLES.key => {
+                let particle = called(&scene.bodies, at);
+                format!("particle {particle} is fixed: it changes nothing")
+            }
+            Some(at) if !self.free(scene, at) => "this one has none".into(),
+            None if self.members(scene).next().is_none() => "the scene has none".into(),
+            _ if self.is_vector(scene) => {
+                "the scene gives vectors here: only a number can be varied".into()
+            }
+            _ => return Ok(()),
         })
     }
 
@@ -156,8 +214,7 @@ impl VariedKey {
         others.any(|row| (row.get)(scene, 0, 0).is_some())
     }
 
-    /// The scene with this value, in the one member or in all that are free.
-    pub fn apply(&self, scene: &Scene, value: f64) -> Scene {
+    fn apply(&self, scene: &Scene, value: f64) -> Scene {
         let mut varied = scene.clone();
         for at in self.members(scene) {
             (self.row.set)(&mut varied, at, 0, Value::Number(value));
@@ -165,8 +222,7 @@ impl VariedKey {
         varied
     }
 
-    /// The largest magnitude among the values the scene has.
-    pub fn largest(&self, scene: &Scene) -> f64 {
+    fn largest(&self, scene: &Scene) -> f64 {
         let magnitude = |at| match (self.row.get)(scene, at, 0) {
             Some(Value::Number(value)) => value.abs(),
             _ => 0.0,
@@ -188,10 +244,15 @@ impl VariedKey {
     }
 }
 
-impl fmt::Display for VariedKey {
-    /// The key as the command line writes it: `springs.stiffness`, `particles[1].mass`.
+impl fmt::Display for Members {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.part.path(self.member, self.row.key))
+    }
+}
+
+impl fmt::Display for VariedKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.id)
     }
 }
 
@@ -208,7 +269,7 @@ impl Vary {
     ///
     /// # Errors
     /// [`VaryError`] when the key is unknown, the scene has no such member, or the values leave the bounds
-    /// of a scene file.
+    /// of a scene file or of what objects make of them.
     pub fn parse(text: &str, scene: &Scene) -> Result<Self, VaryError> {
         let (id, range) = text
             .split_once('=')
@@ -216,13 +277,16 @@ impl Vary {
         let refused = |why: String| VaryError(format!("{id}: {why}"));
         let key = VariedKey::parse(id, scene)?;
         let range: Range = range.parse().map_err(|VaryError(why)| refused(why))?;
-        let Bounds { low, high, unit } = key.quantity;
+        let Bounds { low, high, unit } = key.quantity();
         let outside = |end: &f64| !(low..=high).contains(end);
         if let Some(found) = [range.low, range.high].into_iter().find(outside) {
             return Err(refused(format!(
                 "expected values from {low:e} to {high:e} ({unit}), found {found}"
             )));
         }
+        // What lies between two values that objects may have they may have too: every bound is one of a multiple.
+        key.apply(scene, range.low)?;
+        key.apply(scene, range.high)?;
         let values = range.values();
         Ok(Self { key, values })
     }
@@ -234,11 +298,14 @@ impl Vary {
 
     /// The unit of the values.
     pub fn unit(&self) -> &'static str {
-        self.key.quantity.unit
+        self.key.quantity().unit
     }
 
     /// The scene with this value.
-    pub fn apply(&self, scene: &Scene, value: f64) -> Scene {
+    ///
+    /// # Errors
+    /// [`VaryError`] where an object with this value cannot be made.
+    pub fn apply(&self, scene: &Scene, value: f64) -> Result<Scene, VaryError> {
         self.key.apply(scene, value)
     }
 }

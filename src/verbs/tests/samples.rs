@@ -169,6 +169,7 @@ pub fn empty(name: &str) -> Report {
     Report {
         header: Header {
             scene: SceneFacts {
+                objects: Vec::new(),
                 name: name.into(),
                 file: format!("scenes/oscillator/{name}.yml"),
                 particles: 2,

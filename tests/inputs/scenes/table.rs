@@ -148,7 +148,7 @@ fn every_number_that_moves_something_can_be_varied() {
         let number = matches!(row.kind, ValueKind::Number(_)) && row.flat.is_some();
         assert_eq!(vary.is_ok(), number, "{id}");
         if let Ok(vary) = vary {
-            let varied = vary.apply(&scene, 0.5);
+            let varied = vary.apply(&scene, 0.5).expect(&id);
             let last = (part.count)(&scene) - 1;
             assert_eq!(
                 (row.get)(&varied, last, 0),

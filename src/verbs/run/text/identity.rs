@@ -3,6 +3,7 @@
 use crate::integrators;
 use crate::measure::identify::{Explained, Fault, Identity, Quantity, TRUTH, Undecided};
 use crate::report::words::{self, listed};
+use crate::scene::object::called;
 use crate::solvers::SolverKind;
 use crate::verbs::run::Outcome;
 use crate::verbs::{Body, Report};
@@ -138,8 +139,9 @@ pub fn fault(report: &Report) -> Vec<String> {
     };
     vec![
         format!(
-            "step {step}, from t = {} s: {what} of particle {particle}",
-            words::short(fault.t_s)
+            "step {step}, from t = {} s: {what} of particle {}",
+            words::short(fault.t_s),
+            words::one_line(&called(&report.header.scene.objects, *particle))
         ),
         format!("expected {} {unit}", vector(fault.expected.map(Some))),
         format!("found    {} {unit}", vector(fault.found)),

@@ -5,6 +5,7 @@ use crate::report::EffectUse;
 use crate::report::table::Table;
 use crate::report::terminal::clip;
 use crate::report::words::{self, escape};
+use crate::scene::object::called;
 use crate::solvers::Built;
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
@@ -71,7 +72,8 @@ pub fn loads(report: &Report) -> String {
         loads.tension_min.as_ref().map(tension)
     });
     table.markdown("holds at the end", |(_, loads)| {
-        let held = loads.reactions_final.iter().take(HELD).map(reaction);
+        let held = loads.reactions_final.iter().take(HELD);
+        let held = held.map(|held| escape(&reaction(held, report)));
         let hidden = loads.reactions_final.len().saturating_sub(HELD);
         let more = (hidden > 0).then(|| format!("{hidden} more"));
         let all: Vec<String> = held.chain(more).collect();
@@ -99,7 +101,8 @@ pub fn own_loads(report: &Report) -> Vec<(&'static str, String)> {
     }
     for (at, held) in loads.reactions_final.iter().take(HELD).enumerate() {
         let label = if at == 0 { "reaction" } else { "" };
-        lines.push((label, format!("{engine} at the end: {}", reaction(held))));
+        let text = format!("{engine} at the end: {}", reaction(held, report));
+        lines.push((label, text));
     }
     lines
 }
@@ -111,9 +114,10 @@ fn tension(tension: &Tension) -> String {
 }
 
 /// `particle 0 is held by (0, 0, 9.81) N`
-fn reaction(reaction: &Reaction) -> String {
+fn reaction(reaction: &Reaction, report: &Report) -> String {
     let force = reaction.force_n.map(words::short).join(", ");
-    format!("particle {} is held by ({force}) N", reaction.particle)
+    let particle = called(&report.header.scene.objects, reaction.particle);
+    format!("particle {particle} is held by ({force}) N")
 }
 
 fn number(value: Option<f64>) -> Option<String> {
