@@ -82,9 +82,7 @@ pub fn shape(scene: &Scene, places: &[(&str, &[f64])]) -> Chart {
         }
         let free = (!below.is_empty()).then_some(*label);
         legend.extend(entries(&drawn, width, free));
-        marks.extend(full(&drawn, &top, [width, dot]));
-        let named = names(scene, &drawn).into_iter();
-        marks.extend(named.map(|(id, name)| Mark::Text(top[id], name)));
+        marks.extend(full(scene, &drawn, &top, [width, dot]));
         note = drawn.note(scene.particles.len());
     }
     if let Some(ends) = view.edge(all) {
@@ -113,7 +111,7 @@ fn pale(drawn: &Drawn, at: &[[f64; 2]], [width, dot]: [f64; 2]) -> [Mark; 2] {
 }
 
 /// The marks of a shape that nothing lies over.
-fn full(drawn: &Drawn, at: &[[f64; 2]], [width, dot]: [f64; 2]) -> Vec<Mark> {
+fn full(scene: &Scene, drawn: &Drawn, at: &[[f64; 2]], [width, dot]: [f64; 2]) -> Vec<Mark> {
     let triangles = drawn.triangles.iter();
     let triangles = triangles.map(|corners| corners.map(|id| at[id]));
     let hinges = finite(drawn.hinges.iter().map(|id| [at[*id]])).concat();
@@ -122,8 +120,11 @@ fn full(drawn: &Drawn, at: &[[f64; 2]], [width, dot]: [f64; 2]) -> Vec<Mark> {
         Mark::Triangles(TRIANGLES, finite(triangles)),
         segments(ATTRACTION, &drawn.attractions, at),
         segments(Stroke { width, ..SPRING }, &drawn.springs, at),
-        Mark::Dots(ring, hinges),
     ];
+    // The white rim of a name covers springs, but no particle.
+    let named = names(scene, drawn).into_iter();
+    marks.extend(named.map(|(id, name)| Mark::Text(at[id], name)));
+    marks.push(Mark::Dots(ring, hinges));
     marks.extend(LOOKS.iter().map(|(kind, _, symbol)| {
         let points = finite(drawn.of_kind(*kind).map(|id| [at[id]])).concat();
         match kind {
