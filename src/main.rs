@@ -85,11 +85,12 @@ enum Verb {
         "merge part1.json part2.json --format junit"
     ))]
     Merge(merge::Args),
-    /// A scene with all defaults written out, or as the flat arrays that other programs get.
+    /// A scene with all defaults written out, as the flat arrays that other programs get, or as a picture.
     #[command(after_help = examples!(
         "expand scenes/pa1/scene01.yml"
         "expand scene.yml > whole.yml"
         "expand scene.yml --format json > flat.json"
+        "expand scene.yml --format svg > scene.svg"
     ))]
     Expand(expand::Args),
     /// A scene, a solver and a workflow to start from: your own solver, held to its scheme in CI.

@@ -1,14 +1,19 @@
-//! What a running simulation keeps: bytes per spring of a large cloth.
+//! What a running simulation keeps, and what reading a scene takes: bytes per spring and particle of a large cloth.
 
 #[path = "testkit/mod.rs"]
 mod testkit;
 
 use springcheck::integrators::{self, Settings};
 use springcheck::physics::ParticleSystem;
-use springcheck::scene::{DampingModel, Scene};
+use springcheck::scene::{self, DampingModel, Scene};
+use springcheck::verbs;
+use std::sync::{Mutex, PoisonError};
 
 #[global_allocator]
 static ALLOCATOR: dhat::Alloc = dhat::Alloc;
+
+/// One test after the other: they count the bytes of the whole process.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
 /// System, state and integrator while a simulation runs, and at the worst moment of two steps; with
 /// `scene` the scene it was built from, too. Bytes per spring.
@@ -32,6 +37,7 @@ fn bytes_per_spring(method: &str, scene: Scene, keep_scene: bool) -> [f64; 2] {
 
 #[test]
 fn a_running_simulation_takes_under_100_bytes_per_spring() {
+    let _one = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let _profiler = dhat::Profiler::builder().testing().build();
     // 595,978 springs with dampers between 99,856 particles. A spring takes 32 bytes, and one in
     // twenty has a copy; each has a sixth of a particle, which takes 16 bytes of weight and 24 for
@@ -51,4 +57,27 @@ fn a_running_simulation_takes_under_100_bytes_per_spring() {
             "{method}: {with_scene} bytes with the scene"
         );
     }
+}
+
+#[test]
+fn reading_a_cloth_takes_little_more_than_the_cloth() {
+    let _one = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let _profiler = dhat::Profiler::builder().testing().build();
+    let text = testkit::cloth::in_few_lines(316);
+    let scene = scene::parse(text.as_bytes(), "cloth.yml", verbs::names()).expect("a scene");
+    let read = dhat::HeapStats::get();
+    let count = scene.particles.len() as f64;
+    let members = size_of_val(&scene.particles[..])
+        + size_of_val(&scene.springs[..])
+        + size_of_val(&scene.triangles[..]);
+    // Vectors double as they grow, and so are at most twice as long as what they hold; the check of distances takes
+    // each particle's start once more.
+    let derived = (2 * members) as f64 / count + 24.0;
+    let peak = read.max_bytes as f64 / count;
+    println!("{peak:.0} bytes per particle, derived at most {derived:.0}");
+    assert!(peak < derived, "{peak} bytes per particle");
+    assert!(read.max_bytes < 400 << 20);
+    // No block for a member: 3,762 in all, a dozen for each of 316 rows.
+    let blocks = read.total_blocks as f64 / count;
+    assert!(blocks < 0.1, "{blocks} blocks per particle");
 }

@@ -21,6 +21,7 @@ pub mod schema;
 pub mod scheme;
 pub mod series;
 pub mod session;
+pub mod shape;
 pub mod show;
 pub mod stability;
 

@@ -237,7 +237,11 @@ fn expand_prints_what_reads_back_and_what_programs_get() {
     ]);
     assert_eq!(flat, std::fs::read_to_string(&got).expect("kept") + "\n");
     refuse_all(&["expand", "nowhere.yml"], &["there is no such file"]);
-    refuse_all(&["expand", scene, "--format", "xml"], &["yaml", "json"]);
+    let (code, picture, err) = output(&["expand", scene, "--format", "svg"]);
+    assert_eq!((code, err.as_str()), (0, ""));
+    assert!(picture.starts_with("<svg") && picture.ends_with("</svg>\n"));
+    let formats = ["yaml", "json", "svg"];
+    refuse_all(&["expand", scene, "--format", "xml"], &formats);
 }
 
 /// What stands between these marks in a document, each time.

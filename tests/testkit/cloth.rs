@@ -85,3 +85,15 @@ pub fn shuffled(mut scene: Scene, seed: u64) -> Scene {
     }
     scene
 }
+
+/// A scene file of few lines: a cloth of n by n particles with all its springs and triangles.
+pub fn in_few_lines(n: usize) -> String {
+    format!(
+        "solver: {{type: symplectic_euler, timestep: 0.0005}}
+objects:
+- cloth: {{name: sheet, origin: [0, 0, 1], u: [1, 0, 0], v: [0, 1, 0], particles: [{n}, {n}], mass: 0.3,
+    structural: {{stiffness: 500}}, shear: {{stiffness: 200}}, flexion: {{stiffness: 50}},
+    pins: [corner00, corner10], air_drag: 1}}
+"
+    )
+}

@@ -189,7 +189,13 @@ impl Panel {
                 let alike = [line.stroke.colour, line.stroke.dash] == [stroke.colour, stroke.dash];
                 alike && !line.points.is_empty()
             }
+            (Look::Line(look), Mark::Segments(stroke, segments)) => {
+                *stroke == look && !segments.is_empty()
+            }
             (Look::Fill(colour), Mark::Area(of, areas)) => *of == colour && !areas.is_empty(),
+            (Look::Fill(colour), Mark::Triangles(of, triangles)) => {
+                *of == colour && !triangles.is_empty()
+            }
             _ => false,
         })
     }

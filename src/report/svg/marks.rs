@@ -1,7 +1,7 @@
 //! The marks of a panel: lines, symbols, areas and texts, placed by two axes and cut at the panel's edge.
 
 use super::axis::ChartAxis;
-use super::canvas::{Align, Canvas, FAINT, Stroke, Symbol, px};
+use super::canvas::{Canvas, Stroke, Symbol, px};
 use super::key::LegendEntry;
 
 /// One mark of a panel. All numbers are values on the panel's axes.
@@ -11,6 +11,12 @@ pub enum Mark {
     Symbols(Symbol, Vec<[f64; 2]>),
     /// Rectangles of one colour, each given by two opposite corners.
     Area(&'static str, Vec<[[f64; 2]; 2]>),
+    /// Triangles of one colour.
+    Triangles(&'static str, Vec<[[f64; 2]; 3]>),
+    /// Lines from one point to another, in one path. Not to be confused with [`Mark::Line`], which is thinned.
+    Segments(Stroke, Vec<[[f64; 2]; 2]>),
+    /// Discs in one path, as wide as the stroke.
+    Dots(Stroke, Vec<[f64; 2]>),
     /// A text above and to the right of a point.
     Text([f64; 2], String),
 }
@@ -172,10 +178,28 @@ impl Frame {
                 let data: String = rectangles.iter().map(rectangle).collect();
                 canvas.area(&data, colour);
             }
+            Mark::Triangles(colour, triangles) => {
+                let triangle = |corners: &[[f64; 2]; 3]| {
+                    let corners = corners.map(|corner| self.window.clamped(self.place(corner)));
+                    let [a, b, c] = corners.map(|corner| corner.map(px).join(" "));
+                    format!("M{a}L{b}L{c}Z")
+                };
+                let data: String = triangles.iter().map(triangle).collect();
+                canvas.area(&data, colour);
+            }
+            Mark::Segments(stroke, segments) => {
+                let segments = segments.iter().map(|ends| ends.map(|end| self.place(end)));
+                canvas.path(&path(segments, self.window).0, *stroke);
+            }
+            Mark::Dots(stroke, points) => {
+                let pixels = points.iter().map(|point| self.place(*point));
+                let inside = pixels.filter(|pixel| self.window.holds(*pixel));
+                canvas.path(&inside.map(dot).collect::<String>(), *stroke);
+            }
             Mark::Text(point, text) => {
-                let [x, y] = self.place(*point);
-                if self.window.holds([x, y]) {
-                    canvas.text([x + 5.0, y - 4.0], Align::Start, 10.0, FAINT, text);
+                let pixel = self.place(*point);
+                if self.window.holds(pixel) {
+                    canvas.note(pixel, text);
                 }
             }
         }
@@ -194,7 +218,10 @@ impl Frame {
             let far = pixels.iter().position(far);
             pixels.truncate(far.map_or(pixels.len(), |at| at + 1));
         }
-        let (data, end) = path(&thinned(&pixels, budget), w);
+        let (data, end) = match thinned(&pixels, budget)[..] {
+            [only] if w.holds(only) => (dot(only), Some(only)),
+            ref pixels => path(pixels.windows(2).map(|pair| [pair[0], pair[1]]), w),
+        };
         canvas.path(&data, line.stroke);
         let arrives = end == Some(last);
         if let Some(symbol) = line.end.filter(|_| arrives) {
@@ -229,21 +256,23 @@ fn thinned(points: &[[f64; 2]], budget: usize) -> Vec<[f64; 2]> {
     kept.into_iter().map(|at| points[at]).collect()
 }
 
-/// The points joined and cut at the window, as the `d` attribute of a path, and the path's last point;
-/// empty where no part is inside.
-fn path(points: &[[f64; 2]], window: Window) -> (String, Option<[f64; 2]>) {
-    if let [only] = points
-        && window.holds(*only)
-    {
-        let [x, y] = only.map(px);
-        return (format!("M{x} {y}h0"), Some(*only));
-    }
+/// A disc as wide as the stroke, as the `d` attribute of a path.
+fn dot(pixel: [f64; 2]) -> String {
+    format!("M{}h0", pixel.map(px).join(" "))
+}
+
+/// The segments cut at the window, as the `d` attribute of a path, and the path's last point; empty where no part
+/// is inside. The pen stays down where a segment begins at the end of the one before.
+fn path(
+    segments: impl Iterator<Item = [[f64; 2]; 2]>,
+    window: Window,
+) -> (String, Option<[f64; 2]>) {
     let mut data = String::new();
     // The position of the pen, as written.
     let mut pen: Option<[String; 2]> = None;
     let mut end = None;
-    for pair in points.windows(2) {
-        let Some([a, b]) = window.cut(pair[0], pair[1]) else {
+    for [a, b] in segments {
+        let Some([a, b]) = window.cut(a, b) else {
             continue;
         };
         end = Some(b);

@@ -28,6 +28,15 @@ pub const TRUTH: Stroke = Stroke::new("#c4c4c4", "", 6.0);
 /// The colours of where something holds, and where it does not.
 pub const HOLDS: [&str; 2] = ["#0072b2", "#f1ece4"];
 
+/// A spring of a shape, and the colour of a shape that another lies over.
+pub const SPRING: Stroke = Stroke::new("#0072b2", "", 1.2);
+pub const BELOW: &str = "#b4b4b4";
+
+/// The ring of a hinge, the dashes of an attraction, and the filling of triangles, light enough for springs on it.
+pub const HINGE: &str = "#e69f00";
+pub const ATTRACTION: Stroke = Stroke::new("#cc79a7", "6 4", 1.2);
+pub const TRIANGLES: &str = "#e3eef6";
+
 /// A line over cells of any colour: first the wider pale stroke that sets it off, then the line itself.
 pub const BOUNDARY: [Stroke; 2] = [Stroke::new("#ffffff", "", 3.6), Stroke::new(BLACK, "", 1.6)];
 

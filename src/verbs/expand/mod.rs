@@ -4,6 +4,7 @@ use crate::physics::ParticleSystem;
 use crate::scene;
 use crate::solvers::external::{Flat, Task};
 use crate::verbs::cli::{flags, output};
+use crate::verbs::shape::shape;
 use anyhow::Context;
 use clap::ValueEnum;
 use std::path::PathBuf;
@@ -25,6 +26,8 @@ enum Format {
     Yaml,
     /// The flat arrays that other programs get, as behind {scene_json}.
     Json,
+    /// A picture of it at its start.
+    Svg,
 }
 
 /// Prints a scene.
@@ -32,6 +35,7 @@ pub fn expand(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = flags::scene(&args.scene, None)?;
     let text = match args.format {
         Format::Yaml => scene::yaml(&scene),
+        Format::Svg => shape(&scene, &[("start", &scene.starts().concat())]).draw(),
         Format::Json => {
             let timestep = scene.solver.timestep;
             let task = Task {

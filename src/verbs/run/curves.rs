@@ -8,6 +8,7 @@ use crate::scene::Scene;
 use crate::scene::object::called;
 use crate::solvers::Status;
 use crate::verbs::run::{Curves, PlotAxis, RunSeries, TruthCurves};
+use crate::verbs::shape;
 
 /// The number of particles whose paths are drawn, at most.
 const MAX_PATHS: usize = 8;
@@ -20,7 +21,7 @@ pub fn series(
     scale: Option<f64>,
 ) -> RunSeries {
     let scene = plan.scene;
-    let plane = plane(scene, records);
+    let plane = shape::plane(scene.up, [0, 1, 2].map(|axis| extent(scene, records, axis)));
     let drawn = drawn_particles(scene);
     let mut curves = Vec::new();
     for (outcome, (record, energy)) in records.iter().zip(energies).enumerate() {
@@ -100,28 +101,6 @@ fn paths<'a, I: Iterator<Item = &'a [f64]>>(
         states().map(point).collect()
     };
     particles.iter().map(path).collect()
-}
-
-/// The motion along an axis is invisible if its extent is below this fraction of the others'.
-const FLAT: f64 = 0.02;
-
-/// The two coordinates that show the motion. `up` is vertical where the motion has an extent along it, and
-/// the wider of the other two is horizontal; else they are those two.
-fn plane(scene: &Scene, records: &[Record]) -> [usize; 2] {
-    let extents = [0, 1, 2].map(|axis| extent(scene, records, axis));
-    let up = scene.up.index();
-    let [first, second] = match up {
-        0 => [1, 2],
-        1 => [0, 2],
-        _ => [0, 1],
-    };
-    if extents[up] < FLAT * extents[first].min(extents[second]) {
-        [first, second]
-    } else if extents[second] > extents[first] {
-        [second, up]
-    } else {
-        [first, up]
-    }
 }
 
 /// The extent of the scene's start and the first completed run along an axis, m.

@@ -13,6 +13,7 @@ use crate::solvers::{SolverKind, Status};
 use crate::verbs::Report;
 use crate::verbs::run::text::{engine, several_timesteps};
 use crate::verbs::run::{Curves, Outcome, TruthCurves};
+use crate::verbs::shape::AXIS_TITLES;
 use std::collections::BTreeSet;
 
 /// The number of panels, at most; the table has every timestep.
@@ -223,9 +224,7 @@ fn trajectories(report: &Report) -> Option<Chart> {
     let panels = by_timestep(report, |truth| truth.paths.clone(), |run| run.paths.clone())?;
     let series = report.run_series();
     let height = if panels.len() > 1 { 320.0 } else { 460.0 };
-    let titles = series
-        .plane
-        .map(|axis| ["x (m)", "y (m)", "z (m)"][axis.min(2)]);
+    let titles = series.plane.map(|axis| AXIS_TITLES[axis.min(2)]);
     let start = Symbol::new(SymbolShape::Disc, WHITE, INK);
     let end = |colour| Symbol::new(SymbolShape::Disc, colour, WHITE);
     let still = Symbol::new(SymbolShape::Square, INK, INK);

@@ -4,6 +4,7 @@ mod json;
 mod motion;
 mod read;
 mod samples;
+mod shape;
 mod stability;
 
 use crate::report::json::Tool;
