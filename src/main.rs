@@ -3,7 +3,7 @@
 use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 use springcheck::verbs::cli::{interrupt, note, output};
 use springcheck::verbs::{
-    check, compare, completions, cost, expand, explain, init, list, merge, run, schema, show,
+    check, compare, completions, cost, expand, explain, init, list, merge, rest, run, schema, show,
     stability,
 };
 use std::process::ExitCode;
@@ -71,6 +71,13 @@ enum Verb {
         "cost scene.yml --timestep 0.04,0.02,0.01"
     ))]
     Cost(cost::Args),
+    /// Where a scene comes to rest, how it oscillates about that, and what refining its objects does.
+    #[command(after_help = examples!(
+        "rest scenes/string/hanging.yml"
+        "rest scenes/cloth/net.yml --refine 1,2,4,8"
+        "rest scene.yml --write hanging.yml --release 'rope[0]'"
+    ))]
+    Rest(rest::Args),
     /// A stored report once more: printed and drawn as by the verb that made it.
     #[command(after_help = examples!(
         "show reports/pa1/scene01/report.json"
@@ -87,7 +94,6 @@ enum Verb {
     Merge(merge::Args),
     /// A scene with all defaults written out, as the flat arrays that other programs get, or as a picture.
     #[command(after_help = examples!(
-        "expand scenes/pa1/scene01.yml"
         "expand scene.yml > whole.yml"
         "expand scene.yml --format json > flat.json"
         "expand scene.yml --format svg > scene.svg"
@@ -162,6 +168,7 @@ fn main() -> ExitCode {
         Verb::Check(args) => check::check(&args, cli.quiet),
         Verb::Stability(args) => stability::stability(&args, cli.quiet),
         Verb::Cost(args) => cost::cost(&args, cli.quiet),
+        Verb::Rest(args) => rest::rest(&args, cli.quiet),
         Verb::Show(args) => show::show(&args, cli.quiet),
         Verb::Merge(args) => merge::merge(&args),
         Verb::Expand(args) => expand::expand(&args),

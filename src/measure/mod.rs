@@ -6,6 +6,7 @@ mod error;
 pub mod identify;
 mod momentum;
 pub mod order;
+pub mod rest;
 mod scale;
 pub mod stability;
 mod statics;

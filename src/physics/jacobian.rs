@@ -63,10 +63,18 @@ impl Jacobian {
     }
 
     pub fn clear(&mut self) {
-        self.position.clear();
-        self.velocity.clear();
-        for pairs in self.pairs.iter_mut().flatten() {
-            pairs.clear();
+        self.forget(Derivative::Position);
+        self.forget(Derivative::Velocity);
+    }
+
+    /// Removes one of the two derivatives.
+    pub(crate) fn forget(&mut self, by: Derivative) {
+        match by {
+            Derivative::Position => self.position.clear(),
+            Derivative::Velocity => self.velocity.clear(),
+        }
+        if let Some(pairs) = &mut self.pairs {
+            pairs[by as usize].clear();
         }
     }
 

@@ -92,6 +92,23 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// Four significant digits, plain where that is short: `0.2828`, `3.535e-5`, `12.00`.
+pub fn digits(value: f64) -> String {
+    if !value.is_finite() {
+        return NOTHING.into();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let exponent = value.abs().log10().floor();
+    if (-3.0..4.0).contains(&exponent) {
+        let decimals = (3.0 - exponent).clamp(0.0, 6.0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
 /// Seconds with a fitting prefix and three digits: `12.3 ms`.
 pub fn seconds(value: f64) -> String {
     let (scale, unit) = match value.abs() {

@@ -3,7 +3,7 @@
 use super::complete::expanded;
 use super::error::Refusal;
 use super::model::Scene;
-use super::object::{Object, Scaling};
+use super::object::{Body, Object, Scaling};
 use super::place::Problem;
 
 impl Scene {
@@ -21,22 +21,33 @@ impl Scene {
     /// As [`remade`](Self::remade).
     pub fn refined(&self, links: u64, scaling: Scaling) -> Result<Self, Refusal> {
         let finer = |name: &str| {
-            let found = self.particle_named(name).ok().and_then(|id| {
-                let mut bodies = self.bodies.iter();
-                bodies.find_map(|body| Some((body, body.place(id)?)))
-            });
+            let id = self.particle_named(name).ok();
+            let found = id.and_then(|id| self.body_of(id));
             found.map_or_else(
                 || name.to_owned(),
-                |(body, place)| {
-                    let finer: Vec<usize> = place.iter().map(|at| at * links as usize).collect();
-                    body.called(&finer)
-                },
+                |(body, place)| body.called(&finer(&place, links)),
             )
         };
         let change = |objects: &mut Vec<Object>| {
             objects.iter_mut().for_each(|o| o.refine(links, scaling));
         };
         self.renamed(change, &finer)
+    }
+
+    /// The id of the same particle in this scene [refined](Self::refined).
+    pub fn refined_id(&self, refined: &Self, id: usize, links: u64) -> Option<usize> {
+        let Some((body, place)) = self.body_of(id) else {
+            return (id < refined.particles.len()).then_some(id);
+        };
+        let mut bodies = refined.bodies.iter();
+        let body = bodies.find(|other| other.name == body.name)?;
+        body.id(&finer(&place, links))
+    }
+
+    /// The object that a particle belongs to, and its place there.
+    fn body_of(&self, id: usize) -> Option<(&Body, Vec<usize>)> {
+        let mut bodies = self.bodies.iter();
+        bodies.find_map(|body| Some((body, body.place(id)?)))
     }
 
     fn renamed(
@@ -63,4 +74,9 @@ impl Scene {
             ..scene
         })
     }
+}
+
+/// The place of the same particle once every link is cut into so many.
+fn finer(place: &[usize], links: u64) -> Vec<usize> {
+    place.iter().map(|at| at * links as usize).collect()
 }

@@ -1,6 +1,6 @@
 //! The formats a report is written in, one row each, and its figures.
 
-use super::{Body, Report, check, cost, run, stability};
+use super::{Body, Report, check, cost, rest, run, stability};
 use crate::report::json::{self, Tool};
 use crate::report::svg::{Chart, Figure};
 use crate::report::words::one_line;
@@ -155,6 +155,7 @@ impl Report {
             Body::Check { .. } => "check",
             Body::Stability { .. } => "stability",
             Body::Cost { .. } => "cost",
+            Body::Rest { .. } => "rest",
         }
     }
 
@@ -187,6 +188,7 @@ impl Report {
             }
             Body::Stability { stability, .. } => stability::view(self, stability, columns),
             Body::Cost { cost, .. } => cost::view(self, cost, columns),
+            Body::Rest { rest, .. } => rest::view(self, rest, columns),
         }
     }
 
@@ -223,6 +225,7 @@ impl Report {
             }
             Body::Stability { stability, .. } => stability::page(&shown, stability, &view),
             Body::Cost { cost, .. } => cost::page(&shown, cost, &view),
+            Body::Rest { rest, .. } => rest::page(&shown, rest, &view),
         }
     }
 
@@ -232,6 +235,7 @@ impl Report {
             Body::Run { .. } | Body::Check { .. } | Body::Compare { .. } => run::FIGURES,
             Body::Stability { .. } => stability::FIGURES,
             Body::Cost { .. } => cost::FIGURES,
+            Body::Rest { .. } => rest::FIGURES,
         };
         let chart = |(file, title, chart): &Figure<Report>| Some((*file, *title, chart(self)?));
         figures.iter().filter_map(chart)

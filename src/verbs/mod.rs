@@ -16,6 +16,7 @@ pub mod formats;
 pub mod init;
 pub mod list;
 pub mod merge;
+pub mod rest;
 pub mod run;
 pub mod schema;
 pub mod scheme;
@@ -32,6 +33,7 @@ use crate::measure::identify::Fault;
 use crate::report::Header;
 use crate::scene::Names;
 use cost::{Cost, CostPanels};
+use rest::{AtRest, RestShape};
 use run::{Outcome, RunSeries};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -93,6 +95,12 @@ pub enum Body {
         /// What accuracy costs.
         cost: Cost,
     },
+    Rest {
+        /// As in `Stability`.
+        outcomes: [(); 0],
+        /// Where it comes to rest.
+        rest: AtRest,
+    },
 }
 
 impl Report {
@@ -102,7 +110,7 @@ impl Report {
             Body::Run { outcomes } | Body::Check { outcomes } | Body::Compare { outcomes, .. } => {
                 outcomes
             }
-            Body::Stability { .. } | Body::Cost { .. } => &[],
+            Body::Stability { .. } | Body::Cost { .. } | Body::Rest { .. } => &[],
         }
     }
 
@@ -110,6 +118,14 @@ impl Report {
     pub fn stability(&self) -> Option<&Stability> {
         match &self.body {
             Body::Stability { stability, .. } => Some(stability),
+            _ => None,
+        }
+    }
+
+    /// The result of `rest`; None for other verbs.
+    pub fn rest(&self) -> Option<&AtRest> {
+        match &self.body {
+            Body::Rest { rest, .. } => Some(rest),
             _ => None,
         }
     }
@@ -159,6 +175,8 @@ pub enum Series {
     Curves(RunSeries),
     /// The series of `cost`, where the steps were named.
     Panels(CostPanels),
+    /// The series of `rest`.
+    Shape(RestShape),
 }
 
 impl Report {
@@ -194,11 +212,19 @@ impl Report {
         }
     }
 
+    /// The series of `rest`; None where they are not loaded.
+    pub fn shape(&self) -> Option<&RestShape> {
+        match self.series()? {
+            Series::Shape(shape) => Some(shape),
+            _ => None,
+        }
+    }
+
     /// The series of `cost`, which draws a few steps side by side; None where they are not loaded.
     pub fn panels(&self) -> Option<&CostPanels> {
         match self.series()? {
             Series::Panels(panels) => Some(panels),
-            Series::Curves(_) => None,
+            _ => None,
         }
     }
 }

@@ -19,6 +19,7 @@ mod momentum;
 mod objects;
 mod order;
 mod oscillator;
+mod rest;
 mod solver;
 mod stiff;
 #[path = "../testkit/mod.rs"]

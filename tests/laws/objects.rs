@@ -3,6 +3,7 @@
 use crate::testkit::scenes::parsed as parse;
 use nalgebra::{DMatrix, DVector};
 use springcheck::physics::{Jacobian, Linearization, ParticleSystem, System};
+use springcheck::scene::object::Scaling;
 use springcheck::scene::{self, Scene};
 
 fn with(objects: &str) -> Scene {
@@ -212,5 +213,42 @@ fn particles_have_names() {
     let mut plain = parse(&scene::yaml(&scene));
     assert!(plain.bodies.is_empty());
     plain.bodies = scene.bodies.clone();
-    assert_eq!(plain, scene);
+    let mut whole = scene;
+    whole.written = None;
+    assert_eq!(plain, whole);
+}
+
+/// Once links are cut, what is named is where it was, and what was given for one object is given for another.
+#[test]
+fn a_finer_scene_keeps_what_is_named() {
+    let scene = parse(
+        "solver: {type: rk4, timestep: 0.001}\nparticles: [{pos: [0, 0, 5], mass: 1}]\nobjects:\n\
+         - string: {from: [0, 0, 0], to: [1, 0, 0], particles: 5, mass: 0.1, stiffness: 10, refine: 2}\n\
+         - net: {origin: [0, 0, 1], plane: xy, size: [1, 1], particles: [3, 4], particle_mass: 1, \
+           structural: {stiffness: 5}}\n\
+         springs: [{particle_ids: [\"net[2,3]\", \"string[6]\"], stiffness: 1}, {particle_ids: [0, \"string[1]\"], stiffness: 1}]\n\
+         plot: {particle_id: \"net[1,2]\", dof: 2}\n",
+    );
+    let at = |scene: &Scene, id: usize| scene.particles[id].position;
+    for links in [1, 3] {
+        let finer = scene.refined(links, Scaling::None).expect("a scene");
+        let spring =
+            |scene: &Scene, spring: usize| scene.springs[spring].ends.map(|end| at(scene, end));
+        assert_eq!(
+            [0, 1].map(|s| spring(&finer, s)),
+            [0, 1].map(|s| spring(&scene, s))
+        );
+        let shown = |scene: &Scene| at(scene, scene.plot.as_ref().expect("a plot").particle);
+        assert_eq!(shown(&finer), shown(&scene));
+        for id in 0..scene.particles.len() {
+            let there = scene
+                .refined_id(&finer, id, links)
+                .expect("the same particle");
+            assert_eq!(at(&finer, there), at(&scene, id));
+        }
+        let springs = 2 + 8 * links + (2 * links) * (3 * links + 1) + (3 * links) * (2 * links + 1);
+        assert_eq!(finer.springs.len() as u64, springs);
+    }
+    let none = scene.remade(|objects| objects.truncate(1));
+    assert!(none.is_err(), "net[2,3] is no more");
 }

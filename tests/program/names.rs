@@ -10,7 +10,7 @@ fn scene(folder: &Path, stiffness: &str) -> PathBuf {
         "solver: {{type: explicit_euler, timestep: 0.01}}
 duration: 0.5
 plot: {{particle_id: \"rope[4]\", dof: 2}}
-particles: [{{pos: [5, 0, 0], mass: 1}}]
+particles: [{{pos: [5, 0, 0], fixed: true}}]
 objects:
 - string: {{name: rope, from: [0, 0, 1], to: [0.3, 0, 0], particles: 5, mass: 1, stiffness: {stiffness},
     damping: 1, drag: 1e-20, pins: [start]}}
@@ -100,6 +100,12 @@ fn every_text_has_names_where_the_data_have_ids() {
     let stored = folder.path().join("report.json");
     std::fs::write(&stored, text(&run, "json")).expect("written");
     says(&output(&["show", word(&stored)]).1, &fastest);
+
+    // At rest the rope hangs straight down, and its free end is  farthest.
+    let rest = ["rest", word(&scene)];
+    for format in ["human", "markdown"] {
+        says(&text(&rest, format), "rope[4] is ");
+    }
 
     // The first with a drag that rapier cannot mirror: rope[0] is fixed.
     let stability = ["stability", word(&scene), "--integrators", "rk4"];

@@ -137,6 +137,15 @@ fn limits() {
 }
 
 #[test]
+fn rests() {
+    same(&["rest", "scenes/hair/clamped.yml"], "rest");
+    same(
+        &["rest", "scenes/cloth/net.yml", "--refine", "1,2,4"],
+        "rest",
+    );
+}
+
+#[test]
 fn costs() {
     let few = ["--integrators", "rk4,symplectic_euler,dormand_prince54"];
     let small = ["cost", CIRCLE, "--budget", "0.3s", "--steps", "3"];

@@ -163,12 +163,13 @@ impl Canvas {
         ));
     }
 
-    /// A small note right of a point, with a white rim that sets it off from lines below it.
+    /// A small note right of a point, on a white ground that sets it off from lines below it.
     pub fn note(&mut self, [x, y]: [f64; 2], text: &str) {
-        let ([x, y], text) = ([x + 5.0, y - 4.0].map(px), escape(text));
-        self.push(&format!(
-            r#"<text x="{x}" y="{y}" font-size="10" fill="{FAINT}" stroke="{WHITE}" stroke-width="4" paint-order="stroke">{text}</text>"#
-        ));
+        let [x, y] = [x + 5.0, y - 4.0];
+        // Digits and letters are about so wide at this size.
+        let width = 5.8 * text.chars().count() as f64;
+        self.rectangle([x - 1.0, y - 9.0], [width + 2.0, 12.0], WHITE, WHITE);
+        self.text([x, y], Align::Start, 10.0, FAINT, text);
     }
 
     fn push(&mut self, element: &str) {

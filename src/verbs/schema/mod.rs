@@ -17,7 +17,7 @@ pub struct Args {
 enum What {
     /// Of scene files.
     Scene,
-    /// Of the JSON that `run`, `compare`, `check`, `stability` and `cost` write.
+    /// Of the JSON that `run`, `compare`, `check`, `stability`, `rest` and `cost` write.
     Report,
 }
 

@@ -82,7 +82,11 @@ impl View {
         let Some(Depth { axis, ends }) = &self.depth else {
             return String::new();
         };
-        let (name, [front, back]) = (["x", "y", "z"][*axis], ends.map(words::short));
+        let name = ["x", "y", "z"][*axis];
+        // What is 0 but for rounding is 0.
+        let size = f64::max(ends[0].abs(), ends[1].abs());
+        let told = |end: f64| if end.abs() < 1e-9 * size { 0.0 } else { end };
+        let [front, back] = ends.map(|end| words::short(told(end)));
         format!(
             "Oblique view: {name} goes from {front} m at the front to {back} m at the back, drawn at half its \
              length. The axes hold at the front."

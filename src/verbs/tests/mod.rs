@@ -3,6 +3,7 @@ mod hostile;
 mod json;
 mod motion;
 mod read;
+mod rest;
 mod samples;
 mod shape;
 mod stability;
@@ -40,6 +41,8 @@ fn all() -> Vec<Report> {
         stability::mapped(),
         stability::pair(),
         stability::odd(),
+        rest::found(),
+        rest::falling(),
         cost::samples::priced(),
         cost::samples::full(),
         cost::samples::counted(),
@@ -232,6 +235,7 @@ mod data {
         Cost, CostCurve, CostLine, CostPanel, CostPanels, CostPoint, CostRank, CostReached,
         CostTarget,
     };
+    pub use crate::verbs::rest::{AtRest, Balance, Moved, Oscillation, Refined, Trend};
     pub use crate::verbs::run::{Curves, Outcome, PlotAxis, RunSeries, WorkSummary};
     pub use crate::verbs::stability::{
         Admissible, AdmissiblePanel, MapPanel, Stability, StabilityMap, StabilityRow,

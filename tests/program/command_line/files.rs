@@ -90,7 +90,7 @@ fn what_cannot_be_written_is_said_before_the_work_or_else_after_the_table() {
     let file = folder.path().join("file");
     std::fs::write(&file, "").expect("written");
     let into = ["--output", word(&file)];
-    for verb in ["run", "stability", "cost"] {
+    for verb in ["run", "stability", "rest", "cost"] {
         refuse_all(&[&[verb, SCENE][..], &into].concat(), &["cannot write to"]);
     }
     // A folder stands where a file has to go: seen only when it is written.

@@ -89,6 +89,7 @@ fn json_says_what_the_texts_say_and_lines_are_reports() {
         short(&[&scenes[..], &["--format", "jsonl"]].concat()),
         vec!["cost", SCENE, "--timestep", "0.1", "--format", "jsonl"],
         vec!["stability", SCENE, "--engines", "none", "--format", "jsonl"],
+        vec!["rest", SCENE, "--format", "jsonl"],
     ] {
         let (code, text, err) = output(&call);
         assert_eq!(code, 0, "{err}");
@@ -114,6 +115,7 @@ fn a_line_a_scene_is_all_that_quiet_prints() {
     for call in [
         vec!["stability", SCENE, "--engines", "none", "--no-files"],
         vec!["cost", SCENE, "--timestep", "0.1", "--no-files"],
+        vec!["rest", SCENE, "--no-files"],
         vec!["show", word(&file)],
         vec![
             "compare",

@@ -35,6 +35,7 @@ fn a_report_is_as_wide_as_the_terminal() {
     for args in [
         "run scenes/pa1/scene01.yml --duration 0.1 --no-files",
         "stability scenes/oscillator/circle.yml --integrators rk4 --engines none --vary springs.stiffness=1..9:40 --steps 0.1..1:4 --budget 1e5 --no-files",
+        "rest scenes/hair/clamped.yml --refine 1,2,4 --no-files",
         "cost scenes/oscillator/circle.yml --timestep 0.1,0.05 --no-files",
         "run scenes/pa1/scene01.yml scenes/pa1/scene00.yml --duration 0.1 --no-files",
         "run --help",

@@ -41,7 +41,7 @@ fn a_wrong_word_is_answered_with_the_nearest() {
         refuse_all(args, &[says]);
     }
     // A negative value is a value.
-    let values: [(&[&str], &str); 13] = [
+    let values: [(&[&str], &str); 14] = [
         (&["check", SCENE, "--external-timeout", "-1s"], "'-1s'"),
         (&["check", SCENE, "--partition", "-1/2"], "'-1/2'"),
         (
@@ -58,6 +58,7 @@ fn a_wrong_word_is_answered_with_the_nearest() {
         (&["run", SCENE, "--save", "csv", "--every", "-3"], "'-3'"),
         (&["stability", SCENE, "--timestep", "-1"], "found -1"),
         (&["stability", SCENE, "--admissible", "-1"], "found -1"),
+        (&["rest", SCENE, "--refine", "-1"], "'-1'"),
         (&["cost", SCENE, "--timestep", "-1"], "timestep -1"),
         (&["cost", SCENE, "--budget", "-1s"], "'-1s'"),
         (

@@ -12,7 +12,7 @@ fn usage_and_scene_errors_exit_with_2_and_write_nothing() {
     let cases: [(&[&str], &str); 14] = [
         (&[bad], "bad.yml:1:16"),
         (&["missing.yml"], "missing.yml"),
-        (&["docs"], "no scene in this folder"),
+        (&["benches"], "no scene in this folder"),
         (&[SCENE, "--integrators", "rk5"], "symplectic_euler"),
         (&[SCENE, "--engines", "bullet"], "rapier-forces"),
         (&[SCENE, "--timestep", "0"], "positive"),

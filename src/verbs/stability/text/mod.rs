@@ -6,7 +6,7 @@ mod verdict;
 use crate::report::markdown::{findings, opening, section};
 use crate::report::table::Table;
 use crate::report::terminal::Tone;
-use crate::report::words::{self, NOTHING, escape, listed, one_line};
+use crate::report::words::{self, NOTHING, digits, escape, listed, one_line};
 use crate::report::{Note, View};
 use crate::verbs::Report;
 use crate::verbs::stability::{Largest, LargestFound, LargestRow, Stability, StabilityRow};
@@ -197,20 +197,6 @@ fn measured(row: &StabilityRow) -> String {
     match row.measured_between_s {
         Some([low, high]) => format!("{}..{}", digits(low), digits(high)),
         None => limit(row.measured_limit_s, row.measured_unconditional),
-    }
-}
-
-/// Four significant digits, plain where that is short: `0.2828`, `3.535e-5`, `12.00`.
-fn digits(value: f64) -> String {
-    if !value.is_finite() {
-        return NOTHING.into();
-    }
-    let exponent = value.abs().log10().floor();
-    if (-3.0..4.0).contains(&exponent) {
-        let decimals = (3.0 - exponent).clamp(0.0, 6.0) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.3e}")
     }
 }
 

@@ -1,9 +1,9 @@
 //! The terminal's part of `stability`: the table of limits and a map in characters.
 
-use super::{digits, largest_heading, largest_table, map_heading, table};
+use super::{largest_heading, largest_table, map_heading, table};
 use crate::measure::stability::Cell;
 use crate::report::terminal::{Tone, clip, mark, pad, width, wrap};
-use crate::report::words;
+use crate::report::words::{self, digits};
 use crate::verbs::Report;
 use crate::verbs::stability::{MapPanel, Stability, StabilityMap, StabilityRow};
 

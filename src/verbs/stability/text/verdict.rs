@@ -1,8 +1,8 @@
 //! The verdict of `stability`: the most important facts about limits.
 
-use super::{digits, limit};
+use super::limit;
 use crate::report::verdict::Clause;
-use crate::report::words::{self, listed};
+use crate::report::words::{self, digits, listed};
 use crate::verbs::Report;
 use crate::verbs::stability::{Largest, LargestFound, Stability, StabilityRow};
 
