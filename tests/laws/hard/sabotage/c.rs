@@ -29,6 +29,8 @@ pub const SABOTAGES: &[Row] = &[
         linearized_with_negative_tension,
     ),
     ("cloth", "implicit_midpoint", euler),
+    ("stiff_hair", "implicit_midpoint", euler),
+    ("stiff_hair", "tr_bdf2", trapezoidal),
     ("compressed", "implicit_euler", euler_with_one_iteration),
     ("compressed", "implicit_midpoint", trapezoidal),
     (
