@@ -3,6 +3,7 @@
 use crate::scene::{self, Scene};
 use crate::verbs::cli::flags;
 use crate::verbs::cli::interrupt;
+use crate::verbs::cli::note::note;
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::target::Target;
 use crate::verbs::cli::terminal::{self, Terminal};
@@ -97,16 +98,23 @@ pub fn rest(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     announce(&plan.estimates());
     let (mut report, settled) = plan.execute(announce);
     drop(terminal);
-    if let (Some(target), Some(mut settled)) = (target, settled.clone()) {
+    let rests = settled.is_some();
+    report.header.advice = next(args, &scene, rests).into_iter().collect();
+    let printed = args
+        .output
+        .finish(report, place, "springcheck rest --help", quiet);
+    if let Some(target) = target {
+        let Some(mut settled) = settled else {
+            note("--write: nothing is written, since no rest was found");
+            return printed.map(|_| ExitCode::from(NONE));
+        };
         for id in released {
             settled.particles[id].fixed = false;
         }
         target.put(scene::yaml(&settled).as_bytes())?;
     }
-    report.header.advice = next(args, &scene, settled.is_some()).into_iter().collect();
-    args.output
-        .finish(report, place, "springcheck rest --help", quiet)?;
-    Ok(ExitCode::from(if settled.is_some() { 0 } else { NONE }))
+    printed?;
+    Ok(ExitCode::from(if rests { 0 } else { NONE }))
 }
 
 fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<RestPlan<'a>> {

@@ -39,17 +39,16 @@ pub fn find(scene: &Scene) -> Result<(Rest, Balance), RestError> {
     });
     let (particle, distance) = rest::farthest(&start.x, &found.x);
     let by_m = [0, 1, 2].map(|axis| found.x[3 * particle + axis] - start.x[3 * particle + axis]);
-    let potential = |(row, effect): &(&crate::physics::effects::EffectRow, _)| {
-        let effect: &Box<dyn crate::physics::effects::Effect> = effect;
+    let potential = system.effects().iter().map(|(row, effect)| {
         let energies = [&start.x, &found.x].map(|x| effect.potential(0.0, x));
         (row.id.to_owned(), energies)
-    };
+    });
     let modes = rest::modes(&system, &found.x);
     let balance = Balance {
         farthest: (distance > MOVED * rest::size(&start.x)).then_some(Moved { particle, by_m }),
         force_left_n: found.force_left,
         newton_iterations: found.iterations,
-        potential_j: system.effects().iter().map(potential).collect(),
+        potential_j: potential.collect(),
         tension_max: finite.clone().max_by(order),
         tension_min: finite.min_by(order),
         reactions: reactions.collect(),

@@ -25,7 +25,7 @@ fn at_rest(report: &Report) -> Option<Chart> {
     let RestShape { scene, start } = report.shape()?.clone();
     // The file does not have the names of particles; the report has.
     let bodies = report.header.scene.objects.clone();
-    let scene = Scene { bodies, ..scene };
+    let scene = Scene { bodies, ..*scene };
     let rest = scene.starts().concat();
     Some(shape(&scene, &[("start", &start), ("at rest", &rest)]))
 }

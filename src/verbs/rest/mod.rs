@@ -89,7 +89,7 @@ impl RestPlan<'_> {
             series: match &settled {
                 Some(scene) if scene.particles.len() <= DRAWN => {
                     SeriesState::Loaded(Series::Shape(RestShape {
-                        scene: scene.clone(),
+                        scene: Box::new(scene.clone()),
                         start: ParticleSystem::initial_state(self.scene).x,
                     }))
                 }

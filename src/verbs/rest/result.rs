@@ -24,7 +24,7 @@ pub struct AtRest {
 pub struct RestShape {
     /// In the file as YAML, without the names of particles.
     #[serde(with = "written")]
-    pub scene: Scene,
+    pub scene: Box<Scene>,
     /// Where each particle started, m, three a particle.
     pub start: Vec<f64>,
 }
@@ -38,9 +38,10 @@ mod written {
         serializer.serialize_str(&scene::yaml(scene))
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Scene, D::Error> {
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Box<Scene>, D::Error> {
         let text = String::deserialize(from)?;
-        scene::parse(text.as_bytes(), "", verbs::names()).map_err(D::Error::custom)
+        let scene = scene::parse(text.as_bytes(), "", verbs::names());
+        scene.map(Box::new).map_err(D::Error::custom)
     }
 }
 
