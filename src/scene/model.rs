@@ -536,17 +536,20 @@ impl Scene {
         self.air.clone().unwrap_or_default()
     }
 
-    /// The scene's size L in metres: the diagonal of the box around all initial positions plus the
-    /// longest rest length. It is the length scale of energies and tolerances; 0 for a lone particle.
+    /// The scene's size L in metres: the [diagonal](Self::diagonal) plus the longest rest length. It is the
+    /// length scale of energies and tolerances; 0 for a lone particle.
     pub fn size(&self) -> f64 {
-        let corners = self.starts().into_iter().map(Vector::from);
-        let diagonal = if self.particles.is_empty() {
-            0.0
-        } else {
-            Aabb::from_points(corners).extents().length()
-        };
         let rest_lengths = self.springs.iter().map(|s| s.rest_length);
-        diagonal + rest_lengths.fold(0.0, f64::max)
+        self.diagonal() + rest_lengths.fold(0.0, f64::max)
+    }
+
+    /// The diagonal of the box around all initial positions, m; 0 for a lone particle.
+    pub fn diagonal(&self) -> f64 {
+        if self.particles.is_empty() {
+            return 0.0;
+        }
+        let corners = self.starts().into_iter().map(Vector::from);
+        Aabb::from_points(corners).extents().length()
     }
 
     /// The expectations of an engine, each key once: those of its own line (or, for an integrator without

@@ -89,7 +89,7 @@ pub fn find(scene: &Scene) -> Result<Rest, RestError> {
         ..Settings::default()
     };
     let mut method = Implicit::new(ImplicitScheme::Euler, &settings);
-    let size = size(&start.x);
+    let size = size(&scene);
     let mut state = start.clone();
     let mut left = still.left(&state.x);
     let first = FIRST * (size / still.fastest(&state.x)).sqrt();
@@ -147,22 +147,10 @@ pub fn find(scene: &Scene) -> Result<Rest, RestError> {
     })
 }
 
-/// The diagonal of the box around all particles, m; 1 where they are in one place.
-pub fn size(x: &[f64]) -> f64 {
-    let mut sides = [0.0; 3];
-    for (axis, side) in sides.iter_mut().enumerate() {
-        let along = x.iter().skip(axis).step_by(3);
-        let low = along.clone().fold(f64::INFINITY, |low, x| low.min(*x));
-        let high = along.fold(f64::NEG_INFINITY, |high, x| high.max(*x));
-        *side = high - low;
-    }
-    let [a, b, c] = sides;
-    let size = a.hypot(b).hypot(c);
-    if size > 0.0 && size.is_finite() {
-        size
-    } else {
-        1.0
-    }
+/// The diagonal of the box around all particles at the start, m; 1 where they are in one place.
+pub fn size(scene: &Scene) -> f64 {
+    let diagonal = scene.diagonal();
+    if diagonal > 0.0 { diagonal } else { 1.0 }
 }
 
 /// The particle that is farthest from where it was, and by how much, m.

@@ -45,7 +45,7 @@ pub fn find(scene: &Scene) -> Result<(Rest, Balance), RestError> {
     });
     let modes = rest::modes(&system, &found.x);
     let balance = Balance {
-        farthest: (distance > MOVED * rest::size(&start.x)).then_some(Moved { particle, by_m }),
+        farthest: (distance > MOVED * rest::size(&held)).then_some(Moved { particle, by_m }),
         force_left_n: found.force_left,
         newton_iterations: found.iterations,
         potential_j: potential.collect(),
