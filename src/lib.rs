@@ -45,6 +45,7 @@
 //! ```
 
 pub mod conformance;
+mod gram;
 pub mod integrators;
 mod krylov;
 pub mod measure;

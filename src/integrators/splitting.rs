@@ -94,10 +94,24 @@ pub enum DampingTreatment {
 impl DampingTreatment {
     /// The kinds of forces it accepts. An explicit kick is of first order for any force. Flows split the force
     /// into that at rest and D v.
-    pub(super) const fn takes(self) -> ForceKinds {
+    const fn takes(self) -> ForceKinds {
         match self {
             Self::Explicit => ForceKinds::ANY,
             Self::ExactFlow | Self::Sweeps | Self::Boris => ForceKinds::LINEAR,
+        }
+    }
+}
+
+impl DampingTreatment {
+    /// The kinds of forces that a composition of these stages accepts. The forces of rods depend on the velocity of the
+    /// moment, which a kick does not know: up to three stages are of order 2 all the same where states are moved onto
+    /// the rods, longer ones would lose their order.
+    pub(super) const fn takes_in(self, stages: &[Stage]) -> ForceKinds {
+        let short = stages.len() <= 3 && !matches!(self, Self::Boris);
+        if short {
+            self.takes().with(ForceKinds::CONSTRAINED)
+        } else {
+            self.takes()
         }
     }
 }
@@ -409,7 +423,7 @@ impl Integrator for Splitting {
     }
 
     fn takes(&self) -> ForceKinds {
-        self.damping.takes()
+        self.damping.takes_in(self.stages)
     }
 }
 
@@ -418,9 +432,9 @@ impl Splitting {
         let start = state.t;
         let mut drifted = 0.0;
         let mut stages = self.stages;
-        let damped = system.kinds().depends_on_velocity();
-        let swept = damped && system.dampers() != Dampers::Whole;
         let halves = Stage::half_kicks_at_ends(stages);
+        let explicit = self.damping == DampingTreatment::Explicit
+            || system.kinds().has(ForceKinds::CONSTRAINED);
         while let [stage, rest @ ..] = stages {
             let before = self.stages.len() - stages.len();
             stages = rest;
@@ -432,28 +446,41 @@ impl Splitting {
                 // The time of a kick follows from the drifts so far.
                 Kick(c) => {
                     let t = start + drifted * h;
-                    match self.damping {
-                        DampingTreatment::Explicit => {
-                            let mut drift = None;
-                            if let [Drift(next), after @ ..] = rest {
-                                drift = Some(next * h);
-                                drifted += next;
-                                stages = after;
-                            }
-                            self.kick_explicitly(system, t, c * h, drift, state);
+                    if explicit {
+                        let mut drift = None;
+                        if let [Drift(next), after @ ..] = rest {
+                            drift = Some(next * h);
+                            drifted += next;
+                            stages = after;
                         }
-                        DampingTreatment::Sweeps | DampingTreatment::Boris if swept => {
-                            let ends = [before == 0, rest.is_empty()].map(|end| halves && end);
-                            self.kick_by_sweeps(system, t, c * h, ends, state);
-                        }
-                        _ => {
-                            self.kick_exactly(system, t, c * h, state)?;
-                        }
+                        self.kick_explicitly(system, t, c * h, drift, state);
+                    } else {
+                        let ends = [before == 0, rest.is_empty()].map(|end| halves && end);
+                        self.kick(system, t, c * h, ends, state)?;
                     }
                 }
             }
         }
         state.t = start + h;
         Ok(())
+    }
+
+    /// A kick over h at frozen positions by a treatment that is not explicit; `ends` say whether it is the first and
+    /// whether the last half kick of a step.
+    pub(super) fn kick(
+        &mut self,
+        system: &dyn System,
+        t: f64,
+        h: f64,
+        ends: [bool; 2],
+        state: &mut State,
+    ) -> Result<(), StepError> {
+        let damped = system.kinds().depends_on_velocity();
+        let swept = damped && system.dampers() != Dampers::Whole;
+        if swept && self.damping != DampingTreatment::ExactFlow {
+            self.kick_by_sweeps(system, t, h, ends, state);
+            return Ok(());
+        }
+        self.kick_exactly(system, t, h, state)
     }
 }

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The energy balance B = E + dissipated - injected.
+/// The energy balance B = E + dissipated - injected + limited.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Energy {
     /// Kinetic and all potential energies at the start, J.
@@ -36,6 +36,14 @@ pub struct Energy {
     pub dissipated_j: Option<f64>,
     /// Energy that effects put in over the run, J.
     pub injected_j: Option<f64>,
+    /// Energy that moving states onto rods put in over the run, J, which the balance counts as an error; null without
+    /// rods.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub projected_j: Option<f64>,
+    /// Energy that the strain limit took out over the run, J, negative where it put some in; the balance leaves it out.
+    /// Null without a limit, and where nobody says it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limited_j: Option<f64>,
 }
 
 /// What a run's energy does, for a reader: its class, unless its error is too small or too large for
@@ -131,7 +139,7 @@ impl Energy {
 pub(crate) struct Sum {
     /// Kinetic and potential.
     pub energy: f64,
-    /// E + dissipated - injected.
+    /// E + dissipated - injected + limited.
     pub balance: f64,
     /// The largest term of these sums, which rounding is relative to.
     pub largest: f64,
@@ -141,12 +149,13 @@ impl Sum {
     pub(crate) fn new(system: &ParticleSystem, t: f64, x: &[f64], v: &[f64], work: Work) -> Self {
         let mut energy = system.kinetic(v);
         let mut largest = energy.max(work.dissipated.abs()).max(work.injected.abs());
+        largest = largest.max(work.limited.abs());
         for (_, effect) in system.effects() {
             let u = effect.potential(t, x);
             energy += u;
             largest = largest.max(u.abs());
         }
-        let balance = energy + work.dissipated - work.injected;
+        let balance = work.balance(energy);
         Self {
             energy,
             balance,
@@ -162,7 +171,7 @@ pub struct EnergySeries {
     pub t: Vec<f64>,
     /// The instant of the trajectory that each sample is from.
     pub instants: Vec<usize>,
-    /// B = E + dissipated - injected; constant in the truth.
+    /// B = E + dissipated - injected + limited; constant in the truth.
     pub balance: Vec<f64>,
     /// Energies at the start and the end; nothing is judged yet.
     ends: Energy,
@@ -197,6 +206,8 @@ impl EnergySeries {
         let Work {
             dissipated,
             injected,
+            projected,
+            limited,
         } = run.work(end);
         Some(Self {
             t: samples.iter().map(|(k, ..)| run.time(*k)).collect(),
@@ -217,6 +228,8 @@ impl EnergySeries {
                     .collect(),
                 dissipated_j: Some(dissipated),
                 injected_j: Some(injected),
+                projected_j: system.rods().map(|_| projected),
+                limited_j: system.strain_limiter().map(|_| limited),
             },
             floor: f64::EPSILON * largest * run.step(end).max(8) as f64,
         })
@@ -285,6 +298,8 @@ mod tests {
                 potential_final_j: BTreeMap::new(),
                 dissipated_j: None,
                 injected_j: None,
+                projected_j: None,
+                limited_j: None,
             },
             floor: 1e-13,
         };

@@ -1,6 +1,7 @@
 //! The numbers a trajectory shows: pure functions of recorded states.
 
 mod check;
+mod constrained;
 mod energy;
 mod error;
 pub mod identify;
@@ -10,10 +11,12 @@ pub mod rest;
 mod scale;
 pub mod stability;
 mod statics;
+mod strain;
 mod trend;
 pub mod twin;
 
 pub use check::{Check, CheckStatus};
+pub use constrained::{Constrained, Growth, RodTension, constrained};
 pub(crate) use energy::Sum;
 pub use energy::{Behaviour, Energy, EnergySeries, judge};
 pub use error::{Deviation, ErrorSummary, Errors, TOLERANCE, TrueStates, deviation, errors, reach};
@@ -21,4 +24,5 @@ pub(crate) use momentum::totals;
 pub use momentum::{Momentum, momentum};
 pub use scale::{divergence_limit, energy_scale};
 pub use statics::{Loads, Reaction, Statics, Tension};
+pub use strain::Strain;
 pub use trend::EnergyClass;

@@ -1,6 +1,6 @@
 //! Linear and angular momentum where the scene conserves them.
 
-use crate::physics::ParticleSystem;
+use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
 use crate::trajectory::Trajectory;
 use crate::truth::farthest;
@@ -26,7 +26,9 @@ pub fn momentum(scene: &Scene, system: &ParticleSystem, run: &Trajectory) -> Opt
         free && system.effects().iter().all(|(_, e)| keeps(e.as_ref()))
     };
     let linear = keeps(|e| e.keeps_momentum());
-    let angular = keeps(|e| e.keeps_angular_momentum());
+    // A strain limit moves the ends of what turns.
+    let turns = system.strain_limiter().is_none();
+    let angular = turns && keeps(|e| e.keeps_angular_momentum());
     if run.is_empty() || !run.has_velocities() || !(linear || angular) {
         return None;
     }

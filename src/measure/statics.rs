@@ -1,6 +1,7 @@
 //! Static quantities of a state: what holds the fixed particles, and how much each spring pulls.
 
-use crate::physics::{ParticleSystem, State};
+use crate::physics::constraints::Rods;
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{Scene, Spring, Vectors};
 use crate::trajectory::Trajectory;
 use schemars::JsonSchema;
@@ -9,8 +10,10 @@ use serde::{Deserialize, Serialize};
 /// Computes static quantities of states of one scene. They are no part of a state: each follows from it alone.
 #[derive(Clone)]
 pub struct Statics {
-    /// The scene with nothing fixed, and nothing of what acts on free particles alone.
+    /// The scene with nothing fixed, without rods, and nothing of what acts on free particles alone.
     held: ParticleSystem,
+    /// The scene as it is, for the forces of its rods; None without any.
+    on_rods: Option<ParticleSystem>,
     springs: Vec<Spring>,
     /// Ids of the fixed particles.
     fixed: Vec<usize>,
@@ -54,9 +57,10 @@ impl Statics {
         held.particles.iter_mut().for_each(|p| p.fixed = false);
         held.solver.gravity = 0.0;
         held.solver.gravities = Vectors::default();
-        (held.wind, held.driven) = (None, Vec::new());
+        (held.wind, held.driven, held.rods) = (None, Vec::new(), Vec::new());
         Self {
             held: ParticleSystem::new(&held),
+            on_rods: (!scene.rods.is_empty()).then(|| ParticleSystem::new(scene)),
             springs: scene.springs.clone(),
             fixed: particles
                 .filter(|(_, p)| p.fixed)
@@ -73,6 +77,9 @@ impl Statics {
         let mut forces = vec![0.0; state.x.len()];
         let mut reactions = forces.clone();
         self.held.forces(state.t, &state.x, &state.v, &mut forces);
+        if let Some(system) = &self.on_rods {
+            system.add_rod_forces(state.t, &state.x, &state.v, &mut forces);
+        }
         for id in &self.fixed {
             for at in 3 * id..3 * id + 3 {
                 // Not -0.
@@ -91,6 +98,16 @@ impl Statics {
             .iter()
             .map(|spring| tension(spring, state))
             .collect()
+    }
+
+    /// How much each rod pulls on its ends, N: its multiplier. NaN where that is not determined.
+    pub fn rod_tensions(&self, state: &State) -> Vec<f64> {
+        let Some(system) = &self.on_rods else {
+            return Vec::new();
+        };
+        let found = system.rod_tensions(state.t, &state.x, &state.v);
+        let rods = system.rods().map_or(0, Rods::len);
+        found.unwrap_or_else(|_| vec![f64::NAN; rods])
     }
 
     /// The largest loads of a run; None without instants, and where velocities are not known, on which dampers depend.

@@ -11,7 +11,7 @@ use crate::measure::identify::solve_effort;
 use crate::measure::{Check, CheckStatus};
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
-use crate::solvers::rapier::RapierSettings;
+use crate::solvers::rapier::{RapierSettings, stand_ins};
 use crate::solvers::{Solver, Unsupported, find};
 use lockstep::{ForcesHeld, Path, distance};
 use start::{condition, disturbed, set_in_motion};
@@ -186,7 +186,11 @@ struct Pair {
 impl Pair {
     /// Both sides, set in motion.
     fn new(ours: &Scene, theirs: &Scene, timestep: f64) -> Self {
-        let mut start = set_in_motion(ours, timestep * f64::from(JOINT_STEPS));
+        // In rapier's world stiff springs stand for rods, so that is what it has to be.
+        let mut stiff = ours.clone();
+        stiff.springs.extend(stand_ins(ours));
+        stiff.rods.clear();
+        let mut start = set_in_motion(&stiff, timestep * f64::from(JOINT_STEPS));
         // Whatever residual the scene puts up with, the proof solves to the default one.
         start.solver.tolerance = None;
         // Their side differs in what the caller made different, never in how it is set in motion.

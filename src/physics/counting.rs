@@ -1,5 +1,6 @@
 //! Counts an integrator's force evaluations, independently of the integrator and the system.
 
+use super::constraints::{Rods, StrainLimiter};
 use super::{Dampers, ForceKinds, Injected, Jacobian, Linearization, Power, Sweep, System};
 use std::cell::Cell;
 
@@ -46,6 +47,18 @@ impl<S: System> System for Counting<S> {
         counted.forces += 1;
         self.counted.set(counted);
         self.inner.acceleration(t, x, v, a)
+    }
+    fn free_acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
+        let mut counted = self.counted.get();
+        counted.forces += 1;
+        self.counted.set(counted);
+        self.inner.free_acceleration(t, x, v, a)
+    }
+    fn rods(&self) -> Option<&Rods> {
+        self.inner.rods()
+    }
+    fn strain_limiter(&self) -> Option<&StrainLimiter> {
+        self.inner.strain_limiter()
     }
     fn rounding(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
         self.inner.rounding(t, x, v, a);

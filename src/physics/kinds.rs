@@ -24,17 +24,20 @@ impl ForceKinds {
     pub const NON_LINEAR: Self = Self(8);
     /// Does work that neither a potential nor its dependence on v accounts for: wind, or a motion that is given.
     pub const DRIVEN: Self = Self(16);
+    /// The forces of rods: quadratic in v, and without work but at what is driven.
+    pub const CONSTRAINED: Self = Self(32);
     /// All of them.
-    pub const ANY: Self = Self(31);
+    pub const ANY: Self = Self(63);
     /// All kinds that are linear in v: what a method accepts that splits the force into that at rest and D v.
-    pub const LINEAR: Self = Self(Self::ANY.0 & !Self::NON_LINEAR.0);
+    pub const LINEAR: Self = Self(Self::ANY.0 & !Self::NON_LINEAR.0 & !Self::CONSTRAINED.0);
 
-    const WORDS: [(Self, &str); 5] = [
+    const WORDS: [(Self, &str); 6] = [
         (Self::DISSIPATIVE, "dissipative"),
         (Self::NEGATIVE_DAMPING, "negatively damped"),
         (Self::GYROSCOPIC, "gyroscopic"),
         (Self::NON_LINEAR, "non-linear in the velocity"),
         (Self::DRIVEN, "driven"),
+        (Self::CONSTRAINED, "constrained"),
     ];
 
     /// Whether the set contains any of these kinds.
@@ -42,8 +45,9 @@ impl ForceKinds {
         self.0 & any_of.0 != 0
     }
 
+    /// Whether a force does that is not one of rods: those do whatever else acts.
     pub const fn depends_on_velocity(self) -> bool {
-        self.has(Self(Self::ANY.0 & !Self::DRIVEN.0))
+        self.has(Self(Self::ANY.0 & !Self::DRIVEN.0 & !Self::CONSTRAINED.0))
     }
 
     /// Whether a force depends on v otherwise than by turning it.
@@ -53,7 +57,14 @@ impl ForceKinds {
 
     /// Whether a force can do work that no potential accounts for.
     pub const fn does_work(self) -> bool {
-        self.has(Self(Self::ANY.0 & !Self::GYROSCOPIC.0))
+        self.has(Self(
+            Self::ANY.0 & !Self::GYROSCOPIC.0 & !Self::CONSTRAINED.0,
+        ))
+    }
+
+    /// The kinds of this set and of another.
+    pub const fn with(self, others: Self) -> Self {
+        Self(self.0 | others.0)
     }
 
     /// The kinds of this set that are not in the other.
@@ -89,7 +100,7 @@ impl ForceKinds {
 impl BitOr for ForceKinds {
     type Output = Self;
     fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
+        self.with(other)
     }
 }
 
@@ -117,6 +128,11 @@ pub struct Refused {
 impl Refused {
     /// The sentence without the method, the same for all that refuse these effects.
     pub fn reason(&self) -> String {
+        if self.kinds == ForceKinds::CONSTRAINED {
+            return "rods are not taken: their forces depend on the square of the velocity; rattle, velocity_verlet, \
+                    explicit Runge-Kutta methods (rk4) and adaptive pairs take them"
+                .to_owned();
+        }
         format!(
             "no force that is {}{} is taken: how velocity is treated needs forces linear in it, as dampers, drag and \
              magnetic fields are; explicit Runge-Kutta methods (rk4), adaptive pairs and symplectic_euler take any",

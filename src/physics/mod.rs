@@ -2,6 +2,7 @@
 //!
 //! Nothing here knows of particles or scenes except [`ParticleSystem`], which is built from one.
 
+pub mod constraints;
 mod counting;
 pub mod effects;
 mod jacobian;
@@ -18,6 +19,8 @@ pub use particles::{Effects, ParticleSystem};
 pub use state::{Injected, Power, State, Work};
 pub use sweep::{Dampers, Sweep};
 pub(crate) use sweep::{phi1, phi2};
+
+use constraints::{Rods, StrainLimiter};
 
 /// A second-order mechanical system M x'' = f(t, x, v) over `dim` coordinates.
 ///
@@ -91,6 +94,21 @@ pub trait System {
     /// [`ForceKinds::DRIVEN`], where forces are linear in the velocity.
     fn injected(&self, _t: f64, _x: &[f64], _moved: &[f64], _h: f64) -> Injected {
         Injected::default()
+    }
+
+    /// The rods, whose forces are part of the [acceleration](Self::acceleration); None where there are none.
+    fn rods(&self) -> Option<&Rods> {
+        None
+    }
+
+    /// The strain limit, which acts after a step and not in the acceleration; None where there is none.
+    fn strain_limiter(&self) -> Option<&StrainLimiter> {
+        None
+    }
+
+    /// As [`acceleration`](Self::acceleration), without the forces of rods.
+    fn free_acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
+        self.acceleration(t, x, v, a)
     }
 
     /// Potential energy, J.

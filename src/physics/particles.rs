@@ -4,6 +4,7 @@ use super::{
     Dampers, Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, Refused, State,
     Sweep, System,
 };
+use crate::physics::constraints::{RodError, Rods, StrainLimiter};
 use crate::physics::effects::{self, Effect, EffectRow, Scaled};
 use crate::scene::{Drive, Scene};
 use crate::vector;
@@ -22,6 +23,8 @@ pub struct ParticleSystem {
     jumps: Arc<[f64]>,
     kinds: ForceKinds,
     dampers: Dampers,
+    rods: Option<Arc<Rods>>,
+    limiter: Option<Arc<StrainLimiter>>,
 }
 
 impl ParticleSystem {
@@ -52,13 +55,34 @@ impl ParticleSystem {
             .collect();
         let effects = effects::REGISTRY.iter();
         let effects = effects.filter_map(|row| Some((row, build(row)?)));
-        Self::of(inverse_mass, effects.collect())
+        Self {
+            rods: Rods::new(scene).map(Arc::new),
+            limiter: StrainLimiter::new(scene).map(Arc::new),
+            ..Self::of(inverse_mass, effects.collect())
+        }
     }
 
     /// The same with other motions of driven particles.
     pub fn driven_as(self, change: impl Fn(&Drive) -> Drive) -> Self {
         Self {
             drives: self.drives.iter().map(change).collect(),
+            ..self
+        }
+    }
+
+    /// The same with other rods; None leaves them out.
+    pub fn with_rods(self, change: impl FnOnce(&Rods) -> Option<Rods>) -> Self {
+        Self {
+            rods: self.rods.as_deref().and_then(change).map(Arc::new),
+            ..self
+        }
+    }
+
+    /// The same with another strain limit, where it has one; None takes it away.
+    pub fn limited_as(self, change: impl Fn(&StrainLimiter) -> Option<StrainLimiter>) -> Self {
+        let limiter = self.limiter.as_deref().and_then(change);
+        Self {
+            limiter: limiter.map(Arc::new),
             ..self
         }
     }
@@ -84,6 +108,8 @@ impl ParticleSystem {
             effects: Arc::new(effects),
             drives: drives.into(),
             jumps: jumps.into(),
+            rods: None,
+            limiter: None,
         }
     }
 
@@ -92,7 +118,7 @@ impl ParticleSystem {
     /// # Errors
     /// [`Refused`], with the effects it does not accept.
     pub fn admits(&self, method: &str, taken: ForceKinds) -> Result<(), Refused> {
-        let kinds = self.kinds.without(taken);
+        let kinds = self.kinds().without(taken);
         if kinds == ForceKinds::NONE {
             return Ok(());
         }
@@ -109,6 +135,14 @@ impl ParticleSystem {
         let whole = |w: &f64| if *w > 0.0 { 1.0 } else { 0.0 };
         Self {
             inverse_mass: self.inverse_mass.iter().map(whole).collect(),
+            rods: self
+                .rods
+                .as_ref()
+                .map(|rods| Arc::new(rods.with_unit_masses())),
+            limiter: self
+                .limiter
+                .as_ref()
+                .map(|limiter| Arc::new(limiter.with_unit_masses())),
             ..self.clone()
         }
     }
@@ -130,18 +164,67 @@ impl ParticleSystem {
         &self.effects
     }
 
-    /// Overwrites `f` with the forces, N, and returns the powers, W. Forces on fixed particles, such as a
-    /// spring's pull, are included; they move nothing.
+    /// Overwrites `f` with the forces, N, those of rods included, and returns the powers, W. Forces on fixed particles,
+    /// such as a spring's pull, are included; they move nothing. Where tensions of rods are not determined, all are NaN.
     pub fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {
+        self.sum_of_forces(t, x, v, f, self.rods.as_deref())
+    }
+
+    fn sum_of_forces(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        f: &mut [f64],
+        rods: Option<&Rods>,
+    ) -> Power {
         vector::clear(f);
         self.placed(t, x, v, |x, v| {
             let mut power = Power::default();
             for (_, effect) in self.effects.iter() {
                 power += effect.add_force(t, x, v, f);
             }
+            if let Some(rods) = rods
+                && rods.add_forces(t, x, v, f, &self.drives).is_err()
+            {
+                f.fill(f64::NAN);
+            }
             power.injected -= self.along_drives(f, v);
             power
         })
+    }
+
+    /// *Adds* the forces of rods alone, N, on fixed particles too; NaN to all where tensions are not determined.
+    pub fn add_rod_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        let Some(rods) = &self.rods else {
+            return;
+        };
+        let mut without = vec![0.0; f.len()];
+        self.sum_of_forces(t, x, v, &mut without, None);
+        let mut all = without.clone();
+        let found = self.placed(t, x, v, |x, v| {
+            rods.add_forces(t, x, v, &mut all, &self.drives)
+        });
+        for (f, (all, without)) in f.iter_mut().zip(all.iter().zip(&without)) {
+            *f += if found.is_ok() {
+                all - without
+            } else {
+                f64::NAN
+            };
+        }
+    }
+
+    /// The tension of each rod, N, positive where it pulls; empty without rods.
+    ///
+    /// # Errors
+    /// [`RodError`] where they are not determined.
+    pub fn rod_tensions(&self, t: f64, x: &[f64], v: &[f64]) -> Result<Vec<f64>, RodError> {
+        let Some(rods) = &self.rods else {
+            return Ok(Vec::new());
+        };
+        let mut a = vec![0.0; x.len()];
+        self.free_acceleration(t, x, v, &mut a);
+        self.placed(t, x, v, |x, v| rods.tensions(t, x, v, &a, &self.drives))
     }
 
     /// Calls `see` with driven particles where they are at this time. Without any, the vectors pass as they are.
@@ -240,6 +323,20 @@ impl System for ParticleSystem {
         power
     }
 
+    fn free_acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
+        let power = self.sum_of_forces(t, x, v, a, None);
+        vector::multiply(a, &self.inverse_mass);
+        power
+    }
+
+    fn rods(&self) -> Option<&Rods> {
+        self.rods.as_deref()
+    }
+
+    fn strain_limiter(&self) -> Option<&StrainLimiter> {
+        self.limiter.as_deref()
+    }
+
     fn rounding(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
         vector::clear(a);
         self.placed(t, x, v, |x, v| {
@@ -249,10 +346,20 @@ impl System for ParticleSystem {
             self.add_rounding_of_drives(t, x, v, a);
         });
         vector::multiply(a, &self.inverse_mass);
+        if let Some(rods) = &self.rods {
+            let mut free = vec![0.0; a.len()];
+            self.free_acceleration(t, x, v, &mut free);
+            self.placed(t, x, v, |x, v| {
+                rods.add_rounding(t, x, v, (&free, &self.drives), a);
+            });
+        }
     }
 
     fn kinds(&self) -> ForceKinds {
-        self.kinds
+        match self.rods {
+            Some(_) => self.kinds | ForceKinds::CONSTRAINED,
+            None => self.kinds,
+        }
     }
 
     fn place(&self, t: f64, x: &mut [f64], v: &mut [f64]) {

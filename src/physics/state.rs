@@ -32,21 +32,33 @@ impl State {
         self.x.iter().chain(&self.v).all(|c| c.is_finite())
             && self.work.dissipated.is_finite()
             && self.work.injected.is_finite()
+            && self.work.projected.is_finite()
+            && self.work.limited.is_finite()
     }
 }
 
 /// Energy that has left or entered the system since the start, joules.
 ///
-/// A correct run conserves the balance B = E + dissipated - injected.
+/// A correct run conserves the [balance](Work::balance).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Work {
     /// Energy taken out by dampers and drag; grows.
     pub dissipated: f64,
     /// Energy put in by external forces without a potential; of either sign.
     pub injected: f64,
+    /// Energy put in by moving states onto rods; of either sign. It is an error of the method's, so the balance does not
+    /// leave it out.
+    pub projected: f64,
+    /// Energy taken out by the strain limit; negative where it put some in. It is the model's, so the balance leaves it out.
+    pub limited: f64,
 }
 
 impl Work {
+    /// The balance B = E + dissipated - injected + limited of a state of energy E, J.
+    pub fn balance(&self, energy: f64) -> f64 {
+        energy + self.dissipated - self.injected + self.limited
+    }
+
     /// Adds `h` seconds at constant power.
     pub fn advance(&mut self, power: Power, h: f64) {
         self.dissipated += h * power.dissipated;

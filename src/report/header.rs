@@ -50,6 +50,9 @@ pub struct SceneFacts {
     pub objects: Vec<Body>,
     /// How many.
     pub springs: usize,
+    /// How many; left out where there are none.
+    #[serde(default, skip_serializing_if = "none")]
+    pub rods: usize,
     /// The effects that act in this scene.
     pub effects: Vec<EffectUse>,
     /// The scene's own timestep, seconds.
@@ -62,6 +65,11 @@ pub struct SceneFacts {
     pub description: Option<String>,
     /// The id of the integrator the file names.
     pub own_integrator: String,
+}
+
+/// Whether there are none, so that JSON leaves them out.
+fn none(members: &usize) -> bool {
+    *members == 0
 }
 
 /// One line of the effect ledger.

@@ -19,8 +19,11 @@ pub fn opening(view: &View, more: Vec<(&str, String)>) -> String {
         ("file", scene.file.clone()),
         ("particles", scene.particles.to_string()),
         ("springs", scene.springs.to_string()),
-        ("own integrator", scene.own_integrator.clone()),
     ];
+    if scene.rods > 0 {
+        rows.push(("rods", scene.rods.to_string()));
+    }
+    rows.extend([("own integrator", scene.own_integrator.clone())]);
     rows.extend(more);
     let rows = rows
         .iter()

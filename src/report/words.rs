@@ -26,6 +26,11 @@ pub fn sci(value: f64) -> String {
     }
 }
 
+/// A part in percent, three digits: `10 %`, `0.25 %`.
+pub fn percent(part: f64) -> String {
+    format!("{} %", quantity(100.0 * part))
+}
+
 /// A part of the scene's energy S: `11 times its energy`, `0.25 % of its energy`, `2.0e-5 of its energy`.
 pub fn share(error: f64) -> String {
     match error {

@@ -11,6 +11,7 @@ use super::model::{Driven, Knots, NO_PARTICLES, Named, Particle, Scene, Triangle
 use super::object::{Body, called};
 use super::place::Problem;
 use super::read::Reading;
+use super::rods;
 use super::table::Value;
 use super::values::Number;
 use nalgebra::Vector3;
@@ -81,7 +82,7 @@ pub(super) fn expanded(
     named: &[Named],
     no_id: Option<(String, Number)>,
 ) -> Result<Scene, Problem> {
-    expand::expand(&mut scene)?;
+    let objects = expand::expand(&mut scene)?;
     for named in named {
         let found = scene.particle_named(&named.name);
         let id = found.map_err(|refusal| Problem::new(named.path(), refusal))?;
@@ -107,6 +108,14 @@ pub(super) fn expanded(
             spring.rest_length = distance(&starts, spring.ends);
         }
     }
+    for (at, rod) in scene.rods.iter_mut().enumerate() {
+        let of = format!("rods[{at}]");
+        ends(&rod.ends, &scene.bodies, count, &of)?;
+        if rod.length.is_nan() {
+            rod.length = distance(&starts, rod.ends);
+        }
+    }
+    rods::check(&scene, &starts, &objects)?;
     for (at, found) in scene.triangles.iter().enumerate() {
         ends(
             &found.corners,

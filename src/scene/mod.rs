@@ -20,6 +20,7 @@ pub mod object;
 mod place;
 mod read;
 mod remake;
+mod rods;
 mod table;
 mod text;
 mod values;
@@ -33,8 +34,9 @@ pub use error::{Refusal, SceneError};
 pub(crate) use expectation::{ALL, REST, SKIP};
 pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
-    Air, Axis, Bending, DampingModel, Driven, GravitationalPair, Knots, Magnetic, Particle, Plot,
-    Scene, Sine, SolverSpec, Spring, Triangle, Wind, steps,
+    Air, Axis, Bending, Constraints, DampingModel, Driven, GravitationalPair, Knots, Magnetic,
+    Particle, Plot, Rod, Scene, Sine, SolverSpec, Spring, Stabilisation, StrainLimit, Triangle,
+    Wind, steps,
 };
 pub use number::ObjectNumber;
 pub use table::{Value, Vectors};

@@ -22,8 +22,11 @@ use serde::Serialize;
 use std::sync::Arc;
 
 /// All parts: the mappings a file consists of.
-pub static PARTS: [&Part; 13] = [
+pub static PARTS: [&Part; 16] = [
     &SPRINGS,
+    &RODS,
+    &CONSTRAINTS,
+    &STRAIN_LIMIT,
     &BENDING,
     &PARTICLES,
     &TRIANGLES,
@@ -63,7 +66,7 @@ pub struct Row {
     pub kind: ValueKind,
     pub absent: Absent,
     /// Its name among the flat arrays; several rows may share one. None where the key does not influence
-    /// the motion; the truth's cache key leaves it out too.
+    /// the motion, or there is no truth with it; the truth's cache key leaves it out too.
     pub flat: Option<&'static str>,
     /// The component of the member of this index; None where it does not exist.
     pub get: fn(&Scene, usize, usize) -> Option<Value<'_>>,
@@ -151,6 +154,8 @@ pub enum ValueKind {
     Ids(usize),
     /// 0, 1 or 2 for x, y, z.
     Coordinate,
+    /// A whole number.
+    Count(Bounds),
     /// `true` or `false`.
     Flag,
     /// One of these words.
@@ -186,7 +191,7 @@ use Absent::{Derived, Required, Unless, Usual};
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    reserved ["colliders", "rods", "strain_limit"];
+    reserved ["colliders"];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
@@ -228,6 +233,12 @@ declare! {
     objects: Vec<Object> = Vec::new(), "objects" => ValueKind::Objects, Usual, None;
     /// Springs with dampers.
     springs: Vec<Spring> = Vec::new(), "springs" => ValueKind::Part(&SPRINGS), Usual, None;
+    /// Exact distances.
+    rods: Vec<Rod> = Vec::new(), "rods" => ValueKind::Part(&RODS), Usual, None;
+    /// How rods are kept to their lengths.
+    constraints: Option<Constraints> = None, "constraints" => ValueKind::Part(&CONSTRAINTS), Usual, None;
+    /// The strain that no spring goes beyond.
+    strain_limit: Option<StrainLimit> = None, "strain_limit" => ValueKind::Part(&STRAIN_LIMIT), Usual, None;
     /// Triangles of particles, which the air drags at.
     triangles: Vec<Triangle> = Vec::new(),
         "triangles" => ValueKind::Part(&TRIANGLES), Usual, None;
@@ -336,6 +347,43 @@ declare! {
     /// L, metres, not negative. A file without it means the initial distance of the ends.
     rest_length: f64 = 0.0, "rest_length" => ValueKind::Number(Bounds::not_negative(1e12, "m")),
         Derived, Some("rest_lengths");
+}
+
+declare! {
+    /// An exact distance of two particles, kept by the forces that this takes. Not to be confused with a stiff spring.
+    RODS: Rod, list rods, "a rod: a mapping with `particle_ids`", reserved [];
+
+    /// Two different particles, at least one of them free.
+    ends: [usize; 2] = [0, 1], "particle_ids" => ValueKind::Ids(2),
+        Required("name the two ends: `particle_ids: [0, 1]`"), Some("ids");
+    /// Metres, positive: the distance at the start, to 1e-9 of it. A file without it means just that distance.
+    length: f64 = 1.0, "length" => ValueKind::Number(Bounds::from(1e-30, 1e12, "m")),
+        Derived, Some("lengths");
+}
+
+declare! {
+    /// How rods are kept to their lengths. It is the method's, not the motion's: no truth depends on it.
+    CONSTRAINTS: Constraints, maybe constraints, "a mapping with `stabilisation`", reserved [];
+
+    /// What is done about the drift of rods.
+    stabilisation: Stabilisation = Stabilisation::Project,
+        "stabilisation" => ValueKind::Word(Stabilisation::WORDS), Usual, None;
+    /// The rate of baumgarte, 1/s, at which an error of a rod decays.
+    rate: f64 = 10.0, "rate" => ValueKind::Number(Bounds::not_negative(1e12, "1/s")), Usual, None;
+}
+
+declare! {
+    /// The strain that no spring goes beyond: after each step springs that are too long are shortened (Provot 1995). Springs
+    /// without a rest length, and between fixed particles, are left out. There is no truth with it: what comes out depends
+    /// on the timestep and on the sweeps.
+    STRAIN_LIMIT: StrainLimit, maybe strain_limit, "a mapping such as {ratio: 0.1}", reserved [];
+
+    /// The part of its rest length by which a spring may be longer.
+    ratio: f64 = 0.1, "ratio" => ValueKind::Number(Bounds::not_negative(1e6, "a part of the rest length")), Usual, None;
+    /// The most sweeps over all springs, in the order of the scene, after a step; none where no spring is beyond its limit.
+    iterations: usize = 10, "iterations" => ValueKind::Count(Bounds::from(1.0, 1e6, "sweeps")), Usual, None;
+    /// Whether springs may not be shorter by that part either.
+    also_compression: bool = false, "also_compression" => ValueKind::Flag, Usual, None;
 }
 
 declare! {
@@ -501,6 +549,20 @@ impl Axis {
     }
 }
 
+/// What is done about the drift of rods: their forces keep accelerations right, so lengths drift with a method's errors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stabilisation {
+    /// Positions and velocities are moved onto the rods after each step, each particle by its 1/m.
+    Project,
+    /// Forces pull a rod back like a damped oscillator (Baumgarte 1972).
+    Baumgarte,
+    /// Nothing.
+    None,
+}
+
+words!(Stabilisation: "project" => Project, "baumgarte" => Baumgarte, "none" => None);
+
 /// Which part of the relative velocity of a spring's ends its damper resists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -536,11 +598,12 @@ impl Scene {
         self.air.clone().unwrap_or_default()
     }
 
-    /// The scene's size L in metres: the [diagonal](Self::diagonal) plus the longest rest length. It is the
+    /// The scene's size L in metres: the [diagonal](Self::diagonal) plus the longest spring at rest, or rod. It is the
     /// length scale of energies and tolerances; 0 for a lone particle.
     pub fn size(&self) -> f64 {
-        let rest_lengths = self.springs.iter().map(|s| s.rest_length);
-        self.diagonal() + rest_lengths.fold(0.0, f64::max)
+        let lengths = self.springs.iter().map(|s| s.rest_length);
+        let lengths = lengths.chain(self.rods.iter().map(|rod| rod.length));
+        self.diagonal() + lengths.fold(0.0, f64::max)
     }
 
     /// The diagonal of the box around all initial positions, m; 0 for a lone particle.

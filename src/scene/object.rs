@@ -3,8 +3,9 @@
 
 use super::table::Field;
 use schemars::JsonSchema;
-use serde::de::{Deserializer, Error, SeqAccess, Visitor};
-use serde::{Deserialize, Serialize};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 
 /// The name of a particle of an object, as a regular expression of ECMA-262.
@@ -16,7 +17,7 @@ pub const PARTICLE_NAME: &str =
 #[serde(deny_unknown_fields)]
 #[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
 pub struct Object {
-    /// Particles in a row, joined by springs.
+    /// Particles in a row, joined by springs or rods.
     pub string: Option<Strand>,
     /// The same as `string`.
     pub chain: Option<Strand>,
@@ -129,6 +130,67 @@ pub struct Link {
     /// c, N s/m.
     #[serde(default)]
     pub damping: f64,
+}
+
+/// What joins neighbours: springs, or rods.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Links {
+    Springs(Link),
+    /// Exact distances; `rods` in the file.
+    Rods,
+}
+
+/// The word for rods.
+const RODS: &str = "rods";
+
+impl Serialize for Links {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Springs(link) => link.serialize(to),
+            Self::Rods => RODS.serialize(to),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Links {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        from.deserialize_any(ReadLinks)
+    }
+}
+
+struct ReadLinks;
+
+impl<'de> Visitor<'de> for ReadLinks {
+    type Value = Links;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a mapping with `stiffness`, or the word rods")
+    }
+
+    fn visit_str<E: Error>(self, word: &str) -> Result<Links, E> {
+        match word {
+            RODS => Ok(Links::Rods),
+            _ => Err(E::unknown_variant(word, &[RODS])),
+        }
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, keys: A) -> Result<Links, A::Error> {
+        Link::deserialize(MapAccessDeserializer::new(keys)).map(Links::Springs)
+    }
+}
+
+impl JsonSchema for Links {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Links".into()
+    }
+
+    fn json_schema(from: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let springs = from.subschema_for::<Link>();
+        schemars::json_schema!({
+            "description": "Springs with these numbers, or the word rods for exact distances.",
+            "anyOf": [springs, {"const": RODS}]
+        })
+    }
 }
 
 /// A hinge of an object.
@@ -296,9 +358,11 @@ object! {
         /// How many particles it has, both ends included.
         particles: u64,
         /// k of each spring, N/m.
-        stiffness: f64,
+        stiffness: Option<f64>,
         /// c of each spring, N s/m.
         damping: Option<f64>,
+        /// In the place of `stiffness` and `damping`: `rods` for a string that does not stretch.
+        structural: Option<Links>,
         /// Rest lengths over the distances at the start, 1 by default.
         rest_ratio: Option<f64>,
     }
@@ -315,8 +379,8 @@ object! {
         to: [f64; 3],
         /// How many particles it has, both ends included.
         particles: u64,
-        /// The springs between neighbours.
-        structural: Link,
+        /// The springs between neighbours, or `rods`.
+        structural: Links,
         /// The hinges at all particles between two.
         bending: Hinge,
         /// The direction in which it leaves its root, which is fixed then. The hinge there stands for half a link and
@@ -345,8 +409,8 @@ object! {
         size: Option<[f64; 2]>,
         /// How many particles it has along u and v.
         particles: [u64; 2],
-        /// Springs between neighbours along u and v.
-        structural: Link,
+        /// Springs between neighbours along u and v, or `rods`.
+        structural: Links,
         /// Springs across each cell, both ways.
         shear: Option<Link>,
         /// Springs between every second particle along u and v.

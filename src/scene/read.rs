@@ -8,7 +8,7 @@
 use super::error::{Fault, Refusal};
 use super::expect::Engines;
 use super::expectation::Names;
-use super::limits::{EXPECTED, known, method};
+use super::limits::{Bounds, EXPECTED, known, method};
 use super::model::{Absent, Named, Part, Row, SCENE, Scene, ValueKind};
 use super::place::{Problem, fault, second_document};
 use super::table::Value;
@@ -165,6 +165,7 @@ impl<'n> Entry<'_, 'n> {
             | ValueKind::Table(_, quantity)
             | ValueKind::Vectors(quantity) => Value::Number(quantity.judge(number)?),
             ValueKind::Coordinate => Value::Id(coordinate(number)?),
+            ValueKind::Count(bounds) => Value::Id(count(bounds, number)?),
             _ => Value::Id(self.id(component, number)),
         };
         self.set(component, value);
@@ -213,7 +214,7 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
             // Its number's row reads it.
             ValueKind::Vectors(_) => Ok(()),
             ValueKind::Id => from.deserialize_any(id(|id: Id<'_>| self.particle(0, id))),
-            ValueKind::Number(_) | ValueKind::Coordinate => {
+            ValueKind::Number(_) | ValueKind::Coordinate | ValueKind::Count(_) => {
                 from.deserialize_any(number(|n| self.number(0, n)))
             }
             ValueKind::Numbers(count, _) => {
@@ -291,6 +292,15 @@ impl Either for Entry<'_, '_> {
         self.row = self.vectors().unwrap_or(self.row);
         vectors(list, |at, number| Entry::number(&mut self, at, number)).map(|()| true)
     }
+}
+
+/// A whole number within bounds.
+fn count(bounds: Bounds, number: Number) -> Result<usize, Refusal> {
+    bounds.judge(number)?;
+    number.whole().map_or_else(
+        || Refusal::because(format!("expected a whole number, found {number}"), ""),
+        Ok,
+    )
 }
 
 fn coordinate(number: Number) -> Result<usize, Refusal> {

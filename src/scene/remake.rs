@@ -2,9 +2,10 @@
 
 use super::complete::expanded;
 use super::error::Refusal;
-use super::model::Scene;
+use super::model::{Scene, Written};
 use super::object::{Body, Object, Scaling};
 use super::place::Problem;
+use std::sync::Arc;
 
 impl Scene {
     /// The scene with other objects; solver and duration stay. What has no objects stays as it is.
@@ -32,6 +33,21 @@ impl Scene {
             objects.iter_mut().for_each(|o| o.refine(links, scaling));
         };
         self.renamed(change, &finer)
+    }
+
+    /// The scene without its strain limit, and so are those that are made of it.
+    pub fn without_strain_limit(&self) -> Self {
+        let written = self.written.as_ref().map(|written| {
+            Arc::new(Written {
+                scene: written.scene.without_strain_limit(),
+                named: written.named.clone(),
+            })
+        });
+        Self {
+            strain_limit: None,
+            written,
+            ..self.clone()
+        }
     }
 
     /// The id of the same particle in this scene [refined](Self::refined).

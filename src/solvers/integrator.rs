@@ -3,14 +3,16 @@
 use super::{Counts, Engine};
 use crate::integrators::adaptive::{Adaptive, Pair};
 use crate::integrators::{Integrator, Method, Settings, StepError};
+use crate::physics::constraints::{Corrections, limit, stabilise};
 use crate::physics::{Counting, ParticleSystem, State, System};
 use crate::scene::Scene;
 
 /// Advances a state by a step of `h` seconds from `state.t`, after which the time counts as `end`: `state.t + h` but for
-/// rounding. What is driven is then in its place.
+/// rounding. What is driven is then in its place. Returns what the strain limit corrected.
 ///
 /// Every step of an integrator outside of [`conformance`](crate::conformance) is taken here. Events within a
-/// step belong here, and so do corrections after it, which add the energy they take out to `state.work`.
+/// step belong here, and so do corrections after it: states are moved onto rods, unless the integrator keeps them, and
+/// then the strain limit acts.
 ///
 /// # Errors
 /// [`StepError`] as the integrator's; the state is then as it was.
@@ -20,11 +22,40 @@ pub fn advance(
     h: f64,
     end: f64,
     state: &mut State,
-) -> Result<(), StepError> {
-    integrator.step(system, h, state)?;
-    state.t = end;
-    system.place(end, &mut state.x, &mut state.v);
-    Ok(())
+) -> Result<Corrections, StepError> {
+    let start = system.rods().map(|_| state.clone());
+    let stepped = integrator.step(system, h, state).and_then(|()| {
+        state.t = end;
+        system.place(end, &mut state.x, &mut state.v);
+        correct(integrator.keeps_rods(), system, start.as_ref(), state)
+    });
+    if let (Err(_), Some(start)) = (&stepped, start) {
+        *state = start;
+    }
+    stepped
+}
+
+/// What is done after a step, from `start` on where there are rods.
+fn correct(
+    kept: bool,
+    system: &dyn System,
+    start: Option<&State>,
+    state: &mut State,
+) -> Result<Corrections, StepError> {
+    if let (Some(rods), Some(start)) = (system.rods(), start) {
+        if !state.is_finite() {
+            // Where tensions are not determined there is no acceleration.
+            rods.at(&start.x)?;
+            return Ok(Corrections::default());
+        }
+        if !kept {
+            stabilise(system, rods, state)?;
+        }
+    }
+    let limiter = system.strain_limiter();
+    Ok(limiter.map_or(Ok(Corrections::default()), |limiter| {
+        limit(system, limiter, state)
+    })?)
 }
 
 /// An integrator on a scene's particle system at a fixed timestep.
@@ -34,6 +65,7 @@ pub struct IntegratorEngine {
     state: State,
     timestep: f64,
     steps: u64,
+    corrected: Corrections,
 }
 
 impl IntegratorEngine {
@@ -61,6 +93,7 @@ impl IntegratorEngine {
             state: ParticleSystem::initial_state(scene),
             timestep,
             steps: 0,
+            corrected: Corrections::default(),
         }
     }
 }
@@ -70,7 +103,7 @@ impl Engine for IntegratorEngine {
         // n h, not a running sum, which would drift.
         let time = |steps: u64| steps as f64 * self.timestep;
         self.state.t = time(self.steps);
-        advance(
+        self.corrected += advance(
             self.integrator.as_mut(),
             &self.system,
             self.timestep,
@@ -89,7 +122,7 @@ impl Engine for IntegratorEngine {
         Counts {
             linear_solves: Some(self.integrator.linear_solves()),
             newton_iterations: Some(self.integrator.newton_iterations()),
-            ..evaluated(&self.system)
+            ..evaluated(&self.system, &self.corrected)
         }
     }
 }
@@ -102,6 +135,7 @@ pub struct AdaptiveEngine {
     stepper: Adaptive,
     state: State,
     until: f64,
+    corrected: Corrections,
 }
 
 impl AdaptiveEngine {
@@ -119,6 +153,7 @@ impl AdaptiveEngine {
             stepper: Adaptive::new(pair, tolerance, scene.size()),
             state: ParticleSystem::initial_state(scene),
             until: if until.is_finite() { until } else { 0.0 },
+            corrected: Corrections::default(),
         }
     }
 }
@@ -129,10 +164,21 @@ impl Engine for AdaptiveEngine {
         if self.done() {
             return Ok(());
         }
+        let start = self.system.rods().map(|_| self.state.clone());
         self.stepper
             .step(&self.system, self.until, &mut self.state)?;
         let State { t, x, v, .. } = &mut self.state;
         self.system.place(*t, x, v);
+        match (
+            correct(false, &self.system, start.as_ref(), &mut self.state),
+            start,
+        ) {
+            (Ok(corrected), _) => self.corrected += corrected,
+            (Err(error), start) => {
+                self.state = start.unwrap_or_else(|| self.state.clone());
+                return Err(error);
+            }
+        }
         Ok(())
     }
 
@@ -144,7 +190,7 @@ impl Engine for AdaptiveEngine {
         Counts {
             linear_solves: Some(0),
             newton_iterations: Some(0),
-            ..evaluated(&self.system)
+            ..evaluated(&self.system, &self.corrected)
         }
     }
 
@@ -157,12 +203,13 @@ impl Engine for AdaptiveEngine {
     }
 }
 
-/// The evaluations that a system counted.
-fn evaluated(system: &Counting<ParticleSystem>) -> Counts {
+/// What a system counted, and what its strain limit corrected.
+fn evaluated(system: &Counting<ParticleSystem>, corrected: &Corrections) -> Counts {
     let evaluations = system.evaluations();
     Counts {
         force_evaluations: Some(evaluations.forces),
         damping_evaluations: Some(evaluations.damping),
+        corrections: system.strain_limiter().map(|_| *corrected),
         ..Counts::default()
     }
 }

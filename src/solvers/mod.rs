@@ -14,6 +14,7 @@ pub use setting::Setting;
 pub use solver::{BuildIntegrator, Solver, SolverKind, catalogue, find, methods, own_first};
 
 use crate::integrators::StepError;
+use crate::physics::constraints::Corrections;
 use crate::physics::{Refused, State};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -47,7 +48,7 @@ pub trait Engine: Send {
 }
 
 /// Work that is counted; None where an engine does not report it.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Counts {
     /// Evaluations of all forces.
     pub force_evaluations: Option<u64>,
@@ -55,6 +56,8 @@ pub struct Counts {
     pub damping_evaluations: Option<u64>,
     pub linear_solves: Option<u64>,
     pub newton_iterations: Option<u64>,
+    /// What the strain limit corrected; None without one.
+    pub corrections: Option<Corrections>,
     /// What a rapier world was built of.
     pub world: Option<Built>,
 }

@@ -145,6 +145,8 @@ impl Solver {
                 Some(("forces_held(symplectic_euler)", self.substeps))
             }
             Source::Forces(_) => Some(("symplectic_euler", 1)),
+            // Its rods are stiff joints, whose law is no row of ours.
+            Source::Joints(_) if !scene.rods.is_empty() => None,
             Source::Joints(_) => {
                 let solves =
                     !scene.springs.is_empty() || scene.particles.iter().any(|p| p.drag > 0.0);
@@ -166,10 +168,9 @@ impl Solver {
         }
     }
 
-    /// The order of its method for a scene with or without damping; None where it has no method.
-    pub fn order(&self, damped: bool) -> Option<u32> {
-        let of = |row: &Method| if damped { row.order_damped } else { row.order };
-        self.row().map(of)
+    /// The order of its method on a system; None where it has no method.
+    pub fn order(&self, system: &ParticleSystem) -> Option<u32> {
+        self.row().map(|row| row.order_on(system))
     }
 
     /// The reason why the solver loses energy by design, or gains it; None where it should not.
@@ -225,7 +226,13 @@ impl Solver {
                 Box::new(IntegratorEngine::with(scene, system, integrator, timestep))
             }
             Source::Joints(settings) => {
-                memory::fits_rapier(scene, scene.springs.len())?;
+                memory::fits_rapier(scene, scene.springs.len() + scene.rods.len())?;
+                let shipped = self.id == rapier::IDS[0] && !scene.rods.is_empty();
+                let settings = if shipped {
+                    &rapier::RapierSettings::RODS
+                } else {
+                    settings
+                };
                 Box::new(RapierEngine::new(scene, system, timestep, settings)?)
             }
             Source::Forces(settings) => {

@@ -6,7 +6,7 @@
 pub mod closed;
 pub mod converged;
 
-use crate::physics::ParticleSystem;
+use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -157,6 +157,11 @@ pub fn find(
     if demand == Demand::None {
         return Truth::none("not asked for");
     }
+    if system.strain_limiter().is_some() {
+        return Truth::none(
+            "what a strain limit does depends on the timestep and on its sweeps: no motion is the true one",
+        );
+    }
     if let Some(found) = closed::find(scene, system, until)
         && found.error_bound.is_finite()
     {
@@ -191,7 +196,10 @@ pub fn expected(
     store: &dyn Store,
 ) -> u64 {
     let few = scene.particles.len() <= FEW;
-    if demand != Demand::Auto || (few && closed::find(scene, system, until).is_some()) {
+    if demand != Demand::Auto
+        || system.strain_limiter().is_some()
+        || (few && closed::find(scene, system, until).is_some())
+    {
         return 0;
     }
     converged::expected(scene, system, until, store)

@@ -45,13 +45,23 @@ pub fn scene(
             wall_ns: Some(wall_ns(effect.as_ref(), &start.x, &start.v)),
         }
     });
+    // Every evaluation solves for their forces; rattle and shake solve beside it.
+    let rods = system.rods().map(|rods| EffectUse {
+        id: "rods".to_owned(),
+        members: rods.len(),
+        evaluations: forces,
+        wall_ns: Some(wall_ns_of(start.x.len(), |f| {
+            system.add_rod_forces(0.0, &start.x, &start.v, f);
+        })),
+    });
     SceneFacts {
         name: scene.name.clone(),
         file: scene.file.clone(),
         particles: scene.particles.len(),
         objects: scene.bodies.clone(),
         springs: scene.springs.len(),
-        effects: effects.collect(),
+        rods: scene.rods.len(),
+        effects: effects.chain(rods).collect(),
         timestep: scene.solver.timestep,
         duration: scene.duration,
         energy_scale_j: scale,
@@ -60,16 +70,23 @@ pub fn scene(
     }
 }
 
-/// The wall time of one evaluation, ns: the least of three batches.
+/// The wall time of one evaluation, ns.
 fn wall_ns(effect: &dyn Effect, x: &[f64], v: &[f64]) -> f64 {
-    let mut f = vec![0.0; x.len()];
-    let batch = |f: &mut [f64]| {
+    wall_ns_of(x.len(), |f| {
+        std::hint::black_box(effect.add_force(0.0, x, v, std::hint::black_box(f)));
+    })
+}
+
+/// The wall time of one call, ns: the least of three batches.
+fn wall_ns_of(dim: usize, mut call: impl FnMut(&mut [f64])) -> f64 {
+    let mut f = vec![0.0; dim];
+    let mut batch = |f: &mut [f64]| {
         let start = Instant::now();
         // Reading the clock takes as long as a small effect; a large one is timed once.
         let (mut calls, mut more) = (0, 1);
         while start.elapsed() < Duration::from_micros(100) {
             for _ in 0..more {
-                std::hint::black_box(effect.add_force(0.0, x, v, std::hint::black_box(f)));
+                call(f);
             }
             calls += more;
             more = 16;

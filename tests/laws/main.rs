@@ -20,8 +20,11 @@ mod objects;
 mod order;
 mod oscillator;
 mod rest;
+mod rods;
+mod rods_order;
 mod solver;
 mod stiff;
+mod strain;
 #[path = "../testkit/mod.rs"]
 mod testkit;
 mod time;

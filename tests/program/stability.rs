@@ -14,7 +14,7 @@ const MAP: [&str; 6] = [
     "--steps",
     "1e-3..10:6",
     "--budget",
-    "140000",
+    "150000",
 ];
 
 fn json(args: &[&str]) -> Value {
@@ -89,8 +89,8 @@ fn the_json_has_exactly_the_contracts_keys() {
         "engines",
     ];
     assert_eq!(keys(map), set(&wanted));
-    // 140,000 over 3 engines, 5 values, 6 timesteps and 2 particles.
-    assert_eq!(map["steps_per_cell"], 777);
+    // 150,000 over 3 engines, 5 values, 6 timesteps and 2 particles.
+    assert_eq!(map["steps_per_cell"], 833);
     assert_eq!(array(&map["engines"]).len(), 3);
     for engine in array(&map["engines"]) {
         assert_eq!(keys(engine), set(&["engine", "cells", "predicted_limit_s"]));

@@ -3,6 +3,7 @@
 
 use super::step::acceleration;
 use crate::integrators::StepError;
+use crate::physics::constraints::{Rods, StrainLimiter};
 use crate::physics::{Dampers, ForceKinds, Jacobian, Linearization, Power, State, Sweep, System};
 use crate::vector::axpy;
 use std::cell::Cell;
@@ -95,6 +96,37 @@ impl<'a> Altered<'a> {
     pub(super) fn new(inner: &'a dyn System, force: Altering) -> Self {
         Self { inner, force }
     }
+
+    /// An acceleration that `take` gives at a time, off by its rounding.
+    fn rounded(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        a: &mut [f64],
+        take: impl Fn(f64, &mut [f64]) -> Power,
+    ) -> Power {
+        let Altering::Rounded {
+            pattern,
+            step,
+            evaluations,
+        } = &self.force
+        else {
+            return take(t, a);
+        };
+        let mut off = vec![0.0; a.len()];
+        self.inner.rounding(t, x, v, &mut off);
+        let evaluations = evaluations.as_ref();
+        let evaluation = evaluations.map_or(0, |all| all.replace(all.get() + 1));
+        let first = evaluation as usize * a.len();
+        // A running sum of the time is off by up to half a rounding a step: FIT times this.
+        let late = *step as f64 * t.abs() * f64::EPSILON / 16.0;
+        let power = take(t + sign((0, *pattern), 0) * late, a);
+        for (i, (a, off)) in a.iter_mut().zip(off).enumerate() {
+            *a += sign((!step, *pattern), first + i) * off;
+        }
+        power
+    }
 }
 
 impl System for Altered<'_> {
@@ -113,27 +145,28 @@ impl System for Altered<'_> {
                 self.inner.acceleration(t, x, v, a);
                 axpy(a, 1.0, shift);
             }
-            Altering::Rounded {
-                pattern,
-                step,
-                evaluations,
-            } => {
-                let mut off = vec![0.0; a.len()];
-                self.inner.rounding(t, x, v, &mut off);
-                let evaluations = evaluations.as_ref();
-                let evaluation = evaluations.map_or(0, |all| all.replace(all.get() + 1));
-                let first = evaluation as usize * a.len();
-                // A running sum of the time is off by up to half a rounding a step: FIT times this.
-                let late = *step as f64 * t.abs() * f64::EPSILON / 16.0;
-                let t = t + sign((0, *pattern), 0) * late;
-                let power = self.inner.acceleration(t, x, v, a);
-                for (i, (a, off)) in a.iter_mut().zip(off).enumerate() {
-                    *a += sign((!step, *pattern), first + i) * off;
-                }
-                return power;
+            Altering::Rounded { .. } => {
+                return self.rounded(t, x, v, a, |t, a| self.inner.acceleration(t, x, v, a));
             }
         }
         Power::default()
+    }
+
+    fn rods(&self) -> Option<&Rods> {
+        self.inner.rods()
+    }
+
+    fn free_acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
+        let Some(_) = self.rods() else {
+            return self.acceleration(t, x, v, a);
+        };
+        match &self.force {
+            Altering::TimeHeld(t) => self.inner.free_acceleration(*t, x, v, a),
+            Altering::Rounded { .. } => {
+                self.rounded(t, x, v, a, |t, a| self.inner.free_acceleration(t, x, v, a))
+            }
+            _ => self.acceleration(t, x, v, a),
+        }
     }
 
     fn kinds(&self) -> ForceKinds {
@@ -145,6 +178,10 @@ impl System for Altered<'_> {
 
     fn place(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
         self.inner.place(t, x, v);
+    }
+
+    fn strain_limiter(&self) -> Option<&StrainLimiter> {
+        self.inner.strain_limiter()
     }
 
     fn dampers(&self) -> Dampers {

@@ -2,9 +2,14 @@
 //! way than to all particles at once.
 
 use super::altered::{Altered, Altering, Around};
+use super::keeping::{Keeping, Kept, keep};
 use super::step::Step;
-use crate::integrators::{Coefficients, Integrator, Method, PerStep, Settings, StepError, fixed};
+use crate::integrators::{
+    Coefficients, Integrator, Method, PerStep, Settings, StepError, Velocities, fixed,
+};
+use crate::physics::constraints::limit;
 use crate::physics::{ParticleSystem, State, System};
+use crate::scene::Stabilisation;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -36,6 +41,8 @@ pub struct Candidate {
     /// The step it begins with, where that is another.
     first: Option<Box<Step>>,
     scaling: Option<Scaling>,
+    /// How it keeps rods, where not as the scene says.
+    keeping: Option<Keeping>,
 }
 
 /// A factor on velocities, from a rate in 1/s and the length of a step in s.
@@ -86,6 +93,7 @@ impl Candidate {
             alone: false,
             first: None,
             scaling: None,
+            keeping: None,
         }
     }
 
@@ -126,19 +134,31 @@ impl Candidate {
         }
     }
 
-    /// The same scheme under other forces.
+    /// The same scheme under other forces; those of rods are as it has them.
     pub fn under(&self, system: &ParticleSystem) -> Self {
+        let forces = match &self.keeping {
+            Some(keeping) => keeping.forces(system.clone()),
+            None => system.clone(),
+        };
         Self {
-            forces: Arc::new(system.clone()),
+            forces: Arc::new(forces),
+            keeping: self.keeping.as_ref().and_then(|by| by.on(system)),
             ..self.clone()
         }
     }
 
-    /// The same scheme under another candidate's forces, in its steps.
+    /// The same scheme under these forces with rods kept in another way.
+    pub(super) fn keeping(self, system: &ParticleSystem, keeping: &Keeping) -> Self {
+        let keeping = Some(keeping.clone());
+        Self { keeping, ..self }.under(system)
+    }
+
+    /// The same scheme under another candidate's forces, in its steps, with rods kept as that does.
     pub(super) fn forced_as(&self, other: &Self) -> Self {
         Self {
             forces: Arc::clone(&other.forces),
             stretch: other.stretch,
+            keeping: other.keeping.clone(),
             ..self.clone()
         }
     }
@@ -211,6 +231,40 @@ impl Candidate {
     pub(super) fn has_stages(&self) -> bool {
         let coefficients = self.step.method().map(|method| method.coefficients);
         matches!(coefficients, Some(Coefficients::Tableau(t)) if t.c.iter().any(|c| *c != 0.0))
+    }
+
+    /// Whether its steps end on rods by themselves.
+    pub(super) fn keeps_rods(&self) -> bool {
+        let coefficients = self.step.method().map(|method| method.coefficients);
+        matches!(coefficients, Some(Coefficients::Rattle(_)))
+    }
+
+    /// Whether its velocities are what positions moved by in the step before, over h.
+    pub(super) fn moves_by_differences(&self) -> bool {
+        let by = |keeping: &Keeping| matches!(keeping, Keeping::By(kept, _) if kept.differences());
+        self.substeps == 1 && self.keeping.as_ref().is_some_and(by)
+    }
+
+    /// Whether programs find its velocities from positions: they are then rounded as those, over h.
+    pub(super) fn differences(&self) -> bool {
+        match &self.keeping {
+            Some(Keeping::By(kept, _)) => kept.differences() || self.around.is_some(),
+            _ => self.keeps_rods() && self.forces.rods().is_some(),
+        }
+    }
+
+    /// Whether its steps end without velocity along rods that are stabilised so.
+    fn ends_still(&self, by: Stabilisation) -> bool {
+        let coefficients = self.step.method().map(|method| method.coefficients);
+        match coefficients {
+            Some(Coefficients::Rattle(velocities)) => velocities == Velocities::Still,
+            _ => by == Stabilisation::Project,
+        }
+    }
+
+    /// What a step costs besides its forces, in evaluations of them.
+    pub(super) fn keeping_effort(&self) -> u64 {
+        self.keeping.as_ref().map_or(0, Keeping::effort)
     }
 
     /// Whether each particle takes its step alone.
@@ -322,10 +376,43 @@ impl<'a> Replayer<'a> {
             }
             self.scale(ScaledAt::Kick, inner, &start.x, state);
             self.scale(ScaledAt::End, inner, &start.x, state);
-            system.place((part + 1) as f64 * part_of_h, &mut state.x, &mut state.v);
+            state.t = (part + 1) as f64 * part_of_h;
+            system.place(state.t, &mut state.x, &mut state.v);
+            self.keep(inner, part, &start, state)?;
+            if let Some(limiter) = system.strain_limiter() {
+                limit(system, limiter, state)?;
+            }
             previous = Some(start);
         }
         Ok(())
+    }
+
+    /// Moves a state onto rods after a step of `h` seconds from `start`, as the candidate does.
+    fn keep(&self, h: f64, part: u64, start: &State, state: &mut State) -> Result<(), StepError> {
+        let candidate = self.candidate;
+        let nudge = self.pattern.map(|pattern| (!part, pattern));
+        match (&candidate.keeping, candidate.forces.rods()) {
+            (Some(Keeping::By(kept, rods)), _) => keep(rods, *kept, h, start, state, nudge),
+            (_, Some(rods)) if rods.stabilisation() == Stabilisation::Project => {
+                if candidate.keeps_rods() {
+                    return Ok(());
+                }
+                keep(rods, Kept::PROJECTED, h, start, state, nudge)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Takes the velocity along rods out of a state whose velocities the candidate has without it.
+    pub(super) fn still(&self, state: &mut State) -> Result<(), StepError> {
+        let candidate = self.candidate;
+        let rods = match (&candidate.keeping, candidate.forces.rods()) {
+            (Some(Keeping::By(kept, rods)), _) if kept.stills() => rods.as_ref(),
+            (Some(Keeping::By(..)), _) => return Ok(()),
+            (_, Some(rods)) if candidate.ends_still(rods.stabilisation()) => rods,
+            _ => return Ok(()),
+        };
+        Ok(rods.still(&state.x, &mut state.v)?)
     }
 
     /// Multiplies the velocities, if this is when. `x` is where the step began.

@@ -9,11 +9,11 @@ use super::altered::{Alone, Altered, Altering, Around, OneStep};
 use super::candidate::{Candidate, Factor, Forces, ScaledAt, Scaling};
 use super::channels;
 use super::replay::FIT;
+use super::rods;
 use super::step::{Step, acceleration, plus};
-use crate::integrators::{
-    self, DampingTreatment, DampingTreatment::Explicit, Method, Stage, StepError, fixed,
-};
-use crate::physics::{ForceKinds, ParticleSystem, State, System};
+use super::treated::{explicit, said_of, treated};
+use crate::integrators::{self, DampingTreatment::Explicit, Method, Stage, StepError};
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{Magnetic, Particle, Scene};
 use crate::trajectory::Rows;
 use std::sync::{Arc, LazyLock};
@@ -101,12 +101,6 @@ const fn beeman(velocity: &'static [f64]) -> Step {
     Step::formula(Some([X, velocity]), [X, V])
 }
 
-/// Velocity Verlet with the second force at this velocity.
-const fn verlet(velocity: &'static [f64]) -> Step {
-    const X: &[f64] = &[1.0, 0.5];
-    Step::formula(Some([X, velocity]), [X, &[1.0, 0.5, 0.5]])
-}
-
 /// Schemes of two steps, or with a first step of their own.
 fn two_steps(forces: &Forces) -> Vec<Candidate> {
     let new = |id, step| Candidate::new(forces, step, id);
@@ -142,90 +136,6 @@ fn two_steps(forces: &Forces) -> Vec<Candidate> {
     all
 }
 
-/// Treatments of dampers and drag in splitting methods that are not the exact flow: methods of their own where
-/// there is damping. The id, the method without damping, what it does, and how.
-const TREATED: [(&str, &str, &str, Step); 6] = [
-    (
-        "velocity_verlet_explicit_damping",
-        "velocity_verlet",
-        "each half kick takes the dampers at the velocity before it, which is of order 1",
-        Step::splitting(Stage::VERLET, Explicit),
-    ),
-    (
-        "velocity_verlet_predicted_velocity",
-        "velocity_verlet",
-        "the second half kick takes the dampers at the predicted velocity v0 + h a0: of order 2, but stable for \
-         smaller steps",
-        verlet(&[1.0, 1.0]),
-    ),
-    (
-        "velocity_verlet_old_velocity",
-        "velocity_verlet",
-        "the second half kick takes the dampers at the velocity from the start of the step, which is of order 1",
-        verlet(&[1.0]),
-    ),
-    (
-        "position_verlet_explicit_damping",
-        "position_verlet",
-        "the kick takes the dampers at the velocity before it, which is of order 1",
-        Step::splitting(Stage::POSITION_VERLET, Explicit),
-    ),
-    (
-        "yoshida4_explicit_damping",
-        "yoshida4",
-        "each kick takes the dampers at the velocity before it, which is of order 1",
-        Step::splitting(Stage::YOSHIDA4, Explicit),
-    ),
-    (
-        "pefrl_explicit_damping",
-        "pefrl",
-        "each kick takes the dampers at the velocity before it, which is of order 1",
-        Step::splitting(Stage::PEFRL, Explicit),
-    ),
-];
-
-/// Boris' turn in other compositions, where there is a magnetic field.
-const TURNED: [(&str, &str, &str, Step); 2] = [
-    (
-        "boris_staggered",
-        "boris",
-        "velocities half a step behind positions, as Boris wrote it: kick with its turn, then drift",
-        Step::splitting(Stage::SYMPLECTIC_EULER, DampingTreatment::Boris),
-    ),
-    (
-        "boris_kick_first",
-        "boris",
-        "kick half, drift, kick half, with Boris' turn in each kick",
-        Step::splitting(Stage::VERLET, DampingTreatment::Boris),
-    ),
-];
-
-/// The splitting methods with other treatments of damping; none where nothing is damped.
-pub(super) fn treated(system: &ParticleSystem) -> Vec<Candidate> {
-    if !system.kinds().depends_on_velocity() {
-        return Vec::new();
-    }
-    let forces: Forces = Arc::new(system.clone());
-    let turned = TURNED
-        .iter()
-        .filter(|_| system.kinds().has(ForceKinds::GYROSCOPIC));
-    let treated = TREATED.iter().chain(turned);
-    let named = |(id, meant, says, step): &(&'static str, &'static str, &str, Step)| {
-        let says = said_of(system.kinds(), says);
-        Candidate::new(&forces, *step, meant).named(*id, says)
-    };
-    treated.map(named).collect()
-}
-
-/// What a treatment of dampers does, where the only force that depends on velocity may be the magnetic one.
-fn said_of(kinds: ForceKinds, says: &str) -> String {
-    if kinds.damps() {
-        return says.to_owned();
-    }
-    let says = says.replace("dampers and drag are", "the magnetic force is");
-    says.replace("dampers", "magnetic force")
-}
-
 /// Every composed scheme in this scene, the likelier ones first.
 pub fn composed(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
     let forces: Forces = Arc::new(system.clone());
@@ -233,6 +143,7 @@ pub fn composed(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
         Candidate::new(&forces, Step::Method(method), meant).around(Some(around))
     };
     let mut all = treated(system);
+    all.extend(rods::composed(system));
     all.push(Candidate::new(&forces, MIDPOINT_KICKED, "midpoint_kicked").named(
         "midpoint_kicked",
         "midpoint with its half step taken at the new velocity, x0 + h/2 (v0 + h/2 a0): of order 2 as well",
@@ -290,19 +201,15 @@ pub fn composed_schemes() -> &'static [(String, String)] {
             }),
             ..Scene::default()
         };
-        let all = composed(&scene, &ParticleSystem::new(&scene)).into_iter();
+        let composed = |scene: &Scene| composed(scene, &ParticleSystem::new(scene));
+        let all = composed(&scene).into_iter().chain(rods::every());
         let named = all.map(|scheme| (scheme.id, scheme.says.unwrap_or_default().into_owned()));
         let mut named: Vec<(String, String)> = named.collect();
-        named.dedup_by(|a, b| a.0 == b.0);
+        let mut seen = std::collections::HashSet::new();
+        named.retain(|(id, _)| seen.insert(id.clone()));
         named
     });
     &ALL
-}
-
-/// The methods whose steps solve nothing, and are their own under forces of these kinds.
-fn explicit(kinds: ForceKinds) -> impl Iterator<Item = &'static Method> {
-    let methods = fixed().iter();
-    methods.filter(move |method| method.is_its_own(kinds) && !Step::Method(method).solves())
 }
 
 /// Methods under all forces but drag, which multiplies velocities before the kick, after it or at the end.

@@ -3,14 +3,16 @@
 
 use super::candidate::Candidate;
 use super::channels::{self, Channel};
-use super::compose::{composed, treated};
+use super::compose::composed;
 use super::fit::{Base, Fit, Model, Slope};
 use super::mistakes::{self, MISTAKES, Mistake, Wrong};
 use super::near;
 use super::race::{Race, defects_of_all};
 use super::replay::FIT;
 use super::result::{Deviation, Explained};
+use super::rods::restabilised;
 use super::transition::{Transition, spread};
+use super::treated::treated;
 use super::{Found, Identity, Question};
 use crate::scene::Scene;
 use rayon::prelude::*;
@@ -52,7 +54,9 @@ pub(super) fn of_none(question: &Question, race: &Race, all: &[Transition]) -> F
         return near::nearest(question, race, all, &own).unwrap_or_else(|| unexplained(race, all));
     }
     let fitted = fitted(question, race);
-    let plain = Candidate::plain(question.system, 1).filter(|c| race.tried(&c.id));
+    let plain = Candidate::plain(question.system, 1)
+        .chain(restabilised(question.scene, question.system, 1))
+        .filter(|c| race.tried(&c.id));
     let near = || near::nearest(question, race, all, &plain.collect::<Vec<_>>());
     match fitted {
         Some(exact) if exact.is_exact() => exact.found(race, all),
@@ -80,21 +84,21 @@ pub(super) fn of_mistake(scene: &Scene, identity: &Identity) -> Option<Explained
     let row = mistakes::mistake(&identity.method).filter(|_| identity.mistake)?;
     let scheme = identity.method.split_once('(');
     Some(Explained {
-        scheme: scheme.map(|(_, method)| method.trim_end_matches(')').to_owned()),
+        scheme: scheme.map(|(_, method)| method.strip_suffix(')').unwrap_or(method).to_owned()),
         residual: identity.defect,
         largest_at: None,
-        deviations: deviations_of(scene, row),
+        deviations: deviations_of(scene, row, identity.says.as_deref()),
         equivalent: identity.equivalent.clone(),
     })
 }
 
 /// What a known mistake changes in this scene.
-fn deviations_of(scene: &Scene, row: &Mistake) -> Vec<Deviation> {
+fn deviations_of(scene: &Scene, row: &Mistake, says: Option<&str>) -> Vec<Deviation> {
     let deviation = |(what, factor): &(&str, f64)| Deviation {
         what: (*what).to_owned(),
         factor: *factor,
         place: None,
-        sentence: row.says.to_owned(),
+        sentence: says.unwrap_or(row.says).to_owned(),
     };
     let there = row.deviates.iter();
     let there = there.filter(|(what, _)| channels::has(scene, what));
@@ -156,8 +160,10 @@ fn groups(question: &Question, race: &Race) -> Vec<Group> {
         mistake: None,
     };
     let plain = |n: u32| Candidate::plain(system, n);
-    let (implicit, explicit): (Vec<_>, Vec<_>) =
-        plain(1).chain(treated(system)).partition(Candidate::solves);
+    let (implicit, explicit): (Vec<_>, Vec<_>) = (plain(1)
+        .chain(treated(system))
+        .chain(restabilised(scene, system, 1)))
+    .partition(Candidate::solves);
     let finer = (2..=FINER).flat_map(plain).filter(|c| !c.solves());
     let composed = composed(scene, system).into_iter().filter(|c| !c.solves());
     let usual = |c: &&Candidate| USUAL.contains(&c.id.as_str());
@@ -219,7 +225,10 @@ struct Explanation {
 impl Explanation {
     fn new(model: &Model, fit: Fit) -> Self {
         let (scene, h) = (model.scene, model.replay.rows.timestep);
-        let known = model.base.mistake.map(|row| deviations_of(scene, row));
+        let known = model
+            .base
+            .mistake
+            .map(|row| deviations_of(scene, row, None));
         let (gravity, own): (Vec<_>, Vec<_>) =
             fit.factors.iter().partition(|(c, _)| c.is_component());
         let own = own.iter().map(|(c, factor)| c.deviation(scene, h, *factor));

@@ -14,7 +14,7 @@ pub use anchor::moved_anchor;
 use super::candidate::{Candidate, Replayer};
 use super::replay::{FIT, Replay};
 use super::transition::{Transition, is_finite, neighbours};
-use super::{Identity, Question, Undecided, candidates};
+use super::{HALF_SAMPLE, Identity, Question, Undecided, candidates, rods, transition};
 use crate::integrators;
 use crate::measure::identify::Fault;
 use crate::trajectory::Rows;
@@ -43,7 +43,27 @@ pub fn first_fault(question: &Question, identity: &Identity) -> Option<Fault> {
             == (&identity.method, identity.substeps, &identity.says)
     };
     let mut all = candidates(question.scene, question.system);
-    first_departure(question, &all.find(named)?)
+    let candidate = all
+        .find(named)
+        .or_else(|| fitted(question).into_iter().find(named));
+    first_departure(question, &candidate?)
+}
+
+/// The candidates with a number that the rows tell.
+fn fitted(question: &Question) -> Vec<Candidate> {
+    let Question {
+        scene,
+        system,
+        rows,
+        settings,
+        ..
+    } = *question;
+    let used = transition::choose(rows, system, question.transitions);
+    let sample = super::bare(&transition::sample(&used, HALF_SAMPLE));
+    let replay = Replay::new(scene, system, rows, settings);
+    replay.map_or_else(Vec::new, |replay| {
+        rods::fitted(scene, system, &replay, &sample, question.budget / 2)
+    })
 }
 
 /// Whether the replay that found the identity has already seen every row follow it.

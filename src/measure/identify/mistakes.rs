@@ -14,8 +14,10 @@ pub use rows::MISTAKES;
 use super::altered::Around;
 use super::candidate::{Candidate, Forces};
 use super::channels;
-use super::compose::treated;
+use super::keeping::Kept;
+use super::rods;
 use super::step::Step;
+use super::treated::treated;
 use crate::physics::ParticleSystem;
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -49,6 +51,10 @@ pub enum Wrong {
     Length(f64),
     /// How any method is applied, where particles are driven.
     Applied(Around),
+    /// How rods are kept, with any method.
+    Rods(Kept),
+    /// Springs in place of rods, with any method that solves nothing; the rows tell their stiffness.
+    SpringsForRods,
 }
 
 /// The mistakes that can be made in this scene: wrong steps once, wrong physics and lengths with
@@ -57,6 +63,10 @@ pub fn mistakes(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
     let steps = MISTAKES.iter().filter_map(|m| m.as_step(system));
     let mut candidates: Vec<Candidate> = steps.collect();
     for mistake in MISTAKES {
+        if let Wrong::Rods(kept) = mistake.wrong {
+            let kept = rods::kept(system, kept, mistake.id, mistake.says);
+            candidates.extend(kept.into_iter().map(Candidate::mistaken));
+        }
         let (length, around) = match mistake.wrong {
             Wrong::Length(factor) => (factor, None),
             Wrong::Applied(around) => (1.0, Some(around)),
@@ -65,7 +75,9 @@ pub fn mistakes(scene: &Scene, system: &ParticleSystem) -> Vec<Candidate> {
         let Some(wrong) = mistake.forces(scene) else {
             continue;
         };
-        let methods = Candidate::plain(&wrong, 1).chain(treated(&wrong));
+        let methods = Candidate::plain(&wrong, 1)
+            .chain(treated(&wrong))
+            .chain(rods::restabilised(scene, &wrong, 1));
         // A step of one force has no other times.
         let methods = methods.filter(|candidate| around.is_none() || candidate.has_stages());
         candidates.extend(methods.map(|candidate| {
@@ -88,7 +100,7 @@ impl Mistake {
     /// step that is wrong itself.
     pub(super) fn forces(&self, scene: &Scene) -> Option<ParticleSystem> {
         match self.wrong {
-            Wrong::Step { .. } => None,
+            Wrong::Step { .. } | Wrong::Rods(_) | Wrong::SpringsForRods => None,
             Wrong::Scaled => {
                 channels::scaled(scene, self.deviates).map(|s| ParticleSystem::new(&s))
             }

@@ -16,15 +16,18 @@ mod compose;
 mod explain;
 mod fault;
 mod fit;
+mod keeping;
 mod mistakes;
 mod near;
 mod numbers;
 mod race;
 mod replay;
 mod result;
+mod rods;
 mod same;
 mod step;
 mod transition;
+mod treated;
 mod velocity;
 mod words;
 
@@ -34,6 +37,7 @@ pub use compose::{composed, composed_schemes};
 
 pub use explain::TRUTH;
 pub use fault::{first_departure, first_fault, moved_anchor};
+pub use keeping::{Kept, Moved};
 pub use mistakes::{MISTAKES, Mistake, Wrong, mistakes};
 pub use replay::{Defect, FIT, Replay, solve_effort};
 pub use result::{Deviation, Explained, Fault, Identity, Quantity, Undecided};
@@ -126,15 +130,29 @@ fn found(question: &Question) -> Option<Found> {
     let coarse = rows.precision != Precision::Double;
     if coarse || !race.decided() {
         race.enter(
+            rods::restabilised(scene, system, 1),
+            Some("other stabilisations"),
+        );
+    }
+    if coarse || !race.decided() {
+        race.enter(
             (2..=MOST_SUBSTEPS).flat_map(plain).collect(),
             Some("substeps"),
         );
+    }
+    if !race.decided() {
+        let finer = (2..=MOST_SUBSTEPS).flat_map(|n| rods::restabilised(scene, system, n));
+        race.enter(finer.collect(), Some("other stabilisations in substeps"));
     }
     if !race.decided() {
         race.enter(composed(scene, system), Some("composed schemes"));
     }
     if !race.decided() {
         race.enter(mistakes(scene, system), Some("mistakes"));
+    }
+    if !race.decided() {
+        let fitted = rods::fitted(scene, system, &replay, &sample, race.budget / 2);
+        race.enter(fitted, Some("fitted constraints"));
     }
     let named =
         |entry: &Entry| question.hint == Some((&entry.candidate.id, entry.candidate.substeps));
@@ -251,7 +269,8 @@ fn bare(weighed: &[Weighed]) -> Vec<Transition> {
 /// mistakes.
 fn candidates(scene: &Scene, system: &ParticleSystem) -> impl Iterator<Item = Candidate> {
     let methods = (1..=MOST_SUBSTEPS).flat_map(|n| Candidate::plain(system, n));
-    let methods: Vec<Candidate> = methods.collect();
+    let others = (1..=MOST_SUBSTEPS).flat_map(|n| rods::restabilised(scene, system, n));
+    let methods: Vec<Candidate> = methods.chain(others).collect();
     methods
         .into_iter()
         .chain(composed(scene, system))

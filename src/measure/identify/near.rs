@@ -28,7 +28,7 @@ pub(super) fn nearest(
     let (candidate, _) = schemes
         .par_iter()
         .filter_map(|scheme| {
-            let part = typical_part_of_error(race, scheme, &truth)?;
+            let part = typical_part_of_error(race, scheme, &truth.forced_as(scheme))?;
             let hinted = question.hint.is_some();
             (part <= NEAR || (hinted && part.is_finite())).then_some((scheme, part))
         })

@@ -92,7 +92,7 @@ pub struct Replay<'a> {
     fixed: Vec<Option<f64>>,
     /// The motions of those that are driven.
     drives: Vec<Drive>,
-    /// The longest rest length, m: forces are rounded by as much even where positions are small.
+    /// The longest rest length or rod, m: what is computed from it is rounded as it is even where positions are small.
     length: f64,
     /// Whether velocities are differences of positions over the step, and round as those do.
     differenced: bool,
@@ -118,7 +118,8 @@ impl<'a> Replay<'a> {
         let start = ParticleSystem::initial_state(scene);
         let driven = |i: usize| scene.driven.iter().any(|d| d.particle == i / 3);
         let fixed = start.x.iter().zip(system.inverse_mass());
-        let lengths = scene.springs.iter().map(|s| s.rest_length);
+        let springs = scene.springs.iter().map(|s| s.rest_length);
+        let lengths = springs.chain(scene.rods.iter().map(|rod| rod.length));
         shaped.then(|| Self {
             rows,
             settings: Settings {
@@ -311,12 +312,21 @@ impl<'a> Replay<'a> {
         } else {
             0.0
         };
+        let substeps = f64::from(replayer.candidate().substeps.max(1));
+        let differences = replayer.candidate().differences();
         let from = self.from(transition);
         let own = self.recorded(transition).zip(from).enumerate();
         let own = own.map(|(i, (value, from))| {
             let solve = if i < dim { seconds * solve } else { solve };
             // A number that ends near 0 was larger in between.
             let bit = f64::EPSILON * from.abs();
+            let bit = match i.checked_sub(dim).filter(|_| differences) {
+                Some(at) => {
+                    let x = self.rows.x(transition.to)[at].abs().max(self.length);
+                    bit + f64::EPSILON * x * substeps / self.rows.timestep
+                }
+                None => bit,
+            };
             self.half_unit(transition.to, i, value) + bit + solve
         });
         grown.iter().zip(own).map(|(g, own)| g + own).collect()
@@ -384,9 +394,13 @@ impl<'a> Replay<'a> {
                 return Err(StepError::NotFinite { particle: 0 });
             };
             let leg = self.leg(*k, transition.from);
-            // A thousandth of what the data is rounded to is as good as exact.
-            let enough = |x: f64| 1e-3 * rows.precision.half_unit(x);
-            leg.find_within(replayer, earlier, &mut state, enough)?;
+            if leg.span == 1 && replayer.candidate().moves_by_differences() {
+                leg.difference(earlier, &mut state);
+            } else {
+                // A thousandth of what the data is rounded to is as good as exact.
+                let enough = |x: f64| 1e-3 * rows.precision.half_unit(x);
+                leg.find_within(replayer, earlier, &mut state, enough)?;
+            }
         }
         let one_back = before
             .filter(|(k, _)| rows.steps[*k] + 1 == step)
@@ -410,7 +424,8 @@ impl<'a> Replay<'a> {
         } else {
             1
         };
-        let each = each * if self.rows.v.is_some() { 1 } else { FIND };
+        let each =
+            (each + candidate.keeping_effort()) * if self.rows.v.is_some() { 1 } else { FIND };
         let steps = transition.reach(self.rows);
         let substeps = u64::from(candidate.substeps.max(1));
         steps

@@ -41,6 +41,16 @@ impl Leg {
         self.find_within(replayer, from, to, |_| 0.0)
     }
 
+    /// Sets the velocities of `to` to the difference of positions over the leg; given ones stay.
+    pub(super) fn difference(&self, from: &State, to: &mut State) {
+        let seconds = self.span as f64 * self.timestep;
+        for (v, mean) in to.v.iter_mut().zip(apart(&to.x, &from.x, seconds)) {
+            if *v == 0.0 {
+                *v = mean;
+            }
+        }
+    }
+
     /// The same, to the last bits or, of a position of this value, to `enough` metres.
     pub(super) fn find_within(
         &self,
@@ -58,6 +68,8 @@ impl Leg {
         while taken < MOST && idle < PATIENCE {
             let mut end = from.clone();
             end.v.clone_from(&v);
+            replayer.still(&mut end)?;
+            let left = end.v.clone();
             replayer.advance(self.step, self.span, self.timestep, None, &mut end)?;
             taken += 1;
             let miss = apart(&end.x, &to.x, seconds);
@@ -71,7 +83,7 @@ impl Leg {
                 idle += 1;
             }
             if best.as_ref().is_none_or(|(least, ..)| off < *least) {
-                best = Some((off, v.clone(), end.v));
+                best = Some((off, left, end.v));
             }
             if off <= 0.5 {
                 break;

@@ -144,14 +144,9 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Measures a method of the registry against its row: `order_damped` where there is damping.
+    /// Measures a method of the registry against its order [on this system](Method::order_on).
     pub fn method(&self, method: &Method) -> MeasuredOrder {
-        let damped = self.problem.system.kinds().depends_on_velocity();
-        let stated = if damped {
-            method.order_damped
-        } else {
-            method.order
-        };
+        let stated = method.order_on(self.problem.system);
         self.measure(stated, &|| method.build(&self.settings))
     }
 

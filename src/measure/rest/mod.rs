@@ -1,6 +1,7 @@
 //! Where a scene comes to rest: the state in which no force is left, and how it oscillates about it.
 
 mod modes;
+mod rods;
 mod still;
 
 pub use modes::{Mode, Modes, modes};
@@ -82,14 +83,23 @@ pub fn held(scene: &Scene) -> Scene {
 /// [`RestError`].
 pub fn find(scene: &Scene) -> Result<Rest, RestError> {
     let scene = held(scene);
-    let mut still = Still::new(&scene);
-    let start = ParticleSystem::initial_state(&scene);
+    if scene.rods.is_empty() {
+        settle(&scene)
+    } else {
+        rods::find(&scene, settle)
+    }
+}
+
+/// The same of a scene without rods, in which nothing is driven.
+fn settle(scene: &Scene) -> Result<Rest, RestError> {
+    let mut still = Still::new(scene);
+    let start = ParticleSystem::initial_state(scene);
     let settings = Settings {
         iterations: ITERATIONS,
         ..Settings::default()
     };
     let mut method = Implicit::new(ImplicitScheme::Euler, &settings);
-    let size = size(&scene);
+    let size = size(scene);
     let mut state = start.clone();
     let mut left = still.left(&state.x);
     let first = FIRST * (size / still.fastest(&state.x)).sqrt();
@@ -145,6 +155,20 @@ pub fn find(scene: &Scene) -> Result<Rest, RestError> {
         force_left: least.force,
         particle: least.particle,
     })
+}
+
+/// The softest [`modes`] of a scene about its rest. Where there are rods they are right to 1e-7 of each frequency.
+pub fn modes_of(scene: &Scene, x: &[f64]) -> Option<Modes> {
+    if scene.rods.is_empty() {
+        return modes(&ParticleSystem::new(scene), x);
+    }
+    let mut found = modes(&rods::about(scene, x)?, x)?;
+    // The stiffest are those of the springs that stand for rods.
+    let free = scene.particles.iter().filter(|p| !p.fixed).count();
+    found
+        .lowest
+        .truncate((3 * free).saturating_sub(scene.rods.len()));
+    Some(found)
 }
 
 /// The diagonal of the box around all particles at the start, m; 1 where they are in one place.

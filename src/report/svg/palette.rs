@@ -28,8 +28,9 @@ pub const TRUTH: Stroke = Stroke::new("#c4c4c4", "", 6.0);
 /// The colours of where something holds, and where it does not.
 pub const HOLDS: [&str; 2] = ["#0072b2", "#f1ece4"];
 
-/// A spring of a shape, and the colour of a shape that another lies over.
+/// A spring and a rod of a shape, and the colour of a shape that another lies over.
 pub const SPRING: Stroke = Stroke::new("#0072b2", "", 1.2);
+pub const ROD: Stroke = Stroke::new("#4d4d4d", "", 2.4);
 pub const BELOW: &str = "#b4b4b4";
 
 /// The ring of a hinge, the dashes of an attraction, and the filling of triangles, light enough for springs on it.

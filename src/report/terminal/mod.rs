@@ -50,10 +50,16 @@ fn after_blank_line(mut lines: Vec<String>) -> Vec<String> {
 /// The scene's name and size, and the description in its file.
 fn scene(view: &View) -> Vec<String> {
     let scene = &view.header.scene;
-    let facts = format!(
-        "  {}, {}, {} s at h = {}, {}",
+    let mut members = vec![
         words::plural(scene.particles as u64, "particle"),
         words::plural(scene.springs as u64, "spring"),
+    ];
+    if scene.rods > 0 {
+        members.push(words::plural(scene.rods as u64, "rod"));
+    }
+    let facts = format!(
+        "  {}, {} s at h = {}, {}",
+        members.join(", "),
         words::short(scene.duration),
         words::timestep(scene.timestep, &view.timesteps),
         clip(&one_line(&scene.own_integrator), 28),

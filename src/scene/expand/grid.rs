@@ -3,7 +3,7 @@
 use super::{Along, Frame, Generator, Maker, Pinned, each_place, length};
 use crate::scene::limits::Bounds;
 use crate::scene::model::Triangle;
-use crate::scene::object::{Body, Cloth, Lattice, Link, Net, Options, Pin, Scaling};
+use crate::scene::object::{Body, Cloth, Lattice, Links, Net, Options, Pin, Scaling};
 use crate::scene::place::Problem;
 use nalgebra::Vector3;
 
@@ -111,8 +111,8 @@ fn pins(maker: &Maker, options: &Options, frame: &Frame) -> Result<Vec<Pinned>, 
     maker.pins(&options, frame, &words)
 }
 
-/// Adds springs by these steps from every particle that has one there.
-fn springs(maker: &mut Maker, body: &Body, steps: &[&[isize]], link: Link, ratio: f64) {
+/// Joins every particle to those at these steps that are there.
+fn join(maker: &mut Maker, body: &Body, steps: &[&[isize]], links: Links, ratio: f64) {
     for step in steps {
         // Ids differ by as much wherever both particles are.
         let apart = step.iter().zip(&body.shape);
@@ -125,15 +125,15 @@ fn springs(maker: &mut Maker, body: &Body, steps: &[&[isize]], link: Link, ratio
                     .is_some_and(|there| there < *count)
             });
             if let (true, Some(end)) = (inside, id.checked_add_signed(apart)) {
-                maker.spring([id, end], link, ratio);
+                maker.join([id, end], links, ratio);
             }
             id += 1;
         });
     }
 }
 
-/// Springs of one kind: their key, what the file says of them, and the steps to their other ends.
-type Kind<'k> = (&'static str, Option<Link>, &'k [&'k [isize]]);
+/// Links of one kind: their key, what the file says of them, and the steps to their other ends.
+type Kind<'k> = (&'static str, Option<Links>, &'k [&'k [isize]]);
 
 /// A sheet or a block: what its directions, particles and springs are.
 struct Grid<'g> {
@@ -153,15 +153,16 @@ impl Grid<'_> {
         let frame = maker.frame(options, origin, self.edges, self.particles)?;
         let pins = pins(maker, options, &frame)?;
         let mut links = Vec::new();
-        for &(key, link, steps) in self.kinds {
-            if let Some(link) = link {
-                links.push((maker.link(key, link, self.scale)?, steps));
+        let mut ratio = 1.0;
+        for &(key, kind, steps) in self.kinds {
+            if let Some(kind) = kind {
+                ratio = maker.rest_ratio(self.rest_ratio, kind)?;
+                links.push((maker.links(key, kind, self.scale)?, steps));
             }
         }
-        let ratio = maker.rest_ratio(self.rest_ratio)?;
         let body = maker.particles(options, &frame, &pins)?;
-        for (link, steps) in links {
-            springs(maker, &body, steps, link, ratio);
+        for (kind, steps) in links {
+            join(maker, &body, steps, kind, ratio);
         }
         Ok(body)
     }
@@ -183,8 +184,8 @@ impl Generator for Cloth {
             particles: &self.particles,
             kinds: &[
                 ("structural", Some(self.structural), NEIGHBOURS),
-                ("shear", self.shear, ACROSS),
-                ("flexion", self.flexion, SECOND),
+                ("shear", self.shear.map(Links::Springs), ACROSS),
+                ("flexion", self.flexion.map(Links::Springs), SECOND),
             ],
             scale: 1.0,
             rest_ratio: self.rest_ratio,
@@ -222,7 +223,11 @@ impl Generator for Net {
             edges: sides(maker, [self.u, self.v], self.plane.as_deref(), self.size)?,
             origin: self.origin,
             particles: &self.particles,
-            kinds: &[("structural", Some(self.structural), NEIGHBOURS)],
+            kinds: &[(
+                "structural",
+                Some(Links::Springs(self.structural)),
+                NEIGHBOURS,
+            )],
             scale: 1.0,
             rest_ratio: self.rest_ratio,
         };
@@ -267,9 +272,9 @@ impl Generator for Lattice {
             origin: self.origin,
             particles: &self.particles,
             kinds: &[
-                ("structural", Some(self.structural), AXES),
-                ("shear", self.shear, FACES),
-                ("diagonal", self.diagonal, THROUGH),
+                ("structural", Some(Links::Springs(self.structural)), AXES),
+                ("shear", self.shear.map(Links::Springs), FACES),
+                ("diagonal", self.diagonal.map(Links::Springs), THROUGH),
             ],
             scale: match options.scaling {
                 Scaling::Continuum => 1.0 / options.refine.unwrap_or(1) as f64,

@@ -3,7 +3,7 @@
 use super::{Along, Frame, Generator, Maker, Pinned, length};
 use crate::scene::limits::Bounds;
 use crate::scene::model::{Bending, Particle};
-use crate::scene::object::{Hair, Hinge, Link, Options, Scaling, Strand};
+use crate::scene::object::{Hair, Hinge, Link, Links, Options, Scaling, Strand};
 use crate::scene::place::Problem;
 
 /// The words for pins of a row.
@@ -47,17 +47,38 @@ impl Generator for Strand {
         let options = self.common();
         let frame = frame(maker, &options, self.from, self.to, self.particles)?;
         let pins = maker.pins(&options, &frame, &words())?;
-        let link = Link {
-            stiffness: self.stiffness,
-            damping: self.damping.unwrap_or_default(),
-        };
-        let link = maker.link("", link, scale(&options, &frame))?;
-        let ratio = maker.rest_ratio(self.rest_ratio)?;
+        let (key, links) = self.links(maker)?;
+        let links = maker.links(key, links, scale(&options, &frame))?;
+        let ratio = maker.rest_ratio(self.rest_ratio, links)?;
         let body = maker.particles(&options, &frame, &pins)?;
         for at in 1..body.shape[0] {
-            maker.spring([body.first + at - 1, body.first + at], link, ratio);
+            maker.join([body.first + at - 1, body.first + at], links, ratio);
         }
         Ok(())
+    }
+}
+
+impl Strand {
+    /// What joins its particles, and the key that says so.
+    fn links(&self, maker: &Maker) -> Result<(&'static str, Links), Problem> {
+        match (self.stiffness, self.damping, self.structural) {
+            (Some(stiffness), damping, None) => {
+                let damping = damping.unwrap_or_default();
+                Ok(("", Links::Springs(Link { stiffness, damping })))
+            }
+            (None, None, Some(links)) => Ok(("structural", links)),
+            (stiffness, damping, _) => {
+                let found = match (stiffness, damping) {
+                    (None, None) => "neither",
+                    (None, Some(_)) => "`damping` alone",
+                    _ => "both",
+                };
+                let message =
+                    format!("expected one of `stiffness` and `structural`, found {found}");
+                let help = "`stiffness: 1000` for springs, in N/m; `structural: rods` for a string that does not stretch";
+                Problem::because(maker.path.clone(), message, help)
+            }
+        }
     }
 }
 
@@ -71,9 +92,9 @@ impl Generator for Hair {
         let frame = frame(maker, &options, self.from, self.to, self.particles)?;
         let mut pins = maker.pins(&options, &frame, &words())?;
         let scale = scale(&options, &frame);
-        let link = maker.link("structural", self.structural, scale)?;
+        let links = maker.links("structural", self.structural, scale)?;
         let hinge = self.hinge(maker, scale)?;
-        let ratio = maker.rest_ratio(self.rest_ratio)?;
+        let ratio = maker.rest_ratio(self.rest_ratio, links)?;
         let clamp = match self.clamp {
             Some(clamp) if length(maker.point("clamp", clamp)?) == 0.0 => {
                 return maker.problem(
@@ -90,7 +111,7 @@ impl Generator for Hair {
         let body = maker.particles(&options, &frame, &pins)?;
         let (root, count) = (body.first, body.shape[0]);
         for at in 1..count {
-            maker.spring([root + at - 1, root + at], link, ratio);
+            maker.join([root + at - 1, root + at], links, ratio);
         }
         for at in 1..count.saturating_sub(1) {
             maker.scene.bending.push(Bending {

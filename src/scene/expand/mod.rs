@@ -8,8 +8,8 @@ mod line;
 
 use super::error::Refusal;
 use super::limits::{self, Bounds};
-use super::model::{Particle, Scene, Spring};
-use super::object::{self, Body, Link, Object, Options, Pin, Scaling};
+use super::model::{Particle, Rod, Scene, Spring};
+use super::object::{self, Body, Link, Links, Object, Options, Pin, Scaling};
 use super::place::Problem;
 use super::values::Number;
 
@@ -62,7 +62,7 @@ impl Scene {
     /// # Errors
     /// [`Refusal`] with the key of what cannot be made.
     pub fn expand(&mut self) -> Result<(), Refusal> {
-        expand(self).map_err(Problem::refusal)
+        expand(self).map(|_| ()).map_err(Problem::refusal)
     }
 }
 
@@ -74,7 +74,10 @@ fn list(names: &[&str]) -> String {
 }
 
 /// See [`Scene::expand`].
-pub(super) fn expand(scene: &mut Scene) -> Result<(), Problem> {
+///
+/// Returns the path of each object that made rods, and where its first is in the list of all.
+pub(super) fn expand(scene: &mut Scene) -> Result<Vec<(usize, String)>, Problem> {
+    let mut with_rods = Vec::new();
     for (at, object) in std::mem::take(&mut scene.objects).into_iter().enumerate() {
         let path = format!("objects[{at}]");
         let Object {
@@ -117,10 +120,15 @@ pub(super) fn expand(scene: &mut Scene) -> Result<(), Problem> {
             None => path.clone(),
         };
         named(&name, scene).map_err(|refusal| Problem::new(key, refusal))?;
+        let first = scene.rods.len();
         let mut maker = Maker { scene, path, name };
         kind.make(&mut maker)?;
+        let Maker { scene, path, .. } = maker;
+        if scene.rods.len() > first {
+            with_rods.push((first, path));
+        }
     }
-    Ok(())
+    Ok(with_rods)
 }
 
 fn boxed<'a>(kind: impl Generator + 'a) -> Box<dyn Generator + 'a> {
@@ -358,8 +366,19 @@ impl Maker<'_> {
         Ok(body)
     }
 
-    /// Adds a spring between two particles, at rest at this part of their distance.
-    fn spring(&mut self, ends: [usize; 2], link: Link, rest_ratio: f64) {
+    /// Joins two particles by a spring, at rest at this part of their distance, or by a rod, unless nothing could move
+    /// there.
+    fn join(&mut self, ends: [usize; 2], links: Links, rest_ratio: f64) {
+        let Links::Springs(link) = links else {
+            if !ends.iter().all(|end| self.scene.particles[*end].fixed) {
+                // The length is taken from the start.
+                self.scene.rods.push(Rod {
+                    ends,
+                    length: f64::NAN,
+                });
+            }
+            return;
+        };
         let [from, to] = ends.map(|end| self.scene.particles[end].position);
         let apart = from
             .iter()
@@ -391,7 +410,25 @@ impl Maker<'_> {
         })
     }
 
-    fn rest_ratio(&self, ratio: Option<f64>) -> Result<f64, Problem> {
+    /// The same, of what may also be rods.
+    fn links(&self, key: &str, links: Links, scale: f64) -> Result<Links, Problem> {
+        match links {
+            Links::Springs(link) => self.link(key, link, scale).map(Links::Springs),
+            Links::Rods => Ok(links),
+        }
+    }
+
+    /// The ratio of rest lengths of these links: rods have none but 1.
+    fn rest_ratio(&self, ratio: Option<f64>, links: Links) -> Result<f64, Problem> {
+        if let (Some(_), Links::Rods) = (ratio, links) {
+            let message =
+                "expected no `rest_ratio` beside rods: they have the lengths of the start";
+            return self.problem(
+                "rest_ratio",
+                message,
+                "remove it, or give springs: `{stiffness: 1000}`",
+            );
+        }
         self.judge("rest_ratio", ratio.unwrap_or(1.0), limits::REST_RATIO)
     }
 

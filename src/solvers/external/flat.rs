@@ -2,7 +2,8 @@
 
 use super::Task;
 use crate::scene::model::{
-    BENDING, DRIVEN, GRAVITATIONAL, PARTICLES, Part, Row, SINE, SPRINGS, TRIANGLES, ValueKind,
+    BENDING, DRIVEN, GRAVITATIONAL, PARTICLES, Part, RODS, Row, SINE, SPRINGS, STRAIN_LIMIT,
+    TRIANGLES, ValueKind,
 };
 use crate::scene::{Scene, Value};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -35,6 +36,7 @@ impl Serialize for Flat<'_> {
         map.serialize_entry("particles", &scene.particles.len())?;
         arrays(&mut map, scene, &PARTICLES)?;
         map.serialize_entry("springs", &Arrays(scene, &[&SPRINGS]))?;
+        map.serialize_entry("rods", &Arrays(scene, &[&RODS]))?;
         map.serialize_entry("bending", &Arrays(scene, &[&BENDING]))?;
         map.serialize_entry("driven", &Arrays(scene, &[&DRIVEN, &SINE]))?;
         map.serialize_entry("damping_model", &scene.damping_model)?;
@@ -48,6 +50,9 @@ impl Serialize for Flat<'_> {
             .as_ref()
             .map_or([0.0; 3], |magnetic| magnetic.field);
         map.serialize_entry("magnetic_field", &field)?;
+        if scene.strain_limit.is_some() {
+            map.serialize_entry("strain_limit", &Keys(scene, &STRAIN_LIMIT))?;
+        }
         map.serialize_entry("gravitational", &Arrays(scene, &[&GRAVITATIONAL]))?;
         map.serialize_entry("effects", &effects)?;
         map.serialize_entry("timestep", &timestep)?;
@@ -81,6 +86,20 @@ impl Serialize for Arrays<'_> {
             arrays(&mut map, self.0, part)?;
         }
         map.end()
+    }
+}
+
+/// The keys of a part that the scene has once, each of one component.
+struct Keys<'a>(&'a Scene, &'a Part);
+
+impl Serialize for Keys<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let Keys(scene, part) = *self;
+        to.collect_map(
+            part.rows
+                .iter()
+                .map(|row| (row.key, (row.get)(scene, 0, 0))),
+        )
     }
 }
 

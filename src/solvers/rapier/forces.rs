@@ -1,7 +1,7 @@
 //! rapier's bodies under forces computed here.
 
 use super::settings::RapierSettings;
-use super::world::World;
+use super::world::{World, unsupported};
 use crate::integrators::StepError;
 use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
@@ -29,13 +29,20 @@ impl RapierForces {
     /// `timestep` in seconds, positive.
     ///
     /// # Errors
-    /// [`Unsupported`] for masses outside the range that rapier can move.
+    /// [`Unsupported`] for rods, a strain limit, and for masses outside the range that rapier can move.
     pub fn new(
         scene: &Scene,
         system: ParticleSystem,
         timestep: f64,
         settings: &RapierSettings,
     ) -> Result<Self, Unsupported> {
+        if !scene.rods.is_empty() {
+            return Err(unsupported(
+                "rods are not taken: forces that are held over a step let lengths drift, and rapier's bodies cannot be \
+                 moved back onto them; rapier takes rods as stiff joints"
+                    .to_owned(),
+            ));
+        }
         let state = ParticleSystem::initial_state(scene);
         Ok(Self {
             world: World::new(scene, timestep, settings)?,

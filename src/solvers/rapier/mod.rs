@@ -16,6 +16,7 @@ mod world;
 
 pub use forces::RapierForces;
 pub use joints::RapierEngine;
+pub use mirrors::stand_ins;
 pub use settings::RapierSettings;
 
 /// The ids of rapier's worlds at fixed settings, in the order reports list them.

@@ -2,6 +2,7 @@
 
 use super::settings::RapierSettings;
 use crate::physics::State;
+use crate::physics::constraints::StrainLimiter;
 use crate::scene::{Drive, Scene};
 use crate::solvers::{Built, Unsupported};
 use rapier3d::dynamics::{GenericJoint, RigidBodyBuilder, RigidBodyHandle};
@@ -42,6 +43,9 @@ impl World {
         timestep: f64,
         settings: &RapierSettings,
     ) -> Result<Self, Unsupported> {
+        if StrainLimiter::new(scene).is_some() {
+            return Err(unsupported("rapier has no strain limit".to_owned()));
+        }
         let mut inner = PhysicsWorld::new();
         inner.gravity = Vector::ZERO;
         let parameters = &mut inner.integration_parameters;

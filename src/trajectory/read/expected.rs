@@ -144,7 +144,7 @@ pub fn free_axis(scene: &Scene) -> Option<FreeAxis> {
 }
 
 /// The axes on which free particles can move: where their velocities, gravity, wind, moving air, motions of driven
-/// ones, or their springs, hinges and attractions have a component, and where a magnetic field turns such motion; on all
+/// ones, or their springs, rods, hinges and attractions have a component, and where a magnetic field turns such motion; on all
 /// where the air drags at triangles, which turn.
 fn moves(scene: &Scene) -> [bool; 3] {
     let starts = scene.starts();
@@ -164,6 +164,7 @@ fn moves(scene: &Scene) -> [bool; 3] {
         ]
     });
     let lines = springs
+        .chain(scene.rods.iter().map(|rod| rod.ends))
         .chain(pairs.map(|pair| pair.ends))
         .chain(hinges)
         .filter(|ends| ends.iter().any(|&end| !scene.particles[end].fixed))

@@ -10,6 +10,7 @@ pub(super) struct Group<'a> {
     /// In the order of their ids.
     pub bodies: Vec<Body>,
     pub links: Vec<Link<'a>>,
+    pub rods: Vec<Held>,
     pub until: f64,
     /// The scene's size, m.
     pub size: f64,
@@ -36,6 +37,17 @@ pub(super) struct Body {
     pub turning: Vector3<f64>,
 }
 
+/// A rod of a group.
+#[derive(Debug, Clone)]
+pub(super) struct Held {
+    /// Index in `bodies` of each end; None for a fixed end.
+    pub ends: [Option<usize>; 2],
+    /// Positions of its ends at the start, m.
+    pub at: [Vector3<f64>; 2],
+    /// Whether one of them is driven.
+    pub driven: bool,
+}
+
 /// A spring and damper of a group.
 #[derive(Debug, Clone)]
 pub(super) struct Link<'a> {
@@ -50,7 +62,7 @@ pub(super) struct Link<'a> {
     pub axial_damping: f64,
 }
 
-/// The groups of a scene: free particles that springs join, directly or through one another; fixed
+/// The groups of a scene: free particles that springs or rods join, directly or through one another; fixed
 /// ones join nothing. Groups are in order of their first particle.
 pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Group<'a>> {
     let fixed = |i: usize| scene.particles[i].fixed;
@@ -59,8 +71,8 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
     };
     let springs: Vec<&Spring> = scene.springs.iter().filter(acts).collect();
     let mut parent: Vec<usize> = (0..scene.particles.len()).collect();
-    for spring in &springs {
-        let [a, b] = spring.ends;
+    let joined = springs.iter().map(|spring| spring.ends);
+    for [a, b] in joined.chain(scene.rods.iter().map(|rod| rod.ends)) {
         if !fixed(a) && !fixed(b) {
             let (a, b) = (root(&mut parent, a), root(&mut parent, b));
             parent[a.max(b)] = a.min(b);
@@ -88,6 +100,7 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
             groups.push(Group {
                 bodies: Vec::new(),
                 links: Vec::new(),
+                rods: Vec::new(),
                 until,
                 size,
             });
@@ -119,6 +132,17 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
                 DampingModel::Axial => spring.damping,
                 DampingModel::Isotropic => 0.0,
             },
+        });
+    }
+    for rod in &scene.rods {
+        let [a, b] = rod.ends;
+        let root = root(&mut parent, if fixed(a) { b } else { a });
+        let group = &mut groups[group_of[root]];
+        let place = |end| group.bodies.binary_search_by_key(&end, |body| body.id).ok();
+        group.rods.push(Held {
+            ends: rod.ends.map(place),
+            at: rod.ends.map(position),
+            driven: rod.ends.iter().any(|end| drive(*end).is_some()),
         });
     }
     groups

@@ -4,7 +4,7 @@
 //! group has one where its forces stay linear: without springs, with springs of rest length 0, or
 //! moving on one line with lengths proven to stay above 0. Its modes are then decoupled, and each is
 //! one scalar equation. With quadratic drag a particle without springs has one on a line; in a magnetic field it goes
-//! round a helix. Forces here are read off the scene, not off the effects' code, so that
+//! round a helix; on a rod to a fixed point it is a pendulum. Forces here are read off the scene, not off the effects' code, so that
 //! either would show a fault in the other.
 
 mod elliptic;
@@ -12,6 +12,7 @@ mod fall;
 mod forced;
 mod group;
 mod helix;
+mod hung;
 mod lengths;
 mod line;
 mod mode;
@@ -29,6 +30,7 @@ use crate::scene::{Drive, Scene};
 use fall::Fall;
 use group::{Body, Group, groups};
 use helix::Helix;
+use hung::Hung;
 use nalgebra::Vector3;
 use part::GroupMotion;
 
@@ -109,11 +111,15 @@ enum Part {
     Modes(Box<GroupMotion>),
     Fall(Fall),
     Helix(Helix),
+    Hung(Box<Hung>),
 }
 
 impl Part {
     /// The group's motion, if it has a closed form.
     fn of(group: &Group) -> Option<Self> {
+        if !group.rods.is_empty() {
+            return Hung::of(group).map(Box::new).map(Self::Hung);
+        }
         let squared = group.bodies.iter().any(|body| body.quadratic != 0.0);
         let turned = |body: &Body| body.turning != Vector3::zeros();
         match (squared, group.bodies.iter().any(turned)) {
@@ -130,6 +136,7 @@ impl Part {
             Self::Modes(motion) => [&motion.method, &motion.reason],
             Self::Fall(_) => [fall::METHOD, fall::REASON],
             Self::Helix(helix) => helix.words(),
+            Self::Hung(_) => [hung::METHOD, hung::REASON],
         }
     }
 
@@ -138,6 +145,7 @@ impl Part {
             Self::Modes(motion) => motion.add(t, x, v),
             Self::Fall(fall) => fall.add(t, x, v),
             Self::Helix(helix) => helix.add(t, x, v),
+            Self::Hung(hung) => hung.put(t, x, v),
         }
     }
 
@@ -146,6 +154,7 @@ impl Part {
             Self::Modes(motion) => motion.error_bar(t),
             Self::Fall(fall) => fall.error_bar(t),
             Self::Helix(helix) => helix.error_bar(t),
+            Self::Hung(hung) => hung.error_bar(t),
         }
     }
 }

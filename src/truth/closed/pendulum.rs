@@ -9,8 +9,7 @@ use nalgebra::Vector3;
 ///
 /// q'' = -w² sin q with w² = g / l has q = 2 asin(k sn(w t + u0, k)) where it swings, with
 /// k² = sin²(q0 / 2) + (q0' / 2w)², and q = 2 am(k w t + u0, 1/k) where it goes round. Not to be
-/// confused with the spring pendulum, which has no closed form. No scene is given this form: scenes
-/// have no rods.
+/// confused with the spring pendulum, which has no closed form.
 #[derive(Debug, Clone)]
 pub struct Pendulum {
     pivot: Vector3<f64>,

@@ -5,6 +5,7 @@ use super::mesh::Mesh;
 use super::rate::scatter;
 use super::reference::STEPS;
 use super::stepper::Precise;
+use crate::physics::constraints::Rods;
 use crate::physics::{Power, System};
 use std::cell::RefCell;
 
@@ -159,6 +160,9 @@ impl System for Noisy<'_> {
             *a = self.off(*a);
         }
         power
+    }
+    fn rods(&self) -> Option<&Rods> {
+        self.system.rods()
     }
     fn place(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
         self.system.place(t, x, v);

@@ -23,6 +23,9 @@ const WORTHWHILE: f64 = 1.4;
 /// It also ends when they shrink by less than this twice in a row: what is left is of order 2 or less.
 const SMOOTH: f64 = 4.0;
 
+/// A motion on rods that ends before its time in so many levels does so whatever the steps.
+const MOST_OVER: u32 = 5;
+
 /// Halvings of single steps may go on this many times without bringing the estimates closer: a
 /// collision has to be resolved first.
 const MOST_IDLE: u32 = 16;
@@ -86,6 +89,7 @@ pub(super) fn halve(
     let mut mesh = Mesh::uniform(until, pieces, most);
     let mut all = true;
     let mut progress = Progress::default();
+    let mut over = 0;
     let mut spent = 0_u64;
     let mut coarser: Option<Level> = None;
     let mut best: Option<Level> = None;
@@ -102,6 +106,8 @@ pub(super) fn halve(
         let (next, next_all) = level.halved(size, most);
         mesh = next;
         let agreed = level.gap() <= target;
+        // Rods that depend on each other end a motion, and no smaller steps lead past that.
+        over += u32::from(system.rods().is_some() && level.ends_early());
         let shrunk = best
             .as_ref()
             .map(|best| best.shrunk_to(&level, target, size));
@@ -110,6 +116,9 @@ pub(super) fn halve(
         }
         if agreed {
             break StopReason::Agreed;
+        }
+        if over == MOST_OVER {
+            break StopReason::Stalled;
         }
         if shrunk.is_some_and(|factor| progress.is_over(factor, all)) {
             break StopReason::Stalled;

@@ -134,6 +134,11 @@ impl Level {
         distances.filter(|d| d.is_finite()).fold(0.0, f64::max)
     }
 
+    /// Whether the first estimate leaves the finite numbers before the end.
+    pub fn ends_early(&self) -> bool {
+        !self.first.x.last().is_none_or(|x| x.is_finite())
+    }
+
     /// Number of steps of the reference.
     pub fn steps(&self) -> u64 {
         self.mesh.pieces() as u64 * u64::from(STEPS)

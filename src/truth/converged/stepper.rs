@@ -129,7 +129,27 @@ pub(super) fn through<S: Stepper>(
     let ahead = jumps[jumps.partition_point(|jump| *jump <= t)..].iter();
     for &jump in ahead.take_while(|jump| **jump < t + h) {
         stepper.step(system, from, jump - from, state);
+        keep(system, jump, state);
         (from, left) = (jump, t + h - jump);
     }
     stepper.step(system, from, left, state);
+    keep(system, t + h, state);
+}
+
+/// Moves a state at time `t` onto the rods, if there are any; where that cannot be done it is NaN from here on.
+fn keep(system: &dyn System, t: f64, state: &mut Precise) {
+    let Some(rods) = system.rods() else {
+        return;
+    };
+    let (mut x, mut v) = (state.x.clone(), state.v.clone());
+    system.place(t, &mut x, &mut v);
+    if rods.project(&mut x, &mut v).is_err() {
+        state.x.fill(f64::NAN);
+        return;
+    }
+    for (at, inverse_mass) in system.inverse_mass().iter().enumerate() {
+        if *inverse_mass > 0.0 {
+            state.add(at, x[at] - state.x[at], v[at] - state.v[at]);
+        }
+    }
 }

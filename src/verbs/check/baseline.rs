@@ -58,6 +58,8 @@ const KEPT: &[&str] = &[
     "velocity_error_m_s.",
     "energy.",
     "momentum.",
+    "strain.largest",
+    "strain.met",
     "work.",
     "identified.method",
     "identified.substeps",

@@ -4,6 +4,7 @@
 use super::Gate;
 use super::laws::CLAIMED_ORDER;
 use crate::measure::{Check, CheckStatus};
+use crate::physics::ParticleSystem;
 use crate::solvers::{Solver, Status};
 use crate::trajectory::SaveError;
 use crate::truth::TruthKind;
@@ -64,12 +65,12 @@ pub(super) fn orders(
     let bar = report.header.truth.error_bound_m.unwrap_or(0.0);
     let check = |(claim, _): &(&Claim, Solver)| {
         let errors = [h, 0.5 * h, 0.25 * h].map(|h| error(&claim.name, h));
-        order(claim, errors, bar, gate.plan.is_damped())
+        order(claim, errors, bar, &gate.plan.system)
     };
     Ok(claims.iter().map(check).collect())
 }
 
-fn order(claim: &Claim, errors: [Option<f64>; 3], bar: f64, damped: bool) -> Check {
+fn order(claim: &Claim, errors: [Option<f64>; 3], bar: f64, system: &ParticleSystem) -> Check {
     let with = |status, message: String| CLAIMED_ORDER.with(&claim.name, status, message);
     let [Some(a), Some(b), Some(c)] = errors else {
         let message = "it did not run at h, h/2 and h/4".to_owned();
@@ -92,10 +93,7 @@ fn order(claim: &Claim, errors: [Option<f64>; 3], bar: f64, damped: bool) -> Che
         );
         return with(CheckStatus::Skip, message);
     };
-    let stated = match damped {
-        true => method.order_damped,
-        false => method.order,
-    };
+    let stated = method.order_on(system);
     let least = f64::from(stated) - TOLERANCE;
     let holds = slopes[1] >= least;
     let message = format!(

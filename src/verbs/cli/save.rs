@@ -21,7 +21,8 @@ pub enum FileKind {
 pub enum Column {
     /// What holds each fixed particle, N: `rx,ry,rz`, or `reaction` (T,N,3).
     Reaction,
-    /// How much each spring pulls, N: a file `.tension.csv` of `t,id,tension`, or `tension` (T,M).
+    /// How much each spring pulls, N: a file `.tension.csv` of `t,id,tension`, or `tension` (T,M). Of rods, where there
+    /// are some, `.rod_tension.csv` and `rod_tension` (T,R).
     Tension,
 }
 
@@ -36,6 +37,16 @@ pub struct Files {
     pub statics: Statics,
     /// The number of springs.
     pub springs: usize,
+    /// The number of rods.
+    pub rods: usize,
+}
+
+/// What one column stands for: springs, and rods.
+#[derive(Debug, Clone, Copy)]
+enum Quantity {
+    Reaction,
+    Spring,
+    Rod,
 }
 
 impl Files {
@@ -58,15 +69,21 @@ impl Files {
                 let target = path("csv")?;
                 let file = target.begin()?;
                 let states = if asked(Column::Reaction) {
-                    let reaction = self.values(Column::Reaction);
+                    let reaction = self.values(Quantity::Reaction);
                     CsvWriter::with(file, ["rx", "ry", "rz"], reaction, rows, *timestep)
                 } else {
                     CsvWriter::new(file, *steps, self.every, *timestep)
                 };
                 let mut files = vec![(states, target)];
-                if asked(Column::Tension) {
-                    let target = path("tension.csv")?;
-                    let (file, tension) = (target.begin()?, self.values(Column::Tension));
+                for (quantity, extension, members) in [
+                    (Quantity::Spring, "tension.csv", self.springs),
+                    (Quantity::Rod, "rod_tension.csv", self.rods),
+                ] {
+                    if !asked(Column::Tension) || self.leaves_out(quantity, members) {
+                        continue;
+                    }
+                    let target = path(extension)?;
+                    let (file, tension) = (target.begin()?, self.values(quantity));
                     let tensions = CsvWriter::alone(file, "tension", tension, rows, *timestep);
                     files.push((tensions, target));
                 }
@@ -82,13 +99,20 @@ impl Files {
                 let file = target.begin()?;
                 let scratch = [tempfile::tempfile()?, tempfile::tempfile()?];
                 let mut writer = NpzWriter::new(scratch, *particles, *steps, self.every, *timestep);
-                for (column, name, shape) in [
-                    (Column::Reaction, "reaction", vec![*particles as u64, 3]),
-                    (Column::Tension, "tension", vec![self.springs as u64]),
+                let [springs, rods] = [self.springs, self.rods].map(|members| members as u64);
+                for (column, quantity, name, shape) in [
+                    (
+                        Column::Reaction,
+                        Quantity::Reaction,
+                        "reaction",
+                        vec![*particles as u64, 3],
+                    ),
+                    (Column::Tension, Quantity::Spring, "tension", vec![springs]),
+                    (Column::Tension, Quantity::Rod, "rod_tension", vec![rods]),
                 ] {
-                    if asked(column) {
+                    if asked(column) && !self.leaves_out(quantity, shape[0] as usize) {
                         let scratch = tempfile::tempfile()?;
-                        writer = writer.with(name, shape, self.values(column), scratch);
+                        writer = writer.with(name, shape, self.values(quantity), scratch);
                     }
                 }
                 Ok(Box::new(Saving {
@@ -100,11 +124,17 @@ impl Files {
         }
     }
 
-    fn values(&self, column: Column) -> Values {
+    /// Whether a quantity of so many members is not written: rods are only where there are some.
+    fn leaves_out(&self, quantity: Quantity, members: usize) -> bool {
+        matches!(quantity, Quantity::Rod) && members == 0
+    }
+
+    fn values(&self, quantity: Quantity) -> Values {
         let statics = self.statics.clone();
-        Box::new(move |state| match column {
-            Column::Reaction => statics.reactions(state),
-            Column::Tension => statics.tensions(state),
+        Box::new(move |state| match quantity {
+            Quantity::Reaction => statics.reactions(state),
+            Quantity::Spring => statics.tensions(state),
+            Quantity::Rod => statics.rod_tensions(state),
         })
     }
 }

@@ -136,7 +136,7 @@ impl<'a> Setup<'a> {
         let balance = |k: usize| {
             let (x, v) = (states.x(k), states.v(k));
             let energy = self.system.kinetic(v) + self.system.potential(t[k], x);
-            energy + work[k].dissipated - work[k].injected
+            work[k].balance(energy)
         };
         let start = (!t.is_empty()).then(|| balance(0))?;
         let errors = (1..t.len()).map(|k| (balance(k) - start).abs());

@@ -4,7 +4,7 @@
 use super::CostChoice;
 use crate::integrators::Stable;
 use crate::measure::stability::{Effort, Limit, Linearised};
-use crate::physics::{ParticleSystem, System};
+use crate::physics::ParticleSystem;
 use crate::report::words;
 use crate::scene::{Scene, limits};
 use crate::solvers::{Setting, Solver, SolverKind};
@@ -99,11 +99,23 @@ pub fn plan(scene: &Scene, system: &ParticleSystem, choice: &CostChoice) -> Vec<
     let timesteps = choice.timesteps.as_deref();
     let is_swept = |solver: &&Solver| timesteps.is_none() || solver.as_pair().is_none();
     let solvers: Vec<&Solver> = choice.solvers.iter().filter(is_swept).collect();
-    let budget = choice.budget_s / solvers.len().max(1) as f64;
+    let own = Setting::step(scene.solver.timestep);
+    let runs = |solver: &Solver| solver.start(scene, system, &own).is_ok();
+    let running = solvers.iter().filter(|solver| runs(solver)).count();
+    let budget = choice.budget_s / running.max(1) as f64;
     let start = ParticleSystem::initial_state(scene);
     let linearised = Linearised::new(system, &start, Effort::BRIEF);
     let sweep = |solver: &Solver| {
         let coarsest = coarsest(scene, &linearised, solver);
+        if timesteps.is_none() && !runs(solver) {
+            return Sweep {
+                order: solver.order(system),
+                solver: solver.clone(),
+                settings: vec![coarsest],
+                each: 0.0,
+                share: None,
+            };
+        }
         let each = step_cost(scene, system, solver, &coarsest);
         let coarsest = afforded(scene, &linearised, solver, coarsest, each, budget);
         let count = choice.settings;
@@ -113,7 +125,7 @@ pub fn plan(scene: &Scene, system: &ParticleSystem, choice: &CostChoice) -> Vec<
             (None, None) => spaced(scene, &coarsest, each, count, budget),
         };
         Sweep {
-            order: solver.order(system.kinds().depends_on_velocity()),
+            order: solver.order(system),
             solver: solver.clone(),
             settings,
             each,
@@ -356,6 +368,8 @@ const PARTICLE: f64 = 4.0;
 const CALL: f64 = 35.0;
 const EVALUATION: f64 = 4.0;
 const SPRING: f64 = 10.0;
+/// Each rod in an evaluation, and as much again for a step: a factor, a few solves.
+const ROD: f64 = 300.0;
 /// A linear solve of n free particles: n^1.5 of the first while it is small and dense, else n of the second.
 const DENSE: f64 = 280.0;
 const SPARSE: f64 = 2_500.0;
@@ -387,10 +401,12 @@ fn step_cost(scene: &Scene, system: &ParticleSystem, solver: &Solver, setting: &
     let each = |count: Option<u64>| count.unwrap_or(0) as f64 / run.taken().max(1) as f64;
     let (pairs, hinges) = (scene.gravitational.len() as f64, scene.bending.len() as f64);
     let like_springs = springs + 2.0 * pairs + 8.0 * hinges;
-    let evaluation = CALL + EVALUATION * particles + SPRING * like_springs;
+    let rods = ROD * scene.rods.len() as f64;
+    let evaluation = CALL + EVALUATION * particles + SPRING * like_springs + rods;
     let free = scene.particles.iter().filter(|p| !p.fixed).count() as f64;
     let solve = (DENSE * free.powf(1.5)).min(SPARSE * free);
     STEP + PARTICLE * particles
+        + rods
         + evaluation * each(counts.all_force_passes())
         + solve * each(counts.linear_solves)
 }

@@ -1,10 +1,10 @@
-//! `springcheck explain ID` says what an id means: a check, an integrator, an engine, an effect, a mistake, a scheme, a
-//! word of the energy column.
+//! `springcheck explain ID` says what an id means: a check, an integrator, an engine, an effect, a constraint, a mistake, a
+//! scheme, a word of the energy column.
 
 use crate::integrators::{self, Method, Stable};
 use crate::measure::Behaviour;
 use crate::measure::identify::MISTAKES;
-use crate::physics::effects;
+use crate::physics::{ForceKinds, constraints, effects};
 use crate::report::terminal::wrap;
 use crate::scene::words::nearest;
 use crate::solvers::catalogue;
@@ -16,7 +16,8 @@ use std::process::ExitCode;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The id of a check, an integrator or another scheme, an engine, an effect or a mistake; a word such as `bounded`.
+    /// The id of a check, an integrator or another scheme, an engine, an effect, a constraint or a mistake; a word
+    /// such as `bounded`.
     #[arg(value_name = "ID")]
     id: String,
 }
@@ -29,8 +30,8 @@ pub fn explain(args: &Args) -> anyhow::Result<ExitCode> {
         match nearest(id, &known) {
             Some(near) => bail!("unknown id `{id}`: did you mean `{near}`?"),
             None => bail!(
-                "unknown id `{id}`: `list checks`, `list integrators`, `list engines`, `list effects` and \
-                           `list mistakes` show what there is"
+                "unknown id `{id}`: `list checks`, `list integrators`, `list engines`, `list effects`, \
+                           `list constraints` and `list mistakes` show what there is"
             ),
         }
     };
@@ -70,6 +71,7 @@ fn facts(id: &str) -> Option<(&'static str, Facts)> {
             (order, damped) => format!("{order}; {damped} with dampers or drag"),
         };
         facts.push(("order", order));
+        facts.push(("on rods", on_rods(method)));
         facts.push((
             "stable for z = h times the angular frequency",
             stable(method),
@@ -82,6 +84,12 @@ fn facts(id: &str) -> Option<(&'static str, Facts)> {
     if let Some(row) = effects::REGISTRY.iter().find(|row| row.id == id) {
         return Some((
             "an effect",
+            owned(&[("what", row.summary), ("formula", row.source)]),
+        ));
+    }
+    if let Some(row) = constraints::REGISTRY.iter().find(|row| row.id == id) {
+        return Some((
+            "a constraint",
             owned(&[("what", row.summary), ("formula", row.source)]),
         ));
     }
@@ -99,6 +107,20 @@ fn facts(id: &str) -> Option<(&'static str, Facts)> {
     }
     let mistake = MISTAKES.iter().find(|mistake| mistake.id == id)?;
     Some(("a known mistake", owned(&[("what is wrong", mistake.says)])))
+}
+
+/// What a method is where there are rods.
+fn on_rods(method: &Method) -> String {
+    if !method.takes().has(ForceKinds::CONSTRAINED) {
+        return "refused; `rattle` takes them".to_owned();
+    }
+    match method.under(ForceKinds::CONSTRAINED) {
+        of if of.order == of.order_damped => format!("order {}", of.order),
+        of => format!(
+            "order {}; {} with dampers or drag, and where they are not stabilised by `project`",
+            of.order, of.order_damped
+        ),
+    }
 }
 
 /// Where an integrator is stable on an undamped oscillator.
@@ -125,6 +147,7 @@ fn known() -> Vec<&'static str> {
     let methods = integrators::REGISTRY.iter().map(|method| method.id);
     let engines = crate::solvers::rapier::IDS.into_iter();
     let effects = effects::REGISTRY.iter().map(|row| row.id);
+    let constraints = constraints::REGISTRY.iter().map(|row| row.id);
     let mistakes = MISTAKES.iter().map(|mistake| mistake.id);
     let checks = check::ids().into_iter();
     let schemes = scheme::ids().into_iter();
@@ -135,6 +158,7 @@ fn known() -> Vec<&'static str> {
         .chain(methods)
         .chain(engines)
         .chain(effects)
+        .chain(constraints)
         .chain(mistakes)
         .collect()
 }

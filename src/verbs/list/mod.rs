@@ -1,9 +1,9 @@
-//! `springcheck list integrators|effects|engines|mistakes|checks`
+//! `springcheck list integrators|effects|constraints|engines|mistakes|checks`
 
 use crate::integrators::adaptive::ErrorEstimate;
 use crate::integrators::{self, EnergyLaw, Method, PerStep, Stable};
 use crate::measure::identify::{MISTAKES, Mistake, Wrong};
-use crate::physics::effects;
+use crate::physics::{constraints, effects};
 use crate::solvers::SolverKind;
 use crate::solvers::catalogue;
 use crate::verbs::check;
@@ -22,6 +22,7 @@ pub struct Args {
 enum What {
     Integrators,
     Effects,
+    Constraints,
     Engines,
     /// Wrong integrators that `compare` knows by name.
     Mistakes,
@@ -40,6 +41,14 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
             let rows = effects::REGISTRY.iter();
             table(
                 &["effect", "what", "formula"],
+                rows.map(|row| vec![row.id.into(), row.summary.into(), row.source.into()]),
+            )
+            .to_string()
+        }
+        What::Constraints => {
+            let rows = constraints::REGISTRY.iter();
+            table(
+                &["constraint", "what", "formula"],
                 rows.map(|row| vec![row.id.into(), row.summary.into(), row.source.into()]),
             )
             .to_string()
@@ -141,7 +150,7 @@ fn pair_table() -> Table {
 fn meant(mistake: &Mistake) -> &'static str {
     match mistake.wrong {
         Wrong::Step { meant, .. } => meant,
-        Wrong::Physics(_) | Wrong::Scaled | Wrong::Length(_) | Wrong::Applied(_) => "any",
+        _ => "any",
     }
 }
 

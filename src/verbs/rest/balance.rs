@@ -1,9 +1,9 @@
 //! The rest of one scene, with all that is said of it.
 
 use crate::measure::rest::{self, Mode, Modes, Rest, RestError};
-use crate::measure::{Reaction, Statics};
+use crate::measure::{Reaction, Statics, Strain};
 use crate::physics::{ForceKinds, ParticleSystem, State};
-use crate::report::words::listed;
+use crate::report::words::{self, listed};
 use crate::scene::Scene;
 use crate::verbs::rest::{Balance, Moved, Oscillation, Pull};
 
@@ -26,9 +26,18 @@ pub fn find(scene: &Scene) -> Result<(Rest, Balance), RestError> {
     let tensions = statics.tensions(&state).into_iter().enumerate();
     let tensions = tensions.map(|(spring, tension_n)| Pull {
         tension_n,
-        spring,
+        spring: Some(spring),
+        rod: None,
         particles: held.springs[spring].ends,
     });
+    let rods = statics.rod_tensions(&state).into_iter().enumerate();
+    let rods = rods.map(|(rod, tension_n)| Pull {
+        tension_n,
+        spring: None,
+        rod: Some(rod),
+        particles: held.rods[rod].ends,
+    });
+    let tensions = tensions.chain(rods);
     let finite = tensions.filter(|pull| pull.tension_n.is_finite());
     let order = |a: &Pull, b: &Pull| a.tension_n.total_cmp(&b.tension_n);
     let reactions = statics.reactions(&state);
@@ -43,7 +52,7 @@ pub fn find(scene: &Scene) -> Result<(Rest, Balance), RestError> {
         let energies = [&start.x, &found.x].map(|x| effect.potential(0.0, x));
         (row.id.to_owned(), energies)
     });
-    let modes = rest::modes(&system, &found.x);
+    let modes = rest::modes_of(&held, &found.x);
     let balance = Balance {
         farthest: (distance > MOVED * rest::size(&held)).then_some(Moved { particle, by_m }),
         force_left_n: found.force_left,
@@ -56,7 +65,10 @@ pub fn find(scene: &Scene) -> Result<(Rest, Balance), RestError> {
         free: modes.as_ref().map_or(0, Modes::free),
         counted: modes.as_ref().is_some_and(Modes::counted),
         oscillations: modes.as_ref().map(oscillations).unwrap_or_default(),
-        left_out: left_out(&system, modes.is_none()),
+        left_out: left_out(&system, modes.is_none())
+            .into_iter()
+            .chain(beyond_limit(&held, &found.x))
+            .collect(),
     };
     Ok((found, balance))
 }
@@ -73,6 +85,22 @@ fn oscillations(modes: &Modes) -> Vec<Oscillation> {
         .flat_map(|(which, most)| of(which).take(most))
         .map(oscillation)
         .collect()
+}
+
+/// That the rest leaves out the strain limit, where a spring is beyond it there.
+fn beyond_limit(scene: &Scene, x: &[f64]) -> Option<String> {
+    let strain = Strain::at(scene, x)?;
+    let (most, limit) = (
+        words::percent(strain.largest?),
+        words::percent(strain.ratio),
+    );
+    (!strain.met).then(|| {
+        format!(
+            "the strain limit of {limit} is left out: spring {} is at {most} here, so that the limit holds the scene \
+             elsewhere",
+            strain.spring
+        )
+    })
 }
 
 /// What oscillations of this system leave out.

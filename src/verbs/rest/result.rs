@@ -56,7 +56,7 @@ pub struct Balance {
     pub newton_iterations: u64,
     /// The potential energy of each effect at the start and at rest, J.
     pub potential_j: BTreeMap<String, [f64; 2]>,
-    /// The largest pull of a spring; null without springs.
+    /// The largest pull of a spring or rod; null without any.
     pub tension_max: Option<Pull>,
     /// The smallest: below 0 where a spring pushes.
     pub tension_min: Option<Pull>,
@@ -74,13 +74,17 @@ pub struct Balance {
     pub left_out: Vec<String>,
 }
 
-/// How much a spring pulls on its ends.
+/// How much a spring or a rod pulls on its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Pull {
     /// N; below 0 where it pushes.
     pub tension_n: f64,
-    /// Its place in the scene's list.
-    pub spring: usize,
+    /// Its place in the scene's list of springs; left out for a rod.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spring: Option<usize>,
+    /// Its place in the scene's list of rods; left out for a spring.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rod: Option<usize>,
     /// The ids of its ends.
     pub particles: [usize; 2],
 }

@@ -190,6 +190,7 @@ fn one(
         columns: args.columns.clone(),
         statics: Statics::new(scene),
         springs: scene.springs.len(),
+        rods: scene.rods.len(),
     });
     let saving = files.is_some();
     let terminal = Terminal::new(quiet).saving(files);

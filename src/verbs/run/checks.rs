@@ -49,6 +49,8 @@ fn cost(plan: &Plan) -> u64 {
 pub fn measures_orders(plan: &Plan) -> bool {
     match plan.choice.order {
         Orders::Never => false,
+        // There is no truth, however long one looks.
+        _ if plan.system.strain_limiter().is_some() => false,
         Orders::Always => true,
         Orders::WhereCheap => cost(plan) <= MAX_DEFAULT_COST,
     }

@@ -4,6 +4,7 @@ use super::plan::Plan;
 use super::record::Record;
 use super::truths::Truths;
 use crate::measure::{EnergySeries, TrueStates};
+use crate::physics::System;
 use crate::scene::Scene;
 use crate::scene::object::called;
 use crate::solvers::Status;
@@ -40,6 +41,10 @@ pub fn series(
             energy: energy
                 .as_ref()
                 .map_or_else(Vec::new, |energy| energy.error(scale.unwrap_or(1.0))),
+            rods: plan.system.rods().map_or_else(Vec::new, |rods| {
+                let off = |&k: &usize| rods.residual(trajectory.x(k), &[]).position;
+                instants.iter().map(off).collect()
+            }),
             plot: plotted(scene, || instants.iter().map(|&k| trajectory.x(k))),
             paths: paths(&drawn, plane, || instants.iter().map(|&k| trajectory.x(k))),
         });

@@ -159,6 +159,35 @@ fn plot(report: &Report) -> Option<Chart> {
     }))
 }
 
+/// The error of the rods' lengths over time; what is 0 or below rounding lies on the lower edge.
+fn rods(report: &Report) -> Option<Chart> {
+    let panels = by_timestep(
+        report,
+        |_| Paths::new(),
+        |run| match &run.rods[..] {
+            [] => Paths::new(),
+            off => {
+                let seen: Vec<f64> = off.iter().map(|off| off.max(LEAST_OFF)).collect();
+                over_time(&run.t, &seen)
+            }
+        },
+    )?;
+    let titles = [
+        "length of rods off by, over time",
+        "largest error of a length (m)",
+    ];
+    Some(curves(report, titles, panels, |panel| {
+        let [lo, hi] = panel.shown(1, None);
+        ChartAxis {
+            scale: Scale::Log,
+            range: [lo.max(LEAST_OFF) / 2.0, hi.max(10.0 * LEAST_OFF) * 2.0],
+        }
+    }))
+}
+
+/// The smallest error of a length that is drawn, m.
+const LEAST_OFF: f64 = 1e-17;
+
 /// Energy over time; its truth is the zero line.
 fn energy(report: &Report) -> Option<Chart> {
     let panels = by_timestep(
@@ -315,5 +344,6 @@ fn layer(report: &Report, outcome: &Outcome) -> u8 {
 pub const FIGURES: &[Figure<Report>] = &[
     ("plot.svg", "the curve the scene asks for", plot),
     ("energy.svg", "energy balance over time", energy),
+    ("rods.svg", "error of the rods' lengths over time", rods),
     ("trajectories.svg", "trajectories", trajectories),
 ];

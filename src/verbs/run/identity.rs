@@ -8,6 +8,7 @@ use crate::measure::identify::{
     Deviation, Fault, Found, Question, first_fault, identify, moved_anchor,
 };
 use crate::physics::ParticleSystem;
+use crate::solvers::SolverKind;
 use crate::trajectory::{Rows, Trajectory};
 use std::borrow::Cow;
 
@@ -23,6 +24,10 @@ const OF_FILE: u64 = 20_000_000;
 /// Identifies the scheme of a run by replaying some of its steps; None where the scheme that it should follow takes
 /// more than the budget to replay.
 pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Option<Found> {
+    // What its joints do for rods is no scheme of ours, and to search for one takes longer than the run.
+    if is_joined_for_rods(plan, case) {
+        return Some(Found::default());
+    }
     let budget = budget::of_replays(plan, case);
     // A step is replayed twice, once with every number off by its rounding, and half of the budget is for others.
     let each = 4 * case.replay(plan.scene).max(1);
@@ -33,6 +38,11 @@ pub fn of_run(plan: &Plan, case: &Case, run: &Trajectory) -> Option<Found> {
         ..question(plan, run.rows())
     };
     (FEWEST as u64 * each <= budget).then(|| identify(&question))
+}
+
+/// Whether it is a rapier world whose joints stand for rods.
+pub fn is_joined_for_rods(plan: &Plan, case: &Case) -> bool {
+    case.solver.kind == SolverKind::Rapier && !plan.scene.rods.is_empty()
 }
 
 /// Identifies the scheme of rows by replaying all their steps, and finds the first step that deviates from it.

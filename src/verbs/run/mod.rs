@@ -30,7 +30,6 @@ pub use result::{Curves, Outcome, PlotAxis, RunSeries, TruthCurves, WorkSummary}
 pub(super) use text::{page, view};
 
 use crate::measure::stability::Linearised;
-use crate::physics::System;
 use crate::report::Header;
 use crate::solvers::SolverKind;
 use crate::trajectory::SaveError;
@@ -52,11 +51,6 @@ pub(in crate::verbs) fn linearised(plan: &Plan) -> Option<Linearised> {
 }
 
 impl Plan<'_> {
-    /// Whether forces depend on velocities.
-    pub(in crate::verbs) fn is_damped(&self) -> bool {
-        self.system.kinds().depends_on_velocity()
-    }
-
     /// Runs every case, the truth and the twin proof, and measures the records.
     ///
     /// # Errors

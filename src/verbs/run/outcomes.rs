@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::record::Record;
 use super::truths::Truths;
 use super::{budget, identity, remarks};
-use crate::measure::{self, Deviation, EnergySeries, Statics, TOLERANCE};
+use crate::measure::{self, Deviation, Energy, EnergySeries, Statics, Strain, TOLERANCE};
 use crate::solvers::Status;
 use crate::trajectory::Trajectory;
 use crate::verbs::run::{Outcome, WorkSummary};
@@ -29,7 +29,15 @@ pub fn all(
         let errors = trajectory.and_then(|run| truths.errors(timestep, run));
         let diverged = record.status == Status::Diverged;
         let early = trajectory.is_some() && record.status != Status::Completed;
-        let judged = |series| measure::judge(series, scale, diverged);
+        // Programs do not say what their strain limit takes out.
+        let counted = record.counts.corrections.is_some();
+        let judged = |series| {
+            let energy = measure::judge(series, scale, diverged);
+            Energy {
+                limited_j: energy.limited_j.filter(|_| counted),
+                ..energy
+            }
+        };
         let replayed = trajectory.filter(|_| plan.choice.identify);
         let found = replayed.map(|run| identity::of_run(plan, case, run));
         let unknown = found.as_ref().is_some_and(Option::is_none);
@@ -46,7 +54,10 @@ pub fn all(
             velocity_error_m_s: errors.and_then(|errors| errors.velocity),
             deviation_m: deviations(plan, records, index),
             energy: series.as_ref().map(judged),
+            rods: trajectory.and_then(|run| measure::constrained(&plan.system, run)),
             momentum: trajectory.and_then(|run| measure::momentum(plan.scene, &plan.system, run)),
+            strain: trajectory
+                .and_then(|run| Strain::of(plan.scene, run, record.counts.corrections)),
             loads: statics
                 .as_ref()
                 .zip(trajectory)

@@ -1,5 +1,6 @@
 //! The remarks of an outcome: plain sentences for the rows that need them.
 
+use super::identity::is_joined_for_rods;
 use super::plan::{Case, Plan};
 use crate::integrators::{EnergyLaw, Method, PerStep, Settings, Stable};
 use crate::measure::stability::{Effort, Limit, Linearised, Prediction};
@@ -57,9 +58,46 @@ pub fn remarks(
         }
     }
     remarks.extend(warning);
+    if outcome.status == Status::Completed && is_joined_for_rods(plan, case) {
+        remarks.push(
+            "its rods are spring joints of 1e9 N/m, which rapier's sweeps solve in part: distance from it is no error of \
+             yours"
+                .to_owned(),
+        );
+    }
+    remarks.extend(strain(plan, case, outcome));
     remarks.extend(coarse_drive(plan.scene, case.label.timestep));
     remarks.extend(latent(plan.scene));
     remarks.extend(loosely_solved(plan, case));
+    remarks
+}
+
+/// The remarks that a strain limit is not met, and that a program does not say what its own took.
+fn strain(plan: &Plan, case: &Case, outcome: &Outcome) -> Vec<String> {
+    let Some((strain, limit)) = outcome
+        .strain
+        .as_ref()
+        .zip(plan.scene.strain_limit.as_ref())
+    else {
+        return Vec::new();
+    };
+    let mut remarks = Vec::new();
+    if let Some(most) = strain.largest.filter(|_| !strain.met) {
+        remarks.push(format!(
+            "the strain limit of {} is not met: spring {} is at {} at t = {} s, after {}; take more `iterations`, unless \
+             fixed particles hold it that far apart",
+            words::percent(strain.ratio),
+            strain.spring,
+            words::percent(most),
+            short(strain.t_s),
+            words::plural(limit.iterations as u64, "sweep")
+        ));
+    }
+    if case.solver.as_program().is_some() && outcome.energy.is_some() {
+        remarks.push(
+            "it does not say what its strain limit takes out, which its balance of energy therefore lacks".to_owned(),
+        );
+    }
     remarks
 }
 
@@ -119,7 +157,9 @@ fn why_unstable(plan: &Plan, method: &Method) -> String {
         }
         .to_owned();
     }
-    if kinds.has(ForceKinds::GYROSCOPIC) && !has_springs(plan) {
+    // Its facts are those on springs.
+    let other = kinds.has(ForceKinds::GYROSCOPIC | ForceKinds::CONSTRAINED);
+    if other && !has_springs(plan) {
         return String::new();
     }
     match method.oscillator.stable {
@@ -149,6 +189,7 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<S
     let effects = plan.system.effects();
     let kinds = plan.system.kinds();
     match case.solver.as_method() {
+        Some(method) if kinds.has(ForceKinds::CONSTRAINED) => Some(on_rods(method, class)),
         Some(method) if effects.iter().all(|(row, _)| row.constant) => {
             under_constant_force(method, class)
         }
@@ -156,8 +197,12 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<S
             let damped = kinds.depends_on_velocity();
             // The work of what drives a scene is no part of an oscillator's law.
             let driven = kinds.has(ForceKinds::DRIVEN);
-            let law = by_law(method, class, damped).filter(|_| has_springs(plan) && !driven);
-            law.or_else(|| (damped || driven).then(|| by_balance(method, class, lost)))
+            let limited = plan.system.strain_limiter().is_some();
+            let free = has_springs(plan) && !driven && !limited;
+            let law = by_law(method, class, damped).filter(|_| free);
+            law.or_else(|| {
+                (damped || driven || limited).then(|| by_balance(method, class, lost, limited))
+            })
         }
         None if has_springs(plan) => case.solver.by_design(class == EnergyClass::Growing),
         None => None,
@@ -186,6 +231,15 @@ fn under_constant_force(method: &Method, class: EnergyClass) -> Option<String> {
             energy_change(class)
         )
     })
+}
+
+/// Rods are neither an oscillator nor a constant acceleration: only the order is left.
+fn on_rods(method: &Method, class: EnergyClass) -> String {
+    format!(
+        "{}: on rods its error is of order {}, and a smaller step lessens it",
+        energy_change(class),
+        method.order
+    )
 }
 
 /// The explanation by the method's energy law on an oscillator, where that is the cause.
@@ -218,15 +272,16 @@ fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
 
 /// The explanation by a balance that does not close. It may grow while the energy falls: the work counted for
 /// dampers exceeds what they took.
-fn by_balance(method: &Method, class: EnergyClass, lost: bool) -> String {
+fn by_balance(method: &Method, class: EnergyClass, lost: bool, limited: bool) -> String {
     let does = match class {
         EnergyClass::Growing if lost => "grows, though E itself falls",
         EnergyClass::Growing => "grows",
         EnergyClass::Dissipating => "falls",
         EnergyClass::Drifting | EnergyClass::Bounded => "drifts",
     };
+    let more = if limited { " + limited" } else { "" };
     format!(
-        "the balance E + dissipated - injected {does}: it closes to order {} only, take a smaller \
+        "the balance E + dissipated - injected{more} {does}: it closes to order {} only, take a smaller \
          step",
         method.order_damped
     )

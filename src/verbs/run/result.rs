@@ -2,7 +2,7 @@
 //! figures are drawn from.
 
 use crate::measure::identify::{Explained, Identity};
-use crate::measure::{Deviation, Energy, ErrorSummary, Loads, Momentum};
+use crate::measure::{Constrained, Deviation, Energy, ErrorSummary, Loads, Momentum, Strain};
 use crate::solvers::{Built, SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use schemars::JsonSchema;
@@ -34,8 +34,14 @@ pub struct Outcome {
     pub deviation_m: BTreeMap<String, Deviation>,
     /// Null when nothing was recorded (unsupported) or no velocities are known.
     pub energy: Option<Energy>,
+    /// How far it is off the scene's rods, and how they pull; left out without rods, and where nothing was recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rods: Option<Constrained>,
     /// Null where the scene keeps neither, or nothing was recorded.
     pub momentum: Option<Momentum>,
+    /// The strain of springs; null where the scene has no strain limit, or nothing was recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strain: Option<Strain>,
     /// Tensions of springs and reactions of fixed particles; null where they were not asked for, or velocities are not
     /// known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -97,6 +103,9 @@ pub struct Curves {
     pub t: Vec<f64>,
     /// (B - B(0)) / S, or joules where the scene has no scale; empty where no velocities are known.
     pub energy: Vec<f64>,
+    /// The largest error of a rod's length, m; empty without rods.
+    #[serde(default)]
+    pub rods: Vec<f64>,
     /// The coordinate that `plot` names, m; empty without one.
     pub plot: Vec<f64>,
     /// A few particles' paths projected on [`RunSeries::plane`]: one polyline each.

@@ -63,7 +63,8 @@ fn key(part: &'static Part, row: &'static Row, names: &Names) -> Json {
     if let ValueKind::Number(bounds)
     | ValueKind::Numbers(_, bounds)
     | ValueKind::Table(_, bounds)
-    | ValueKind::Vectors(bounds) = &row.kind
+    | ValueKind::Vectors(bounds)
+    | ValueKind::Count(bounds) = &row.kind
     {
         let [low, high] = [bounds.low, bounds.high].map(short);
         says += &format!(" From {low} to {high} ({}).", bounds.unit);
@@ -135,6 +136,9 @@ fn value(row: &Row, names: &Names) -> Json {
         ValueKind::Id => id(),
         ValueKind::Ids(count) => list(id(), *count, *count),
         ValueKind::Coordinate => json!({"enum": [0, 1, 2]}),
+        ValueKind::Count(bounds) => {
+            json!({"type": "integer", "minimum": bounds.low, "maximum": bounds.high})
+        }
         ValueKind::Flag => json!({"type": "boolean"}),
         ValueKind::Word(words) => json!({"enum": words}),
         ValueKind::Method => json!({"enum": with_aliases(&names.methods, names)}),

@@ -23,6 +23,7 @@ pub struct Drawn {
     /// Particles with their kinds.
     pub particles: Vec<(usize, Kind)>,
     pub springs: Vec<[usize; 2]>,
+    pub rods: Vec<[usize; 2]>,
     pub attractions: Vec<[usize; 2]>,
     pub triangles: Vec<[usize; 3]>,
     /// The middle particles of hinges.
@@ -80,6 +81,7 @@ impl Drawn {
         Self {
             particles: particles.map(|(id, _)| (id, kinds[id])).collect(),
             springs: distinct(scene.springs.iter().map(|spring| pairs(spring.ends))),
+            rods: distinct(scene.rods.iter().map(|rod| pairs(rod.ends))),
             attractions: distinct(scene.gravitational.iter().map(|pair| pairs(pair.ends))),
             triangles: distinct(scene.triangles.iter().map(|t| corners(t.corners))),
             hinges: distinct(scene.bending.iter().map(|hinge| {
@@ -93,7 +95,7 @@ impl Drawn {
     fn bytes(&self) -> usize {
         let particle = |(_, kind): &(usize, Kind)| if *kind == Kind::Free { 15 } else { 90 };
         let particles: usize = self.particles.iter().map(particle).sum();
-        let lines = self.springs.len() + self.attractions.len();
+        let lines = self.springs.len() + self.rods.len() + self.attractions.len();
         particles + 25 * lines + 40 * self.triangles.len() + 15 * self.hinges.len()
     }
 }
@@ -107,10 +109,16 @@ fn kinds(scene: &Scene) -> Vec<Kind> {
         .flat_map(|hinge| hinge.particles)
         .collect();
     let springs = scene.springs.iter().flat_map(|spring| spring.ends);
+    let rods = scene.rods.iter().flat_map(|rod| rod.ends);
     let attractions = scene.gravitational.iter().flat_map(|pair| pair.ends);
     let triangles = scene.triangles.iter().flat_map(|triangle| triangle.corners);
     let others = (0..kinds.len()).filter(|id| !hinged.contains(id));
-    for id in springs.chain(attractions).chain(triangles).chain(others) {
+    for id in springs
+        .chain(rods)
+        .chain(attractions)
+        .chain(triangles)
+        .chain(others)
+    {
         if kinds[id] == Kind::Clamp {
             kinds[id] = Kind::Fixed;
         }

@@ -5,7 +5,7 @@ mod view;
 
 pub use view::{AXIS_TITLES, plane};
 
-use crate::report::svg::palette::{ATTRACTION, BELOW, HINGE, SPRING, TRIANGLES};
+use crate::report::svg::palette::{ATTRACTION, BELOW, HINGE, ROD, SPRING, TRIANGLES};
 use crate::report::svg::{
     Chart, ChartAxis, FAINT, INK, LegendEntry, Look, Mark, Panel, Stroke, Symbol, SymbolShape,
     WHITE, range, shortened,
@@ -102,9 +102,10 @@ pub fn shape(scene: &Scene, places: &[(&str, &[f64])]) -> Chart {
 }
 
 /// The marks of a shape below another; its springs and particles are so many pixels wide.
-fn pale(drawn: &Drawn, at: &[[f64; 2]], [width, dot]: [f64; 2]) -> [Mark; 2] {
+fn pale(drawn: &Drawn, at: &[[f64; 2]], [width, dot]: [f64; 2]) -> [Mark; 3] {
     let particles = drawn.particles.iter().map(|(id, _)| [at[*id]]);
     [
+        segments(Stroke::new(BELOW, "", 2.0 * width), &drawn.rods, at),
         segments(Stroke::new(BELOW, "", width), &drawn.springs, at),
         Mark::Dots(Stroke::new(BELOW, "", dot), finite(particles).concat()),
     ]
@@ -120,6 +121,7 @@ fn full(scene: &Scene, drawn: &Drawn, at: &[[f64; 2]], [width, dot]: [f64; 2]) -
         Mark::Triangles(TRIANGLES, finite(triangles)),
         segments(ATTRACTION, &drawn.attractions, at),
         segments(Stroke { width, ..SPRING }, &drawn.springs, at),
+        segments(rod(width), &drawn.rods, at),
     ];
     // The white rim of a name covers springs, but no particle.
     let named = names(scene, drawn).into_iter();
@@ -135,6 +137,14 @@ fn full(scene: &Scene, drawn: &Drawn, at: &[[f64; 2]], [width, dot]: [f64; 2]) -
     marks
 }
 
+/// The line of a rod, beside springs of this width.
+fn rod(width: f64) -> Stroke {
+    Stroke {
+        width: 2.0 * width,
+        ..ROD
+    }
+}
+
 /// The legend of a shape; `free` is what free particles are called where there is more than one shape.
 fn entries(drawn: &Drawn, width: f64, free: Option<&str>) -> Vec<LegendEntry> {
     let kinds = LOOKS.into_iter();
@@ -148,6 +158,7 @@ fn entries(drawn: &Drawn, width: f64, free: Option<&str>) -> Vec<LegendEntry> {
     // The chart leaves out what has no mark.
     let others = [
         LegendEntry::new("spring", Look::Line(Stroke { width, ..SPRING })),
+        LegendEntry::new("rod", Look::Line(rod(width))),
         LegendEntry::new("attraction", Look::Line(ATTRACTION)),
         LegendEntry::new("triangle", Look::Fill(TRIANGLES)),
     ];

@@ -2,7 +2,7 @@
 
 use super::range::{Range, VaryError};
 use crate::scene::limits::Bounds;
-use crate::scene::model::{PARTICLES, PARTS, Part, Row, ValueKind};
+use crate::scene::model::{PARTICLES, PARTS, Part, RODS, Row, ValueKind};
 use crate::scene::object::called;
 use crate::scene::words::aside;
 use crate::scene::{ObjectNumber, Refusal, Scene, Value};
@@ -34,13 +34,16 @@ struct Members {
 /// Every key of members, for all at once.
 fn keys() -> impl Iterator<Item = Members> {
     let of = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
-    let number = |(part, row): (_, &'static Row)| match row.kind {
-        ValueKind::Number(quantity) if row.flat.is_some() => Some(Members {
-            part,
-            row,
-            quantity,
-            member: None,
-        }),
+    let number = |(part, row): (&'static Part, &'static Row)| match row.kind {
+        // A rod has the length of its start, whatever else varies.
+        ValueKind::Number(quantity) if row.flat.is_some() && part.key != RODS.key => {
+            Some(Members {
+                part,
+                row,
+                quantity,
+                member: None,
+            })
+        }
         _ => None,
     };
     PARTS.into_iter().flat_map(of).filter_map(number)

@@ -50,6 +50,7 @@ pub fn hostile() -> Report {
             .push(outcome(&format!("odd{i}"), SolverKind::External, 0.01));
         let outcome = report.outcomes().len() - 1;
         report.series_mut().curves.push(Curves {
+            rods: Vec::new(),
             outcome,
             t: vec![0.0, f64::MAX],
             energy: values.into(),
@@ -58,6 +59,7 @@ pub fn hostile() -> Report {
         });
     }
     report.series_mut().curves.push(Curves {
+        rods: Vec::new(),
         outcome: 9_999,
         t: vec![],
         energy: vec![],

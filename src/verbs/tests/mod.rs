@@ -106,7 +106,8 @@ fn figures_are_well_formed_and_small() {
         for (file, svg) in report.svg() {
             roxmltree::Document::parse(&svg).unwrap_or_else(|e| panic!("{file}: {e}"));
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{file}");
-            assert!(svg.len() < 300_000, "{file}: {} bytes", svg.len());
+            // Panels of 25 methods take most, some 12 kB each.
+            assert!(svg.len() < 340_000, "{file}: {} bytes", svg.len());
         }
     }
 }

@@ -36,6 +36,7 @@ pub fn oscillator(timesteps: &[f64], duration: f64, engines: usize) -> Report {
             }
             let at = report.outcomes().len();
             report.series_mut().curves.push(Curves {
+                rods: Vec::new(),
                 outcome: at,
                 plot: run.path.iter().map(|p| p[0]).collect(),
                 t: run.t,
@@ -80,6 +81,8 @@ fn judged(run: &Run) -> Energy {
         kinetic_final_j: Some(1.0),
         potential_final_j: BTreeMap::from([("springs".to_owned(), 3.0)]),
         dissipated_j: Some(0.0),
+        projected_j: None,
+        limited_j: None,
         injected_j: Some(0.0),
     }
 }
@@ -146,7 +149,9 @@ pub fn outcome(engine: &str, kind: SolverKind, timestep: f64) -> Outcome {
         deviation_m: BTreeMap::new(),
         energy: None,
         momentum: None,
+        strain: None,
         loads: None,
+        rods: None,
         work: WorkSummary {
             steps: 100,
             force_evaluations: Some(100),
@@ -174,6 +179,7 @@ pub fn empty(name: &str) -> Report {
                 file: format!("scenes/oscillator/{name}.yml"),
                 particles: 2,
                 springs: 1,
+                rods: 0,
                 effects: vec![EffectUse {
                     id: "springs".into(),
                     members: 1,

@@ -1,7 +1,9 @@
 //! Odd but right: what a scene may look like, and what it then means.
 
 use super::{complete, parse, shipped};
-use springcheck::scene::{self, Axis, DampingModel, Expectation, Scene, Scope, Wanted};
+use springcheck::scene::{
+    self, Axis, DampingModel, Expectation, Scene, Scope, Stabilisation, Wanted,
+};
 use springcheck::verbs;
 
 fn accepted(text: &str) -> Scene {
@@ -69,7 +71,8 @@ fn every_key_is_read() {
          {pos: [0, 0, 0], fixed: true, mass: 0.1}, {pos: [0, 0, 1], mass: 1}]\n\
          springs: [{particle_ids: [0, 1], stiffness: 0, cubic: 2, damping: 3, rest_length: 0}]\n\
          gravitational: [{particle_ids: [0, 1], G: -100.}]\nwind: {direction: [0, 3, 4], strength: -2}\n\
-         air: {velocity: [1, 2, 3], density: 4}\ntriangles: [{particle_ids: [2, 1, 0], air_drag: 5}]",
+         air: {velocity: [1, 2, 3], density: 4}\ntriangles: [{particle_ids: [2, 1, 0], air_drag: 5}]\n\
+         rods: [{particle_ids: [2, 1], length: 1}]\nconstraints: {stabilisation: baumgarte, rate: 3}",
     );
     assert_eq!(scene.description.as_deref(), Some("two\nlines\n"));
     assert_eq!((scene.duration, scene.up), (2.0, Axis::Y));
@@ -96,6 +99,12 @@ fn every_key_is_read() {
         (0.0, 0.0)
     );
     assert_eq!(scene.springs[0].cubic, 2.0);
+    assert_eq!((scene.rods[0].ends, scene.rods[0].length), ([2, 1], 1.0));
+    let constraints = scene.constraints.as_ref().unwrap();
+    assert_eq!(
+        (constraints.stabilisation, constraints.rate),
+        (Stabilisation::Baumgarte, 3.0)
+    );
     assert_eq!(scene.gravitational[0].g, -100.0);
     let wind = scene.wind.unwrap();
     assert_eq!((wind.direction, wind.strength), ([0.0, 0.6, 0.8], -2.0));
@@ -268,8 +277,16 @@ fn shipped_scenes_load() {
             scene::read(path, verbs::names()).unwrap_or_else(|error| panic!("{error}"))
         })
         .collect();
-    // The hard ones and those of effects and objects are counted by no one: there will be more.
-    let open = ["/hard/", "/effects/", "/string/", "/hair/", "/cloth/"];
+    // The hard ones and those of effects, objects and constraints are counted by no one: there will be more.
+    let open = [
+        "/hard/",
+        "/effects/",
+        "/string/",
+        "/hair/",
+        "/cloth/",
+        "/rods/",
+        "/strain/",
+    ];
     let open = |s: &&Scene| open.iter().any(|of| s.file.contains(of));
     assert_eq!(scenes.len() - scenes.iter().filter(open).count(), 21);
     for scene in &scenes {

@@ -2,6 +2,7 @@
 
 mod accepted;
 mod refused;
+mod rods;
 mod schema;
 mod table;
 mod upset;
@@ -28,6 +29,9 @@ static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
     methods: METHODS.to_vec(),
     ..verbs::names().clone()
 });
+
+/// What a row of bad input is, its text with `»` at the place of the error, and what the message must say.
+type Row = (&'static str, &'static str, &'static [&'static str]);
 
 fn parse(text: &str) -> Result<Scene, SceneError> {
     scene::parse(text.as_bytes(), "scenes/test.yml", &NAMES)

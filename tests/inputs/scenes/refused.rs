@@ -1,11 +1,9 @@
 //! Bad scenes, each with the exact place of its error. `»` marks the place and is taken out before
 //! parsing; the last column is what the message must say.
 
-use super::{NAMES, complete, parse};
+use super::{NAMES, Row, complete, parse, rods};
 use springcheck::scene::{self, SceneError, limits};
 use std::time::{Duration, Instant};
-
-type Row = (&'static str, &'static str, &'static [&'static str]);
 
 /// Completed with a solver and two particles, 0 fixed and 1 free, where the row has none.
 #[rustfmt::skip]
@@ -19,10 +17,8 @@ const PARTS: &[Row] = &[
     ("duplicate", "duration: 5\nname: a\n»duration: 6", &["duration", "given twice"]),
     ("duplicate inside", "springs:\n- particle_ids: [0, 1]\n  stiffness: 1\n  »stiffness: 2", &["springs[0].stiffness", "given twice"]),
     ("merge", "plot:\n  »<<: {dof: 1}\n  particle_id: 0", &["plot", "merge keys", "alias a whole value"]),
-    ("later", "springs: []\n»rods: []", &["rods", "not supported yet"]),
+    ("later", "springs: []\n»colliders: []", &["colliders", "not supported yet"]),
     ("later, colliders", "»colliders: []", &["not supported yet"]),
-    ("later, rods", "»rods: []", &["not supported yet"]),
-    ("later, strain", "»strain_limit: 0.1", &["not supported yet"]),
     ("moving air under wind", "wind: {direction: [1, 0, 0], »density: 3}", &["wind", "unknown key `density`", "`density` stands under `air`"]),
     ("later, profile", "wind: {direction: [1, 0, 0], »profile: log}", &["wind.profile", "not supported yet"]),
     ("list as key", "»[1, 2]: 3", &["expected a key, found a list"]),
@@ -34,7 +30,7 @@ const PARTS: &[Row] = &[
     ("object, unknown kind", "objects: [{»rope: {}}]", &["objects[0]", "unknown key `rope`", "string, chain, hair, cloth, net, lattice"]),
     ("object, of no kind", "objects: [»{}]", &["objects[0]", "expected one of string, chain, hair"]),
     ("object, of two kinds", "objects:\n- »string:\n    {from: [0, 0, 0], to: [1, 0, 0], particles: 3, mass: 1, stiffness: 3}\n  chain: {from: [0, 0, 0], to: [1, 0, 0], particles: 3, mass: 1, stiffness: 3}", &["objects[0]", "expected one of string, chain, hair"]),
-    ("object, a key missing", "objects:\n- string:\n    »from: [0, 0, 0]\n    to: [1, 0, 0]\n    particles: 3\n    mass: 1", &["objects[0].string.stiffness", "missing"]),
+    ("object, a key missing", "objects:\n- string:\n    »from: [0, 0, 0]\n    to: [1, 0, 0]\n    particles: 3\n    mass: 1", &["objects[0].string", "expected one of `stiffness` and `structural`, found neither"]),
     ("object, a key misspelt", "objects:\n- string:\n    from: [0, 0, 0]\n    to: [1, 0, 0]\n    particles: 3\n    mass: 1\n    »stifness: 3", &["objects[0].string", "unknown key `stifness`", "did you mean `stiffness`?"]),
     ("object, a word misspelt", "objects:\n- string:\n    from: [0, 0, 0]\n    to: [1, 0, 0]\n    particles: 3\n    mass: 1\n    stiffness: 3\n    scaling: »contin", &["objects[0].string.scaling", "expected one of continuum, none, found `contin`"]),
     ("object, a text for a number", "objects:\n- string:\n    from: [0, 0, 0]\n    to: [1, 0, 0]\n    particles: 3\n    mass: »\"1\"\n    stiffness: 3", &["objects[0].string.mass", "expected a number"]),
@@ -214,6 +210,14 @@ const PARTS: &[Row] = &[
     ("triangle with a corner twice", "triangles: [{particle_ids: »[0, 1, 0], air_drag: 1}]", &["triangles[0].particle_ids", "three different particles, found 0 twice"]),
     ("triangle without an area", "particles: [{pos: [0, 0, 0], mass: 1}, {pos: [0.1, 0.2, 0.3], mass: 1}, {pos: [0.3, 0.6, 0.9], mass: 1}]\ntriangles: [{particle_ids: »[0, 1, 2], air_drag: 1}]", &["triangles[0].particle_ids", "three corners apart, found them on one line", "needs an area"]),
     ("triangle with two corners in one place", "particles: [{pos: [0, 0, 0], mass: 1}, {pos: [1, 0, 0], mass: 1}, {pos: [0, 0, 0], mass: 1}]\ntriangles: [{particle_ids: »[0, 1, 2], air_drag: 1}]", &["triangles[0].particle_ids", "three corners apart, found 0 and 2 in one place", "needs an area"]),
+    ("strain limit as a number", "strain_limit: »0.1", &["strain_limit", "expected a mapping such as {ratio: 0.1}"]),
+    ("strain limit negative", "strain_limit: {ratio: »-0.1}", &["strain_limit.ratio", "at least 0 (a part of the rest length), found -0.1"]),
+    ("strain limit of NaN", "strain_limit: {ratio: ».nan}", &["strain_limit.ratio", "finite number (a part of the rest length)"]),
+    ("strain limit without sweeps", "strain_limit: {iterations: »0}", &["strain_limit.iterations", "a positive number (sweeps), found 0"]),
+    ("strain limit of half a sweep", "strain_limit: {iterations: »2.5}", &["strain_limit.iterations", "expected a whole number, found 2.5"]),
+    ("strain limit of too many sweeps", "strain_limit: {iterations: »2000000}", &["strain_limit.iterations", "at most 1e6 (sweeps)"]),
+    ("compression as a number", "strain_limit: {also_compression: »1}", &["strain_limit.also_compression", "expected true or false"]),
+    ("strain limit with an unknown key", "strain_limit: {»limit: 0.1}", &["strain_limit", "unknown key `limit`"]),
     ("field without numbers", "magnetic: »{}", &["magnetic.field", "missing", "in tesla"]),
     ("field of two", "magnetic: {field: »[0, 1]}", &["magnetic.field", "a list of 3 numbers, found 2"]),
     ("field as a number", "magnetic: {field: »3}", &["magnetic.field", "a list of 3 numbers"]),
@@ -330,6 +334,7 @@ fn judge(rows: &[Row], prepare: impl Fn(&str) -> String) {
 #[test]
 fn bad_parts_are_refused_at_their_place() {
     judge(PARTS, complete);
+    judge(rods::REFUSED, complete);
 }
 
 #[test]

@@ -5,7 +5,9 @@ use super::{NAMES, parse};
 use crate::testkit::all_effects;
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::model::{Absent, PARTS, Part, Row, SCENE, ValueKind};
-use springcheck::scene::{DampingModel, Driven, Knots, Plot, Scene, Sine, Value};
+use springcheck::scene::{
+    Constraints, DampingModel, Driven, Knots, Plot, Rod, Scene, Sine, StrainLimit, Value,
+};
 use springcheck::solvers::external::{Flat, Task};
 use springcheck::truth::converged::key;
 use springcheck::verbs::stability::Vary;
@@ -43,6 +45,9 @@ fn full() -> Scene {
         table: Some(Knots(vec![[0.0; 4], [1.0; 4]])),
         ..Driven::default()
     });
+    scene.rods.push(Rod::default());
+    scene.strain_limit = Some(StrainLimit::default());
+    scene.constraints = Some(Constraints::default());
     for part in PARTS {
         assert!((part.count)(&scene) > 0, "{}: no member", part.key);
     }
@@ -120,12 +125,15 @@ fn a_change_is_seen_by_whatever_depends_on_it() {
             let moves = row.flat.is_some();
             assert_eq!(key(&scene, 5.0) != key(&original, 5.0), moves, "{title}");
             let name = row.flat.map(|name| match part.key {
-                "springs" | "bending" | "gravitational" | "triangles" => {
+                "springs" | "rods" | "bending" | "gravitational" | "triangles" => {
                     format!("{}.{name}", part.key)
                 }
                 "driven" | "driven.sine" => format!("driven.{name}"),
                 _ => name.to_owned(),
             });
+            // Programs get it though no truth depends on it.
+            let limit = (part.key == "strain_limit").then_some(title.clone());
+            let name = name.or(limit);
             let found = differences(&flat(&scene), &flat(&original));
             assert_eq!(found, Vec::from_iter(name), "{title}");
 
@@ -145,7 +153,9 @@ fn every_number_that_moves_something_can_be_varied() {
     for (part, row) in rows().filter(|(_, row)| !matches!(row.kind, ValueKind::Vectors(_))) {
         let id = part.path(None, row.key);
         let vary = Vary::parse(&format!("{id}=0.25..0.5:2"), &scene);
-        let number = matches!(row.kind, ValueKind::Number(_)) && row.flat.is_some();
+        // A rod has the length of its start.
+        let number =
+            matches!(row.kind, ValueKind::Number(_)) && row.flat.is_some() && part.key != "rods";
         assert_eq!(vary.is_ok(), number, "{id}");
         if let Ok(vary) = vary {
             let varied = vary.apply(&scene, 0.5).expect(&id);
@@ -160,8 +170,11 @@ fn every_number_that_moves_something_can_be_varied() {
 }
 
 /// The keys a scene has to have, with one member of every part, in the order of [`PARTS`].
-const REQUIRED: [(&str, &[(&str, &str)]); 13] = [
+const REQUIRED: [(&str, &[(&str, &str)]); 16] = [
     ("springs", &[("particle_ids", "[0, 1]"), ("stiffness", "1")]),
+    ("rods", &[("particle_ids", "[0, 1]")]),
+    ("constraints", &[]),
+    ("strain_limit", &[]),
     (
         "bending",
         &[("particle_ids", "[0, 1, 2]"), ("stiffness", "1")],
@@ -207,6 +220,8 @@ fn written(changed: Option<(&Part, &Row, &str)>) -> String {
                 "particles: [{{pos: [0, 0, 1], mass: 1, fixed: true}}, {{pos: [0, 1, 0], mass: 1}}, {{{}}}]\n",
                 lines.join(", ")
             ),
+            // What is driven may set out along it.
+            "rods" if changed.is_some_and(|(of, ..)| of.key.starts_with("driven")) => String::new(),
             "driven" => {
                 driven = lines.join(", ");
                 continue;
@@ -239,6 +254,10 @@ fn numbers_are_read_at_their_bounds_and_refused_beyond() {
         let (ValueKind::Number(quantity) | ValueKind::Numbers(_, quantity)) = row.kind else {
             continue;
         };
+        // A rod has the length of its start.
+        if part.key == "rods" {
+            continue;
+        }
         let springcheck::scene::limits::Bounds { low, high, unit } = quantity;
         // What a list has besides: y_range must rise, a direction has a length.
         let rest = [low, high, 0.0];

@@ -76,6 +76,7 @@ const RICH: &str = "name: a\ndescription: 'b'\nduration: 2\nup: x\ndamping_model
     springs: [{particle_ids: [0, 1], stiffness: 1, cubic: 1, damping: 1, rest_length: 1}]\n\
     gravitational: [{particle_ids: [0, 1], G: 1}]\nwind: {direction: [1, 0, 0], strength: 1}\n\
     air: {velocity: [1, 0, 0], density: 1}\ntriangles: [{particle_ids: [0, 1, 3], air_drag: 1}]\n\
+    rods: [{particle_ids: [0, 1], length: 1}]\nconstraints: {stabilisation: baumgarte, rate: 1}\n\
     expect:\n  all: &e {status: [completed, failed], energy.drift_per_s: {above: -1, below: 1}}\n  \
     rest: *e\n  rapier: {reason: {contains: particle 1}, energy.class: growing}\n";
 
@@ -108,6 +109,12 @@ fn assert_sound(scene: &Scene) {
         numbers.extend([s.stiffness, s.cubic, s.damping, s.rest_length]);
         assert!(s.stiffness >= 0.0 && s.cubic >= 0.0 && s.damping >= 0.0 && s.rest_length >= 0.0);
         assert!(s.ends[0] != s.ends[1] && s.ends.iter().all(|id| *id < count));
+    }
+    for rod in &scene.rods {
+        numbers.push(rod.length);
+        let [a, b] = rod.ends;
+        assert!(rod.length > 0.0 && a != b && a < count && b < count);
+        assert!(!scene.particles[a].fixed || !scene.particles[b].fixed);
     }
     for t in &scene.triangles {
         numbers.push(t.air_drag);

@@ -10,7 +10,7 @@ use springcheck::measure::CheckStatus;
 
 /// Hairer, Nørsett, Wanner, Solving ODEs I; Hairer, Lubich, Wanner, Geometric Numerical Integration; and the
 /// papers on the rows: id, order, order with damping, symplectic, reversible.
-const PUBLISHED: [(&str, [u32; 2], [bool; 2]); 23] = [
+const PUBLISHED: [(&str, [u32; 2], [bool; 2]); 25] = [
     ("explicit_euler", [1, 1], [false, false]),
     ("symplectic_euler", [1, 1], [true, false]),
     ("symplectic_euler_drift_first", [1, 1], [true, false]),
@@ -20,6 +20,8 @@ const PUBLISHED: [(&str, [u32; 2], [bool; 2]); 23] = [
     ("velocity_verlet", [2, 2], [true, true]),
     ("position_verlet", [2, 2], [true, true]),
     ("boris", [2, 2], [true, true]),
+    ("rattle", [2, 2], [true, true]),
+    ("shake", [2, 2], [true, true]),
     ("rk3", [3, 3], [false, false]),
     ("ssprk3", [3, 3], [false, false]),
     ("rk4", [4, 4], [false, false]),

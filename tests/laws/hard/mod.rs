@@ -82,7 +82,7 @@ fn every_engine_does_what_is_expected() {
     });
 }
 
-/// A run ends as one of four, and one that ends early names step, particle and cause.
+/// A run ends as one of four, and one that ends early names step, particle or rod, and cause.
 fn unclear(outcome: &Outcome) -> Option<String> {
     let reason = outcome.reason.as_deref().unwrap_or_default();
     let number_after = |word: &str| {
@@ -92,7 +92,8 @@ fn unclear(outcome: &Outcome) -> Option<String> {
     let clear = match outcome.status {
         Status::Completed => outcome.reason.is_none(),
         Status::Diverged | Status::Failed => {
-            outcome.stopped_at_s.is_some() && number_after("in step ") && number_after("particle ")
+            let whose = number_after("particle ") || number_after("rod ");
+            outcome.stopped_at_s.is_some() && number_after("in step ") && whose
         }
         Status::Unsupported => !reason.is_empty(),
     };

@@ -4,6 +4,7 @@
 mod a;
 mod b;
 mod c;
+mod rods;
 
 use super::{each_scene, scenes, truths::remembering};
 use crate::testkit::mutants::{self, Step, mutant};
@@ -40,6 +41,7 @@ fn rows() -> impl Iterator<Item = &'static Row> {
         .chain(a::SABOTAGES)
         .chain(b::SABOTAGES)
         .chain(c::SABOTAGES)
+        .chain(rods::SABOTAGES)
 }
 
 /// The expectations of this engine that `step` does not meet when it runs as it.

@@ -58,7 +58,10 @@ fn honest(identity: &Identity, method: &str, substeps: u32) -> Result<(), String
 fn what_is_said_of_rounded_data_holds() {
     let cases = [(0.7, 1), (0.0, 3)];
     let cases = cases.map(|case| ROUNDINGS.map(|precision| (case, precision)));
-    let tried = crossed(fixed(), cases.as_flattened());
+    let damped = swinging_triangle(0.7, DampingModel::Axial);
+    let mut methods = fixed().to_vec();
+    methods.retain(|method| is_its_own(&damped, method));
+    let tried = crossed(&methods, cases.as_flattened());
     let mut decided = 0;
     for (method, ((damping, substeps), precision)) in &tried {
         let scene = swinging_triangle(*damping, DampingModel::Axial);

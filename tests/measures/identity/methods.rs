@@ -79,7 +79,7 @@ fn other_last_bits_are_the_same_method() {
 fn rows_may_lie_unevenly_apart() {
     let mut scene = swinging_triangle(0.7, DampingModel::Axial);
     scene.solver.timestep = 5e-4;
-    for method in fixed().iter() {
+    for method in fixed().iter().filter(|method| is_its_own(&scene, method)) {
         let all = run(&scene, method.id, 1, 400);
         // 60 rows a second.
         let steps: Vec<u64> = (0..12).map(|k| (k * 100_u64).div_ceil(3)).collect();

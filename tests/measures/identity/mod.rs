@@ -7,6 +7,7 @@ mod edges;
 mod methods;
 mod positions;
 mod rapier;
+mod rods;
 mod scenes;
 mod strangers;
 mod textbook;

@@ -66,14 +66,16 @@ particles:
     )
 }
 
-fn engine(method: &'static Method) -> impl Fn(&Scene, f64) -> Result<Run, Unsupported> + Sync {
+pub(super) fn engine(
+    method: &'static Method,
+) -> impl Fn(&Scene, f64) -> Result<Run, Unsupported> + Sync {
     move |scene, h| {
         let system = ParticleSystem::new(scene);
         Solver::method(method).start(scene, &system, &Setting::step(h))
     }
 }
 
-fn found(make: &MakeRun, scene: &Scene, near: Option<f64>) -> MeasuredLimit {
+pub(super) fn found(make: &MakeRun, scene: &Scene, near: Option<f64>) -> MeasuredLimit {
     let h = scene.solver.timestep;
     let system = ParticleSystem::new(scene);
     measure(scene, &system, make, h, near, PATIENT, &|_| ())

@@ -3,4 +3,5 @@
 mod admissible;
 mod measured;
 mod predict;
+mod rods;
 mod vary;

@@ -71,6 +71,7 @@ magnetic: {field: [1, 0, 2]}
             "damping": [0.5],
             "rest_lengths": [0.4],
         },
+        "rods": {"ids": [], "lengths": []},
         "bending": {"ids": [], "stiffness": [], "rest_angles": [], "damping": []},
         "driven": {
             "ids": [],

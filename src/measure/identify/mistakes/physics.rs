@@ -1,7 +1,8 @@
 //! Scenes computed wrongly: forces or masses that are not the scene's. None where it makes no
 //! difference.
 
-use crate::physics::ParticleSystem;
+use crate::physics::constraints::StrainLimiter;
+use crate::physics::{ParticleSystem, System};
 use crate::scene::{DampingModel, Drive, Scene, Vectors, Wind};
 
 /// The scene changed by `change`, if `there` is something to change.
@@ -46,6 +47,30 @@ fn driven(scene: &Scene, change: impl Fn(&Drive) -> Drive) -> Option<ParticleSys
     (!scene.driven.is_empty()).then(|| ParticleSystem::new(scene).driven_as(change))
 }
 
+pub(super) fn strain_limit_forgotten(scene: &Scene) -> Option<ParticleSystem> {
+    limited(scene, |_| None)
+}
+
+/// Springs are shortened, and go on stretching at the speed they had.
+pub(super) fn strain_limit_of_positions(scene: &Scene) -> Option<ParticleSystem> {
+    limited(scene, |limiter| Some(limiter.of_positions()))
+}
+
+/// Free ends move by half each, whatever their masses.
+pub(super) fn strain_limit_by_halves(scene: &Scene) -> Option<ParticleSystem> {
+    limited(scene, |limiter| Some(limiter.with_unit_masses()))
+}
+
+/// None where the limit is no other.
+fn limited(
+    scene: &Scene,
+    change: fn(&StrainLimiter) -> Option<StrainLimiter>,
+) -> Option<ParticleSystem> {
+    let right = ParticleSystem::new(scene);
+    let limiter = right.strain_limiter()?.clone();
+    (change(&limiter).as_ref() != Some(&limiter)).then(|| right.limited_as(change))
+}
+
 /// The same g newtons on every particle: what a wind would do.
 pub(super) fn gravity_without_mass(scene: &Scene) -> Option<ParticleSystem> {
     changed(scene, falls(scene) && weighs(scene), |wrong| {
@@ -63,6 +88,17 @@ pub(super) fn gravity_without_mass(scene: &Scene) -> Option<ParticleSystem> {
             strength: 1.0,
         });
     })
+}
+
+/// No rods.
+pub(super) fn rods_forgotten(scene: &Scene) -> Option<ParticleSystem> {
+    changed(scene, !scene.rods.is_empty(), |wrong| wrong.rods.clear())
+}
+
+/// Tensions that turn no rod: without their part |u|²/l.
+pub(super) fn turning_forgotten(scene: &Scene) -> Option<ParticleSystem> {
+    let rods = !scene.rods.is_empty();
+    rods.then(|| ParticleSystem::new(scene).with_rods(|rods| Some(rods.without_turning())))
 }
 
 pub(super) fn damping_isotropic(scene: &Scene) -> Option<ParticleSystem> {

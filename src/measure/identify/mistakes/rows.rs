@@ -3,6 +3,7 @@
 use super::{Mistake, Wrong, physics, springs};
 use crate::integrators::{Coefficients, DampingTreatment, ImplicitScheme, Stage, StepError};
 use crate::measure::identify::altered::{Altered, Altering, OneStep};
+use crate::measure::identify::keeping::{Kept, Moved};
 use crate::measure::identify::step::{Place, Step, plus};
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
@@ -60,6 +61,17 @@ const fn physics(
 ) -> Mistake {
     row(id, Wrong::Physics(build), deviates, says)
 }
+
+/// Rods kept wrongly, with any method.
+const fn rods(id: &'static str, kept: Kept, says: &'static str) -> Mistake {
+    row(id, Wrong::Rods(kept), &[], says)
+}
+
+/// A projection in place of forces.
+const ALONE: Kept = Kept {
+    forces: false,
+    ..Kept::PROJECTED
+};
 
 /// Every mistake. No two are the same map in general, nor is one a method of the registry.
 pub static MISTAKES: &[Mistake] = &[
@@ -359,6 +371,25 @@ pub static MISTAKES: &[Mistake] = &[
         "springs push both their ends the same way: the force on the second end is the opposite of that on the first",
     ),
     physics(
+        "strain_limit_forgotten",
+        physics::strain_limit_forgotten,
+        &[],
+        "the strain limit is left out: shorten springs that are beyond it after each step",
+    ),
+    physics(
+        "strain_limit_of_positions",
+        physics::strain_limit_of_positions,
+        &[],
+        "the strain limit moves positions alone: take the velocity out that goes on stretching a spring, or what hangs \
+         at rest falls faster and faster",
+    ),
+    physics(
+        "strain_limit_by_halves",
+        physics::strain_limit_by_halves,
+        &[],
+        "the strain limit moves both free ends by half: move each by its 1/m, or the centre of mass moves",
+    ),
+    physics(
         "mass_ignored",
         physics::mass_ignored,
         &[("mass", 1.0)],
@@ -371,6 +402,108 @@ pub static MISTAKES: &[Mistake] = &[
         &[("mass", 1.0)],
         "forces, weight included, are taken for accelerations: divide their sum by the particle's \
          mass",
+    ),
+    physics(
+        "rods_forgotten",
+        physics::rods_forgotten,
+        &[("rods", 0.0)],
+        "rods are missing: nothing keeps their ends at a distance",
+    ),
+    physics(
+        "rod_turning_forgotten",
+        physics::turning_forgotten,
+        &[("rods.turning", 0.0)],
+        "the tension of a rod is without its part |u|²/l, by which the velocity u of its ends turns it: the rod keeps \
+         n·a + |u|²/l = 0",
+    ),
+    rods(
+        "positions_projected",
+        Kept {
+            velocities: Moved::Not,
+            ..Kept::PROJECTED
+        },
+        "positions are moved onto the rods, velocities are left: take the velocity along rods out as well, each \
+         particle by its 1/m",
+    ),
+    rods(
+        "velocities_projected",
+        Kept {
+            positions: Moved::Not,
+            ..Kept::PROJECTED
+        },
+        "the velocity along rods is taken out, positions are left: move them onto the rods as well, each particle by \
+         its 1/m",
+    ),
+    rods(
+        "projected_without_masses",
+        Kept {
+            masses: false,
+            ..Kept::PROJECTED
+        },
+        "the projection moves both ends of a rod by the same, whatever their mass: each moves by its 1/m",
+    ),
+    rods(
+        "projected_in_one_sweep",
+        Kept {
+            positions: Moved::Swept(1),
+            velocities: Moved::Swept(1),
+            ..Kept::PROJECTED
+        },
+        "the projection takes one rod after the other once: repeat its sweeps until all lengths hold, or solve for all \
+         rods together",
+    ),
+    rods(
+        "positions_projected_alone",
+        Kept {
+            velocities: Moved::Not,
+            ..ALONE
+        },
+        "rods have no forces, and positions alone are moved onto them: velocities along rods add up; take them out as \
+         well, or use (x1 - x0) / h",
+    ),
+    rods(
+        "positions_swept_alone",
+        Kept {
+            positions: Moved::Swept(1),
+            velocities: Moved::Not,
+            ..ALONE
+        },
+        "rods have no forces, and positions alone are moved onto one rod after the other, once: velocities along rods \
+         add up; take them out as well, or use (x1 - x0) / h",
+    ),
+    rods(
+        "velocities_projected_alone",
+        Kept {
+            positions: Moved::Not,
+            ..ALONE
+        },
+        "rods have no forces, and the velocity along them alone is taken out: lengths drift; move positions onto the \
+         rods as well",
+    ),
+    rods(
+        "projected_alone_without_masses",
+        Kept {
+            masses: false,
+            ..ALONE
+        },
+        "rods have no forces, and the projection moves both ends of a rod by the same, whatever their mass: each moves \
+         by its 1/m",
+    ),
+    rods(
+        "projected_alone_in_one_sweep",
+        Kept {
+            positions: Moved::Swept(1),
+            velocities: Moved::Swept(1),
+            ..ALONE
+        },
+        "rods have no forces, and the projection takes one rod after the other once: repeat its sweeps until all \
+         lengths hold",
+    ),
+    row(
+        "springs_for_rods",
+        Wrong::SpringsForRods,
+        &[("rods", 0.0)],
+        "springs stand in for rods: their lengths change, and stiffer ones need smaller steps",
     ),
     row(
         "step_halved",

@@ -8,7 +8,7 @@ use super::{DIVERGED, MakeRun};
 use crate::measure::energy_scale;
 use crate::measure::scale::gravity;
 use crate::measure::stability::Limit;
-use crate::physics::{ForceKinds, ParticleSystem, System};
+use crate::physics::{ForceKinds, ParticleSystem, State, System};
 use crate::scene::Scene;
 use crate::solvers::Unsupported;
 
@@ -33,6 +33,8 @@ const SOLVES: u64 = 4;
 const SAMPLE: u64 = 64;
 /// Such a probe is not shorter than this: slow growth needs some thousand steps to show.
 const LEAST: u64 = 4_000;
+/// Acceleration that is left at a rest, against that without rods: rounding, and angles of 1e-12.
+const STILL: f64 = 1e-12;
 /// Steps over which a map is seen to be linear or not.
 const LINEAR_STEPS: usize = 4;
 /// Newton's residuals and rounding are far below this, a direction that turns far above.
@@ -92,23 +94,34 @@ impl<'a> Experiment<'a> {
         budget: u64,
         tick: &'a (dyn Fn(u64) + Sync),
     ) -> Result<Self, Unsupported> {
-        let mut quadratic = Quadratic::new(system);
-        let large = Perturbation::large(scene, system, &mut quadratic);
-        let linear = linear(scene, make, &large, 0.5 * unit)?;
         let scale = energy_scale(scene, system, None).unwrap_or(1.0);
         let scale = scale.max(SEEN * rounding(scene));
+        let start = ParticleSystem::initial_state(scene);
+        let (quadratic, perturbation) = if system.rods().is_some() {
+            if rests(system, &start) {
+                let about = Quadratic::about(system, start.x.clone());
+                (Some(about), Perturbation::tiny(system, &start, scale))
+            } else {
+                (None, Perturbation::slight(system, &start, scale))
+            }
+        } else {
+            let mut quadratic = Quadratic::new(system);
+            let large = Perturbation::large(scene, system, &mut quadratic);
+            if linear(scene, make, &large, 0.5 * unit)? {
+                (Some(quadratic), large)
+            } else {
+                (None, Perturbation::slight(system, &start, scale))
+            }
+        };
         // A probe takes two runs where the map is linear.
-        let steps = (budget / PROBES / if linear { 2 } else { 1 }).clamp(FEWEST, STEPS);
+        let runs = if quadratic.is_some() { 2 } else { 1 };
+        let steps = (budget / PROBES / runs).clamp(FEWEST, STEPS);
         Ok(Self {
             scene,
             system,
             make,
-            quadratic: linear.then_some(quadratic),
-            perturbation: if linear {
-                large
-            } else {
-                Perturbation::slight(system, scale)
-            },
+            quadratic,
+            perturbation,
             scale,
             steps,
             shortest: steps,
@@ -118,7 +131,7 @@ impl<'a> Experiment<'a> {
         })
     }
 
-    /// Whether differences of runs obey a linear map.
+    /// Whether differences of runs obey a linear map, everywhere or, on rods, near the rest they start from.
     pub fn is_linear(&self) -> bool {
         self.quadratic.is_some()
     }
@@ -228,6 +241,17 @@ fn rounding(scene: &Scene) -> f64 {
         p.mass * far
     });
     f64::EPSILON * gravity * heights.sum::<f64>()
+}
+
+/// Whether a scene starts from a rest on rods: without velocities, and with no more force left than rounding.
+fn rests(system: &ParticleSystem, start: &State) -> bool {
+    let [mut left, mut free] = [vec![0.0; start.x.len()], vec![0.0; start.x.len()]];
+    system.acceleration(start.t, &start.x, &start.v, &mut left);
+    system.free_acceleration(start.t, &start.x, &start.v, &mut free);
+    let largest = |a: &[f64]| a.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
+    let still = start.v.iter().all(|v| *v == 0.0);
+    let driven = system.kinds().has(ForceKinds::DRIVEN);
+    still && !driven && largest(&left) <= STILL * largest(&free)
 }
 
 /// Whether twice the perturbation makes twice the difference, to rounding, at `h`, a step well inside every

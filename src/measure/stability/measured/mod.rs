@@ -9,7 +9,7 @@ mod watched;
 
 use super::{Limit, predicted};
 use crate::measure::energy_scale;
-use crate::physics::ParticleSystem;
+use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
 use experiment::Experiment;
@@ -98,7 +98,8 @@ pub fn measure(
         Limit::At(h) => Some(h),
         _ => None,
     };
-    let linear = experiment.is_linear();
+    // Near a rest on rods the map is linear for small motion alone.
+    let linear = experiment.is_linear() && system.rods().is_none();
     MeasuredLimit {
         growth_per_s: growth.flatten().filter(|growth| growth.is_finite()),
         smooth_below_s: linear
@@ -131,7 +132,8 @@ pub fn classify(
 ) -> Cell {
     let system = ParticleSystem::new(scene);
     let scale = energy_scale(scene, &system, None).unwrap_or(1.0);
-    let scene = Perturbation::slight(&system, scale).apply(scene);
+    let start = ParticleSystem::initial_state(scene);
+    let scene = Perturbation::slight(&system, &start, scale).apply(scene);
     let Ok(mut runs) = Runs::new(make, h, &[&scene]) else {
         return Cell::Failed;
     };

@@ -15,6 +15,8 @@ pub(super) struct Perturbation {
 
 /// Fraction of the energy scale a non-linear scene is perturbed with.
 const SLIGHT: f64 = 1e-2;
+/// The same of a scene at rest on rods: 1e-9 of its size, where angles of 1e-3 are still small, and rounding a millionth.
+const TINY: f64 = 1e-18;
 
 /// Size, m, or energy, J, of a scene that has none of its own.
 const UNIT: f64 = 1.0;
@@ -31,16 +33,24 @@ impl Perturbation {
             .filter(|u| *u > 0.0 && u.is_finite())
             .or_else(|| energy_scale(scene, system, None))
             .unwrap_or(UNIT);
-        let v = kick(system, energy);
+        let v = kick(system, None, energy);
         Self { x, v }
     }
 
     /// The perturbation of other scenes: a kick of a hundredth of `scale`, J, shared by every free
     /// coordinate, so that motions across springs, which the scene's symmetry may hide, are there to grow.
-    pub fn slight(system: &ParticleSystem, scale: f64) -> Self {
+    pub fn slight(system: &ParticleSystem, start: &State, scale: f64) -> Self {
         Self {
             x: vec![0.0; system.dim()],
-            v: kick(system, SLIGHT * scale),
+            v: kick(system, Some(start), SLIGHT * scale),
+        }
+    }
+
+    /// A kick from a rest on rods, so small that the motion is linear until it has grown a millionfold.
+    pub fn tiny(system: &ParticleSystem, start: &State, scale: f64) -> Self {
+        Self {
+            x: vec![0.0; system.dim()],
+            v: kick(system, Some(start), TINY * scale),
         }
     }
 
@@ -94,32 +104,46 @@ impl Perturbation {
 /// The relative size of rounding in positions and velocities.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// K(dv) + the potential energy of dx under linear forces.
+/// K(dv) + the potential energy of dx under forces that are linear, or are so near a rest.
 #[derive(Clone)]
 pub(super) struct Quadratic {
     system: ParticleSystem,
-    /// Forces at the origin, at rest: the part that does not depend on the state.
+    /// The rest; the origin where forces are linear everywhere.
+    rest: Vec<f64>,
+    /// Forces there, without velocities: the part that does not depend on the state.
     constant: Vec<f64>,
     zero: Vec<f64>,
+    place: Vec<f64>,
     force: Vec<f64>,
 }
 
 impl Quadratic {
+    /// The energy of differences under linear forces.
     pub fn new(system: &ParticleSystem) -> Self {
+        Self::about(system, vec![0.0; system.dim()])
+    }
+
+    /// The energy of small differences along rods, near a rest.
+    pub fn about(system: &ParticleSystem, rest: Vec<f64>) -> Self {
         let zero = vec![0.0; system.dim()];
         let mut constant = zero.clone();
-        system.forces(0.0, &zero, &zero, &mut constant);
+        system.forces(0.0, &rest, &zero, &mut constant);
         Self {
             system: system.clone(),
             constant,
+            place: rest.clone(),
+            rest,
             force: zero.clone(),
             zero,
         }
     }
 
-    /// -½ dx · (f(dx) - f(0)), J. Free coordinates only: `dx` is 0 on fixed ones.
+    /// -½ dx · (f(rest + dx) - f(rest)), J. Free coordinates only: `dx` is 0 on fixed ones.
     pub fn potential(&mut self, dx: &[f64]) -> f64 {
-        self.system.forces(0.0, dx, &self.zero, &mut self.force);
+        for ((place, rest), dx) in self.place.iter_mut().zip(&self.rest).zip(dx) {
+            *place = rest + dx;
+        }
+        (self.system).forces(0.0, &self.place, &self.zero, &mut self.force);
         let work = dx.iter().zip(self.force.iter().zip(&self.constant));
         -0.5 * work.map(|(dx, (f, f0))| dx * (f - f0)).sum::<f64>()
     }
@@ -141,11 +165,16 @@ impl Quadratic {
     }
 }
 
-/// Velocities of `energy` joules in all, about equally much in every free coordinate.
-fn kick(system: &ParticleSystem, energy: f64) -> Vec<f64> {
+/// Velocities of `energy` joules in all, about equally much in every free coordinate, and along the rods of a `start`.
+fn kick(system: &ParticleSystem, start: Option<&State>, energy: f64) -> Vec<f64> {
     let free = system.inverse_mass();
     let count = free.iter().filter(|w| **w > 0.0).count().max(1) as f64;
     let mut v = noise(free, 2, |w| w.sqrt());
+    if let Some((start, rods)) = start.zip(system.rods())
+        && let Ok(mut at) = rods.at(&start.x)
+    {
+        at.still(&mut v);
+    }
     let kinetic = system.kinetic(&v);
     let factor = if kinetic > 0.0 && kinetic.is_finite() {
         (energy / kinetic).sqrt()

@@ -119,10 +119,10 @@ impl ExcessEnergy {
         }
     }
 
-    /// The balance now, E + dissipated - injected, J.
+    /// The balance now, J.
     pub fn balance(&self, runs: &Runs) -> f64 {
         let state = runs.state(0);
-        energy(&self.system, state) + state.work.dissipated - state.work.injected
+        state.work.balance(energy(&self.system, state))
     }
 
     /// The largest balance since `late`, J.

@@ -14,7 +14,7 @@
 //! leaves through μ = 1 and does not matter here.
 
 use super::krylov;
-use super::parts::Part;
+use super::part::Part;
 use super::prediction::Prediction;
 use super::spectrum::Mode;
 use super::{Effort, Limit};

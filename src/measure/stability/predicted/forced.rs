@@ -5,7 +5,7 @@
 //! Rounding parts the two by its root, and one of them then looks like a mode that grows. So ranks decide
 //! what is zero, not eigenvalues.
 
-use super::parts::{Matrix, Part};
+use super::part::{Matrix, Part};
 use faer::Mat;
 
 impl Part {

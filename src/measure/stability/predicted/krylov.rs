@@ -5,7 +5,7 @@
 //! Large Eigenvalue Problems, 2nd ed., algorithms 6.2 and 6.5.)
 
 use super::Effort;
-use super::parts::{dot, norm};
+use super::part::{dot, norm};
 use crate::krylov::Space;
 use faer::Mat;
 use nalgebra::Complex;

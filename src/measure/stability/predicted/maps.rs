@@ -2,7 +2,7 @@
 //! a definite matrix.
 
 use super::definite::Definite;
-use super::parts::{Matrix, Part};
+use super::part::{Matrix, Part};
 use super::prediction::Prediction;
 use super::regions::stiffest_binds;
 use super::spectrum::{Coverage, Mode, Spectrum};

@@ -5,17 +5,20 @@ mod definite;
 mod forced;
 mod krylov;
 mod maps;
+mod part;
 mod parts;
 mod prediction;
 mod regions;
+mod rods;
 mod spectrum;
 mod stepmap;
 mod swept;
 
 use super::Limit;
-use crate::integrators::{Amplification, DampingTreatment, Method, fixed};
-use crate::physics::{Dampers, ForceKinds, State, System};
-use crate::scene::{DampingModel, Scene};
+use crate::integrators::{Amplification, Coefficients, DampingTreatment, Method, fixed};
+use crate::physics::constraints::Rods;
+use crate::physics::{Dampers, ForceKinds, Refused, State, System};
+use crate::scene::{DampingModel, Scene, Stabilisation};
 pub(super) use parts::shortest;
 pub use prediction::Prediction;
 use schemars::JsonSchema;
@@ -46,13 +49,16 @@ pub struct Linearised {
     failed: Option<&'static str>,
     /// Whether some particle has two dampers, so that a sweep over them is not their exact flow.
     shared: bool,
+    /// Whether damping multiplies all velocities alike.
+    uniform: bool,
     /// Limits of methods that sweep over such dampers, by the methods' ids, where they were searched.
     swept: Vec<(&'static str, Limit)>,
     effort: Effort,
 }
 
 impl Linearised {
-    /// Linearises about the state of all particles, fixed ones included (3n coordinates).
+    /// Linearises about the state of all particles, fixed ones included (3n coordinates). Rods leave the motions along
+    /// them, of stiffnesses that the tensions of this place at rest add to.
     ///
     /// This is not cheap: full effort computes the whole spectrum of up to 600 coordinates that couple.
     pub fn new<S: System + ?Sized>(system: &S, state: &State, effort: Effort) -> Self {
@@ -62,15 +68,21 @@ impl Linearised {
             excluded: Vec::new(),
             failed: None,
             shared: system.dampers() == Dampers::Shared,
+            uniform: true,
             swept: Vec::new(),
             effort,
         };
-        let Some(parts) = parts::parts(system, state) else {
+        let Some(parts) = parts::parts(system, state, effort.symmetric) else {
             linearised.failed = Some("a derivative of the forces is not finite here");
             return linearised;
         };
+        linearised.uniform = parts.uniform;
+        if parts.left_out {
+            linearised.failed =
+                Some("rods couple too many coordinates to find the motions they allow");
+        }
         let (mut at_rest, mut unstable, mut uncounted) = (0, 0, 0);
-        for part in parts {
+        for part in parts.all {
             let Some(spectrum) = spectrum::solve(part, &effort) else {
                 linearised.failed = Some("the eigenvalues of the linearised scene do not converge");
                 continue;
@@ -103,13 +115,17 @@ impl Linearised {
             let some = (count > 0).then(|| format!("{count} mode{s} {what}"));
             linearised.excluded.extend(some);
         }
+        if let Some(rods) = system.rods() {
+            linearised.excluded.extend(of_rods(rods, state));
+        }
         if uncounted > 0 {
             linearised.excluded.push(format!(
                 "modes that rest or grow in truth among {uncounted} coordinates, too many to count"
             ));
         }
         let free = system.inverse_mass().iter().filter(|w| **w > 0.0).count();
-        if linearised.shared && unstable == 0 && free <= effort.map.min(SWEPT) {
+        let rods = linearised.kinds.has(ForceKinds::CONSTRAINED);
+        if linearised.shared && !rods && unstable == 0 && free <= effort.map.min(SWEPT) {
             // What is known of one sweep a step holds for dampers, and not for what turns velocities.
             let turns = linearised.kinds.has(ForceKinds::GYROSCOPIC);
             let sweeps = fixed()
@@ -151,10 +167,23 @@ impl Linearised {
     /// The prediction for `method`: its limit, and its growth at `timestep`, s. The limit of a method that does
     /// not take the scene's forces is unknown.
     pub fn predict(&self, method: &Method, timestep: f64) -> Prediction {
-        let refused = self.kinds.without(method.takes());
-        if refused != ForceKinds::NONE {
-            return Prediction::unknown(format!("no force that is {refused} is taken"));
+        let kinds = self.kinds.without(method.takes());
+        if kinds != ForceKinds::NONE {
+            let (method, effects) = (method.id.to_owned(), Vec::new());
+            let refused = Refused {
+                method,
+                kinds,
+                effects,
+            };
+            return Prediction::unknown(refused.reason());
         }
+        let on_rods = self.kinds.has(ForceKinds::CONSTRAINED);
+        if on_rods && matches!(method.coefficients, Coefficients::Rattle(_)) && !self.uniform {
+            return Prediction::unknown(
+                "how dampers and the impulses of rods act together in this method is not worked out",
+            );
+        }
+        let method = &method.under(self.kinds);
         let parts = self
             .parts
             .iter()
@@ -200,6 +229,16 @@ impl Linearised {
         }
         counts
     }
+}
+
+/// What a prediction on rods leaves out. Baumgarte's forces make modes of what rods hold.
+fn of_rods(rods: &Rods, state: &State) -> Vec<String> {
+    let s = if rods.len() == 1 { "" } else { "s" };
+    let held = format!("{} motion{s} that rods hold", rods.len());
+    let moves = state.v.iter().any(|v| *v != 0.0);
+    let turning = "what the velocities here do to the tensions of rods".to_owned();
+    let held = (rods.stabilisation() != Stabilisation::Baumgarte).then_some(held);
+    held.into_iter().chain(moves.then_some(turning)).collect()
 }
 
 /// Sizes, in coordinates that couple, up to which each method is used, and how far Krylov spaces go.
@@ -316,6 +355,7 @@ pub fn is_linear(scene: &Scene) -> bool {
         .into_iter()
         .any(|hinge| hinge.stiffness != 0.0 || hinge.damping != 0.0);
     !bends
+        && scene.rods.is_empty()
         && springs.into_iter().all(|s| {
             let pulls_linearly = s.rest_length == 0.0 || s.stiffness == 0.0;
             pulls_linearly && s.cubic == 0.0 && (s.damping == 0.0 || isotropic)

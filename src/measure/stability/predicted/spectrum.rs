@@ -2,7 +2,7 @@
 
 use super::Effort;
 use super::krylov;
-use super::parts::{Matrix, Part};
+use super::part::{Matrix, Part};
 use faer::{Mat, Side};
 use nalgebra::Complex;
 

@@ -1,7 +1,7 @@
 //! The one-step map of a splitting on a part whose modes damping couples, as a matrix.
 
 use super::Limit;
-use super::parts::Part;
+use super::part::Part;
 use super::spectrum::Spectrum;
 use crate::integrators::{Amplification, DampingTreatment, Stage, bisect};
 use faer::linalg::solvers::Solve;

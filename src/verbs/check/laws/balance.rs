@@ -35,12 +35,7 @@ const CONTROL: (&str, f64) = ("rk4", 3.5);
 
 fn balance(ran: &Ran, subject: &Subject) -> Option<Check> {
     let method = subject.method?;
-    let damped = ran.system().kinds().depends_on_velocity();
-    let order = if damped {
-        method.order_damped
-    } else {
-        method.order
-    };
+    let order = method.order_on(ran.system());
     let over = |part: f64| observed(&points(ran, &subject.case.solver, part), order);
     let mut seen = over(1.0);
     if seen.verdict == Verdict::Misses {

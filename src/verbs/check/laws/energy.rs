@@ -5,7 +5,7 @@ use crate::conformance::systems::Oscillator;
 use crate::integrators::{self, Coefficients, Method, Settings, Stage};
 use crate::measure::stability::is_linear;
 use crate::measure::{Check, EnergySeries};
-use crate::physics::{Jacobian, Linearization, State, System};
+use crate::physics::{ForceKinds, Jacobian, Linearization, State, System};
 use crate::trajectory::Trajectory;
 
 pub(super) const BOUNDED: Row = Row {
@@ -17,8 +17,12 @@ pub(super) const BOUNDED: Row = Row {
                  K + a·M a / (2 w²); rounding beside it",
     remedy: "a force of another time or place in the kick, a step that changes, or a force without a potential",
     judge: Some(|ran| {
-        // A drive feeds energy in and out, and at resonance without end.
-        if ran.system().kinds().depends_on_velocity() || !ran.system().drives().is_empty() {
+        // A drive feeds energy in and out, and at resonance without end. On rods motion is none of oscillators, and what a
+        // strain limit does is not symplectic.
+        let system = ran.system();
+        let kinds = system.kinds();
+        let steady = system.drives().is_empty() && system.strain_limiter().is_none();
+        if kinds.depends_on_velocity() || !steady || kinds.has(ForceKinds::CONSTRAINED) {
             return Vec::new();
         }
         let judged = |(subject, run, method): (Subject, &Trajectory, &'static Method)| {

@@ -3,7 +3,7 @@
 use super::subject::norm;
 use super::{Instant, Ran, Row, Subject};
 use crate::measure::{Check, totals};
-use crate::physics::ParticleSystem;
+use crate::physics::{ParticleSystem, System};
 use crate::solvers::SolverKind;
 use crate::trajectory::Trajectory;
 use crate::truth::farthest;
@@ -107,7 +107,8 @@ pub(super) const ANGULAR: Row = Row {
             .effects()
             .iter()
             .all(|(_, e)| e.keeps_angular_momentum());
-        if !central {
+        // A strain limit moves the ends of what turns.
+        if !central || ran.system().strain_limiter().is_some() {
             return Vec::new();
         }
         each(ran, |subject, run| {

@@ -60,7 +60,12 @@ fn tensions(found: &Balance, bodies: &[Body]) -> String {
     };
     let newtons = |pull: &Pull| format!("{} N", digits(pull.tension_n));
     if newtons(most) == newtons(least) {
-        return format!("{} in every spring", newtons(most));
+        let what = if most.rod.is_some() || least.rod.is_some() {
+            "rod"
+        } else {
+            "spring"
+        };
+        return format!("{} in every {what}", newtons(most));
     }
     format!(
         "at most {} {}, at least {} {}",

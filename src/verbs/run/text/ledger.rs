@@ -36,6 +36,9 @@ pub fn energies(report: &Report) -> String {
     }
     table.markdown("dissipated", |(_, energy)| number(energy.dissipated_j));
     table.markdown("injected", |(_, energy)| number(energy.injected_j));
+    if report.outcomes().iter().any(|o| o.strain.is_some()) {
+        table.markdown("limited", |(_, energy)| number(energy.limited_j));
+    }
     table.markdown("E final - E initial", |(_, energy)| {
         let change = energy.final_j.zip(energy.initial_j);
         number(change.map(|(end, start)| end - start))

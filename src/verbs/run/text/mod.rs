@@ -3,6 +3,9 @@
 
 mod identity;
 mod ledger;
+mod rods;
+
+mod strain;
 mod table;
 mod verdict;
 
@@ -41,7 +44,9 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome], columns: usize) -> Vie
     if let Body::Run { .. } = report.body {
         facts.extend(ledger::lines(report));
         facts.extend(ledger::own_loads(report));
+        facts.extend(strain::own(report));
     }
+    facts.extend(rods::lines(report));
     // The verdict of a comparison is the identity.
     let said = |outcome: &Outcome, sentence: &String| {
         matches!(report.body, Body::Compare { .. })
@@ -104,6 +109,8 @@ pub fn page(report: &Report, view: &View) -> String {
         section("First fault", fault.collect()),
         section("Where the energy is at the end", ledger::energies(report)),
         section("Loads", ledger::loads(report)),
+        section("Rods", rods::markdown(report)),
+        section("Strain limit", strain::table(report)),
         section("Effects that ran", ledger::effects(report)),
         LEGEND.to_owned(),
     ]

@@ -52,6 +52,10 @@ fn table(report: &Report, fold: char) -> Table<'_, Outcome> {
     if judged {
         table.right("m from\ntruth", "error (m)", 0, |o| error(report, o));
     }
+    if outcomes.iter().any(|o| o.rods.is_some()) {
+        let header = "m off\nrods";
+        table.right(header, "rods off by (m)", 2, super::rods::length_error);
+    }
     table.markdown("steps", |o| words::count(o.work.steps));
     table.right("force\nevals", "force evaluations", 3, |o| {
         o.work.force_evaluations.map(words::count)

@@ -1,0 +1,512 @@
+//! Rods: distances that forces along them keep, by Lagrange multipliers.
+//!
+//! With n the direction of a rod from its first end to its second, l their distance and u their relative velocity, the
+//! rod keeps (l² - L²)/2, so that n·a + |u|²/l = 0 for the relative acceleration a. The tensions T that this takes solve
+//! (G M⁻¹ Gᵀ) T = n·a₀ + |u|²/l, a₀ without them: one sparse Cholesky factor a position. (Hairer, Lubich, Wanner,
+//! Geometric Numerical Integration, VII.1; Baraff 1996, SIGGRAPH.)
+
+use super::ConstraintRow;
+use crate::gram::{Factor, Gram, NoFactor};
+use crate::scene::{Constraints, Drive, Scene, Stabilisation};
+use std::ops::{Deref, DerefMut};
+use std::sync::{Arc, Mutex, PoisonError};
+
+mod rounding;
+
+pub(super) const ROW: ConstraintRow = ConstraintRow {
+    id: "rods",
+    summary: "keep the distance of two particles exactly, by forces along it",
+    source: "(G M⁻¹ Gᵀ) T = n·a + |u|²/l, each T pulling on both ends; Hairer, Lubich, Wanner, Geometric Numerical \
+             Integration, VII.1",
+};
+
+/// Why rods cannot be kept.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RodError {
+    #[error("rod {rod} has no direction any more: its ends met")]
+    NoDirection { rod: usize },
+    #[error(
+        "rod {rod} came to depend on other rods, so that their tensions are not determined: a chain between fixed ends \
+         is straight, or two rods are parallel"
+    )]
+    Dependent { rod: usize },
+    #[error(
+        "the step left rod {rod} at a length that it cannot be brought back from: rods are drawn into one line, or the \
+         timestep is too long"
+    )]
+    NotConverged { rod: usize },
+}
+
+impl From<NoFactor> for RodError {
+    fn from(why: NoFactor) -> Self {
+        match why {
+            NoFactor::NoDirection(rod) => Self::NoDirection { rod },
+            NoFactor::Dependent(rod) => Self::Dependent { rod },
+        }
+    }
+}
+
+/// How far a state is off the rod that is worst.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Residual {
+    /// The largest error of a distance, m.
+    pub position: f64,
+    /// The rod that has it.
+    pub longest: usize,
+    /// The largest velocity along a rod, m/s.
+    pub velocity: f64,
+}
+
+/// The rods of a scene, and 1/m of its particles.
+pub struct Rods {
+    gram: Arc<Gram>,
+    lengths: Vec<f64>,
+    /// 1/m of each particle, 1/kg; 0 where it is fixed.
+    weights: Vec<f64>,
+    stabilisation: Stabilisation,
+    /// The rate of Baumgarte's forces, 1/s.
+    rate: f64,
+    /// Whether tensions have their part |u|²/l, which turns the rod.
+    turns: bool,
+    /// Memory that is free; which of it is used changes no number.
+    pool: Mutex<Vec<Factor>>,
+}
+
+/// Newton's iterations after which a projection has failed. It takes two to four; a chord method twice to ten times
+/// that.
+const ITERATIONS: u32 = 100;
+
+/// Pivots below this part of their entry leave no digit that counts.
+const LOST: f64 = 1e-14;
+
+/// Directions and factor of rods at one position.
+pub(crate) struct At<'a> {
+    rods: &'a Rods,
+    /// None after it went back to the pool.
+    factor: Option<Factor>,
+}
+
+impl Drop for At<'_> {
+    fn drop(&mut self) {
+        let free = self.rods.pool.lock();
+        let mut free = free.unwrap_or_else(PoisonError::into_inner);
+        free.extend(self.factor.take());
+    }
+}
+
+impl Deref for At<'_> {
+    type Target = Factor;
+    fn deref(&self) -> &Factor {
+        self.factor.as_ref().expect("kept until the end")
+    }
+}
+
+impl DerefMut for At<'_> {
+    fn deref_mut(&mut self) -> &mut Factor {
+        self.factor.as_mut().expect("kept until the end")
+    }
+}
+
+impl Rods {
+    /// None where the scene has none.
+    pub fn new(scene: &Scene) -> Option<Self> {
+        if scene.rods.is_empty() {
+            return None;
+        }
+        let weight = |p: &crate::scene::Particle| if p.fixed { 0.0 } else { 1.0 / p.mass };
+        let weights: Vec<f64> = scene.particles.iter().map(weight).collect();
+        let ends = scene.rods.iter().map(|rod| rod.ends).collect();
+        let constraints = scene.constraints.clone().unwrap_or_default();
+        Some(Self {
+            gram: Gram::new(ends, weights.len(), |particle| weights[particle] > 0.0).into(),
+            lengths: scene.rods.iter().map(|rod| rod.length).collect(),
+            weights,
+            stabilisation: constraints.stabilisation,
+            rate: constraints.rate,
+            turns: true,
+            pool: Mutex::default(),
+        })
+    }
+
+    /// The same rods with these 1/m, 1/kg, of the same free particles.
+    fn weighted(&self, weights: Vec<f64>) -> Self {
+        Self {
+            gram: Arc::clone(&self.gram),
+            lengths: self.lengths.clone(),
+            weights,
+            pool: Mutex::default(),
+            ..*self
+        }
+    }
+
+    /// The same rods where every free mass is 1.
+    pub fn with_unit_masses(&self) -> Self {
+        self.weighted(self.weights.iter().map(|w| f64::from(*w > 0.0)).collect())
+    }
+
+    /// The same rods, stabilised otherwise.
+    pub fn stabilised(&self, by: &Constraints) -> Self {
+        Self {
+            stabilisation: by.stabilisation,
+            rate: by.rate,
+            ..self.weighted(self.weights.clone())
+        }
+    }
+
+    /// The same rods without the part |u|²/l of their tensions. A program that forgets it computes this.
+    pub fn without_turning(&self) -> Self {
+        Self {
+            turns: false,
+            ..self.weighted(self.weights.clone())
+        }
+    }
+
+    /// The number of rods.
+    pub fn len(&self) -> usize {
+        self.lengths.len()
+    }
+
+    /// Never: without rods there is no such thing.
+    pub fn is_empty(&self) -> bool {
+        self.lengths.is_empty()
+    }
+
+    pub fn stabilisation(&self) -> Stabilisation {
+        self.stabilisation
+    }
+
+    /// The rate of Baumgarte's forces, 1/s; 0 where there are none.
+    pub fn rate(&self) -> f64 {
+        match self.stabilisation {
+            Stabilisation::Baumgarte => self.rate,
+            _ => 0.0,
+        }
+    }
+
+    /// The length of each rod, m.
+    pub fn lengths(&self) -> &[f64] {
+        &self.lengths
+    }
+
+    /// 1/m of each particle, 1/kg; 0 where it is fixed.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// The two particles of each rod.
+    pub fn ends(&self) -> &[[usize; 2]] {
+        &self.gram.ends
+    }
+
+    /// Directions and factor at `x`, m.
+    ///
+    /// # Errors
+    /// [`RodError`] where a rod has no direction or depends on others there.
+    pub(crate) fn at(&self, x: &[f64]) -> Result<At<'_>, RodError> {
+        let mut at = self.room();
+        let weight = |particle: usize| self.weights[particle];
+        self.gram.factorise(x, weight, LOST, &mut at)?;
+        Ok(at)
+    }
+
+    fn room(&self) -> At<'_> {
+        let free = self.pool.lock();
+        let kept = free.unwrap_or_else(PoisonError::into_inner).pop();
+        At {
+            rods: self,
+            factor: Some(kept.unwrap_or_else(|| self.gram.room())),
+        }
+    }
+
+    /// The tensions, N, positive where a rod pulls, at a state with accelerations `a`, m/s², that forces other than
+    /// those of rods give; driven particles accelerate as their drives say.
+    ///
+    /// # Errors
+    /// [`RodError`] where they are not determined.
+    pub fn tensions(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        a: &[f64],
+        drives: &[Drive],
+    ) -> Result<Vec<f64>, RodError> {
+        let mut at = self.at(x)?;
+        let mut tensions = self.pulls(&at, t, v, a, drives);
+        at.solve(&mut tensions);
+        Ok(tensions)
+    }
+
+    /// *Adds* the forces of rods, N, to the others, on fixed particles too.
+    ///
+    /// # Errors
+    /// [`RodError`] where they are not determined; `f` is then as it was.
+    pub fn add_forces(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        f: &mut [f64],
+        drives: &[Drive],
+    ) -> Result<(), RodError> {
+        let mut at = self.at(x)?;
+        let a = f.chunks_exact(3).zip(&self.weights);
+        let a: Vec<f64> = a.flat_map(|(f, w)| f.iter().map(move |f| f * w)).collect();
+        let mut tensions = self.pulls(&at, t, v, &a, drives);
+        at.solve(&mut tensions);
+        at.pull(&tensions, |particle, axis, pull| {
+            f[3 * particle + axis] += pull
+        });
+        Ok(())
+    }
+
+    /// The right-hand side: how the ends would accelerate apart without rods.
+    fn pulls(&self, at: &Factor, t: f64, v: &[f64], a: &[f64], drives: &[Drive]) -> Vec<f64> {
+        let acceleration = |particle: usize| -> [f64; 3] {
+            let drive = drives.iter().find(|drive| drive.particle == particle);
+            drive.map_or_else(|| three(a, particle), |drive| drive.at(t)[2])
+        };
+        let each = self.gram.ends.iter().zip(&self.lengths).enumerate();
+        each.map(|(rod, ([i, j], length))| {
+            let (n, l) = (at.directions[rod], at.lengths[rod]);
+            let u = minus(three(v, *j), three(v, *i));
+            let mut pull = dot(n, minus(acceleration(*j), acceleration(*i)));
+            if self.turns {
+                pull += dot(u, u) / l;
+            }
+            if self.stabilisation == Stabilisation::Baumgarte {
+                // g'' + 2 α g' + α² g = 0 with g = (l² - L²)/2 (Baumgarte 1972), over l.
+                let off = (l - length) * (l + length) / (2.0 * l);
+                pull += self.rate * (2.0 * dot(n, u) + self.rate * off);
+            }
+            pull
+        })
+        .collect()
+    }
+
+    /// How far a state is off; velocities may be missing.
+    pub fn residual(&self, x: &[f64], v: &[f64]) -> Residual {
+        let mut at = self.room();
+        self.gram.look(x, &mut at);
+        let mut worst = Residual::default();
+        for (rod, length) in self.lengths.iter().enumerate() {
+            let off = (at.lengths[rod] - length).abs();
+            // Not finite counts as worst.
+            if off > worst.position || off.is_nan() {
+                (worst.position, worst.longest) = (off, rod);
+            }
+            if !v.is_empty() {
+                worst.velocity = worst.velocity.max(self.parting(&at, rod, v).abs());
+            }
+        }
+        worst
+    }
+
+    /// How fast the ends of a rod part, m/s.
+    fn parting(&self, at: &Factor, rod: usize, v: &[f64]) -> f64 {
+        let [i, j] = self.gram.ends[rod];
+        dot(at.directions[rod], minus(three(v, j), three(v, i)))
+    }
+
+    /// Moves positions and velocities onto the rods, each particle by its 1/m, to rounding: Newton's method, and one
+    /// solve for the velocities (Eich 1993, SIAM J. Numer. Anal. 30). Returns the work, J, that driven ends did by it.
+    ///
+    /// # Errors
+    /// [`RodError`] where they depend on each other, or are too far off.
+    pub fn project(&self, x: &mut [f64], v: &mut [f64]) -> Result<f64, RodError> {
+        let mut at = self.at(x)?;
+        let mut before = f64::INFINITY;
+        for iterations in 0.. {
+            let (mut off, worst) = self.off(&at, x);
+            if worst.arrived(before, iterations)? {
+                break;
+            }
+            before = worst.roundings;
+            at.solve(&mut off);
+            at.apply(&off, x);
+            drop(at);
+            at = self.at(x)?;
+        }
+        let impulses = at.still(v);
+        Ok(-at.on_driven(&impulses, v))
+    }
+
+    /// Takes the velocity along rods out of `v`, each particle by its 1/m.
+    ///
+    /// # Errors
+    /// [`RodError`] where they depend on each other.
+    pub fn still(&self, x: &[f64], v: &mut [f64]) -> Result<(), RodError> {
+        self.at(x)?.still(v);
+        Ok(())
+    }
+
+    /// Distances minus lengths, and the worst.
+    fn off(&self, at: &Factor, x: &[f64]) -> (Vec<f64>, Worst) {
+        let mut worst = Worst::default();
+        let off = self.lengths.iter().enumerate().map(|(rod, length)| {
+            let off = at.lengths[rod] - length;
+            let far = self.gram.ends[rod].iter().flat_map(|end| three(x, *end));
+            let largest = far.fold(*length, |most, c| most.max(c.abs()));
+            let roundings = if off.abs() > *length {
+                f64::INFINITY
+            } else {
+                off.abs() / (2.0 * f64::EPSILON * largest)
+            };
+            // Not finite counts as worst.
+            if roundings > worst.roundings || roundings.is_nan() {
+                worst = Worst { rod, roundings };
+            }
+            off
+        });
+        (off.collect(), worst)
+    }
+
+    /// Moves particles from `x` by h v, and by impulses along the rods at their old directions so that they arrive on
+    /// the rods; `v` has the impulses afterwards, and moves `x` to `end`. `placed` puts what is driven in its place at
+    /// the end. Returns the impulses, N s (Ryckaert, Ciccotti, Berendsen 1977, J. Comput. Phys. 23; Barth, Kuczera,
+    /// Leimkuhler, Skeel 1995, J. Comput. Chem. 16: the matrix at the old directions).
+    ///
+    /// # Errors
+    /// [`RodError::NotConverged`] where no such impulses were found.
+    pub(crate) fn drift(
+        &self,
+        old: &mut At,
+        h: f64,
+        x: &mut [f64],
+        v: &mut [f64],
+        placed: impl FnOnce(&mut [f64]),
+    ) -> Result<Vec<f64>, RodError> {
+        for (x, v) in x.iter_mut().zip(&*v) {
+            *x += h * v;
+        }
+        placed(x);
+        let mut impulses = vec![0.0; self.len()];
+        self.bring(old, x, |off| {
+            for (impulse, off) in impulses.iter_mut().zip(off) {
+                *impulse += off / h;
+            }
+        })?;
+        old.apply(&impulses, v);
+        Ok(impulses)
+    }
+
+    /// Moves positions onto the rods along these directions, to rounding; `see` is told each iteration's steps along them,
+    /// kg m.
+    fn bring(
+        &self,
+        along: &mut At,
+        x: &mut [f64],
+        mut see: impl FnMut(&[f64]),
+    ) -> Result<(), RodError> {
+        let mut now = self.room();
+        let mut before = f64::INFINITY;
+        for iterations in 0.. {
+            self.gram.look(x, &mut now);
+            let (mut off, worst) = self.off(&now, x);
+            if worst.arrived(before, iterations)? {
+                break;
+            }
+            before = worst.roundings;
+            along.solve(&mut off);
+            along.apply(&off, x);
+            see(&off);
+        }
+        Ok(())
+    }
+
+    /// Moves positions onto the rods along the directions that these have there, each particle by its 1/m, to rounding.
+    ///
+    /// # Errors
+    /// [`RodError`] where they depend on each other, or are too far off.
+    pub fn straighten(&self, x: &mut [f64]) -> Result<(), RodError> {
+        let mut along = self.at(x)?;
+        self.bring(&mut along, x, |_| {})
+    }
+}
+
+/// The rod that is worst off its length, and by how many roundings of its ends; infinitely many where it is off by more than
+/// its length, since no correction of that is a small one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Worst {
+    rod: usize,
+    roundings: f64,
+}
+
+/// Residuals of so many roundings are as good as converged where they fall no more.
+const CLOSE: f64 = 64.0;
+
+impl Worst {
+    /// Whether an iteration is over, which had so many roundings `before`.
+    fn arrived(self, before: f64, iterations: u32) -> Result<bool, RodError> {
+        let Self { rod, roundings } = self;
+        if roundings <= 1.0 || (roundings >= 0.5 * before && before < CLOSE) {
+            return Ok(true);
+        }
+        if iterations == ITERATIONS || !roundings.is_finite() {
+            return Err(RodError::NotConverged { rod });
+        }
+        Ok(false)
+    }
+}
+
+impl At<'_> {
+    /// Overwrites `y` with the solution of (G M⁻¹ Gᵀ) z = y.
+    pub fn solve(&mut self, y: &mut [f64]) {
+        let gram = &self.rods.gram;
+        gram.solve(self, y);
+    }
+
+    /// Calls `with` for each end and axis of each rod: particle, axis, and its part of a pull along the rod.
+    fn pull(&self, pulls: &[f64], mut with: impl FnMut(usize, usize, f64)) {
+        let each = self.rods.gram.ends.iter().zip(pulls).zip(&self.directions);
+        for (([i, j], pull), n) in each {
+            for axis in 0..3 {
+                with(*i, axis, pull * n[axis]);
+                with(*j, axis, -pull * n[axis]);
+            }
+        }
+    }
+
+    /// Adds to each particle its 1/m times the pulls of its rods.
+    fn apply(&self, pulls: &[f64], y: &mut [f64]) {
+        let weights = &self.rods.weights;
+        self.pull(pulls, |particle, axis, pull| {
+            y[3 * particle + axis] += weights[particle] * pull;
+        });
+    }
+
+    /// Takes the velocity along rods out of `v`, each particle by its 1/m. Returns the impulses, N s.
+    pub fn still(&mut self, v: &mut [f64]) -> Vec<f64> {
+        let rods = self.rods;
+        let mut impulses: Vec<f64> = (0..rods.len())
+            .map(|rod| rods.parting(self, rod, v))
+            .collect();
+        self.solve(&mut impulses);
+        self.apply(&impulses, v);
+        impulses
+    }
+
+    /// The work that impulses along the rods, N s, do on fixed particles that move with `v`.
+    pub fn on_driven(&self, impulses: &[f64], v: &[f64]) -> f64 {
+        let weights = &self.rods.weights;
+        let mut work = 0.0;
+        self.pull(impulses, |particle, axis, pull| {
+            if weights[particle] == 0.0 {
+                work += pull * v[3 * particle + axis];
+            }
+        });
+        work
+    }
+}
+
+fn three(y: &[f64], particle: usize) -> [f64; 3] {
+    [y[3 * particle], y[3 * particle + 1], y[3 * particle + 2]]
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
