@@ -57,7 +57,9 @@ int main(int count, char** arguments) {
     const std::string json{std::istreambuf_iterator<char>(file), {}};
 
     // What this program does not compute, it must not pretend to.
-    for (const char* effect : {"\"drag\"", "\"wind\"", "\"gravitational\"", "\"cubic_springs\""}) {
+    for (const char* effect : {"\"drag\"", "\"quadratic_drag\"", "\"air_drag\"", "\"wind\"", "\"gravitational\"",
+                               "\"cubic_springs\"", "\"driven\"", "\"magnetic\"", "\"bending\"", "\"rods\"",
+                               "\"strain_limit\""}) {
         const auto effects = find(json, "effects");
         if (json.substr(effects, json.find(']', effects) - effects).find(effect) != std::string::npos)
             fail(std::string("cannot compute ") + effect);

@@ -1,6 +1,7 @@
 //! A scene as flat arrays of numbers, which a program in any language can read in a few lines.
 
 use super::Task;
+use crate::physics::System;
 use crate::scene::model::{
     BENDING, DRIVEN, GRAVITATIONAL, PARTICLES, Part, RODS, Row, SINE, SPRINGS, STRAIN_LIMIT,
     TRIANGLES, ValueKind,
@@ -29,7 +30,10 @@ impl Serialize for Flat<'_> {
         } = *self.0;
         let wind = scene.wind.as_ref();
         let wind = wind.map_or([0.0; 3], |wind| wind.direction.map(|d| wind.strength * d));
-        let effects: Vec<&str> = system.effects().iter().map(|(row, _)| row.id).collect();
+        let mut effects: Vec<&str> = system.effects().iter().map(|(row, _)| row.id).collect();
+        // What a program does not know it refuses, constraints too.
+        effects.extend(system.rods().map(|_| "rods"));
+        effects.extend(system.strain_limiter().map(|_| "strain_limit"));
 
         let mut map = to.serialize_map(None)?;
         map.serialize_entry("schema_version", &SCHEMA_VERSION)?;
