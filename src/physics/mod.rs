@@ -131,12 +131,19 @@ pub trait System {
 
     /// Kinetic energy, J, of the free coordinates.
     fn kinetic(&self, v: &[f64]) -> f64 {
-        let mut twice = 0.0;
-        for (v, w) in v.iter().zip(self.inverse_mass()) {
-            if *w > 0.0 {
-                twice += v * v / w;
+        let one = |v: f64, w: f64| if w > 0.0 { v * v / w } else { 0.0 };
+        // Several sums, which do not wait for each other.
+        let mut sums = [0.0; 8];
+        let (v, rest_v) = v.as_chunks::<8>();
+        let (w, rest_w) = self.inverse_mass().as_chunks::<8>();
+        for (v, w) in v.iter().zip(w) {
+            for (at, sum) in sums.iter_mut().enumerate() {
+                *sum += one(v[at], w[at]);
             }
         }
-        0.5 * twice
+        for (sum, (v, w)) in sums.iter_mut().zip(rest_v.iter().zip(rest_w)) {
+            *sum += one(*v, *w);
+        }
+        0.5 * sums.iter().sum::<f64>()
     }
 }

@@ -183,6 +183,63 @@ impl<const MODEL: u8, const ELASTIC: bool> WithSimd for Forces<'_, MODEL, ELASTI
     }
 }
 
+/// The elastic energy, J, of the springs whose first end is one of the part's particles.
+pub(super) fn energy(arch: Arch, part: &Part, x: &[f64]) -> f64 {
+    arch.dispatch(Energy { part, x })
+}
+
+/// The loop over energies, as [`Forces`] is that over forces.
+struct Energy<'a> {
+    part: &'a Part,
+    x: &'a [f64],
+}
+
+impl WithSimd for Energy<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let (particles, x) = (&self.part.particles, self.x.as_chunks().0);
+        let Table {
+            ends,
+            stiffness,
+            rest_length,
+            ..
+        } = &self.part.table;
+        let one = |[i, _]: [u32; 2], d: [f64; 3], k: f64, l: f64| {
+            let stretch = dot(d, d).sqrt() - l;
+            let energy = 0.5 * k * stretch * stretch;
+            if particles.contains(&(i as usize)) {
+                energy
+            } else {
+                0.0
+            }
+        };
+        // One sum for each place in a block: sums that do not wait for each other.
+        let mut sums = [0.0; BLOCK];
+        let (whole, rest) = ends.as_chunks::<BLOCK>();
+        let (k, more_k) = stiffness.as_chunks::<BLOCK>();
+        let (l, more_l) = rest_length.as_chunks::<BLOCK>();
+        for ((ends, k), l) in whole.iter().zip(k).zip(l) {
+            let mut d = [[0.0; BLOCK]; 3];
+            for s in 0..BLOCK {
+                let between = between(x, ends[s]);
+                for axis in 0..3 {
+                    d[axis][s] = between[axis];
+                }
+            }
+            for s in 0..BLOCK {
+                sums[s] += one(ends[s], [d[0][s], d[1][s], d[2][s]], k[s], l[s]);
+            }
+        }
+        let rest = rest.iter().zip(more_k).zip(more_l);
+        for (sum, ((ends, k), l)) in sums.iter_mut().zip(rest) {
+            *sum += one(*ends, between(x, *ends), *k, *l);
+        }
+        sums.iter().sum()
+    }
+}
+
 /// Computes springs from index `from` on in whole blocks of `N`, and leaves out the remainder. The power is
 /// added to `dissipated`, spring by spring.
 #[inline(always)]

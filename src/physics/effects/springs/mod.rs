@@ -141,15 +141,8 @@ impl Effect for Springs {
     }
 
     fn potential(&self, _t: f64, x: &[f64]) -> f64 {
-        let mut energy = 0.0;
-        // `for_each` runs a plain inner loop over each part, which a `for` over nested iterators does not.
-        self.network.springs().for_each(|spring| {
-            let [i, j] = spring.ends.map(|end| 3 * end);
-            let d = difference(x, i, j);
-            let stretch = dot(d, d).sqrt() - spring.rest_length;
-            energy += 0.5 * spring.stiffness * stretch * stretch;
-        });
-        energy
+        let parts = self.network.parts.iter();
+        parts.map(|part| kernel::energy(self.arch, part, x)).sum()
     }
 
     fn add_damping(&self, x: &[f64], w: &[f64], f: &mut [f64]) {
