@@ -1,6 +1,7 @@
 //! The energy balance of a run, and the verdict on it.
 
 use super::trend::{EnergyClass, FEWEST, trend};
+use crate::physics::constraints::kinetic_on_rods;
 use crate::physics::effects::Effect;
 use crate::physics::{ParticleSystem, System, Work};
 use crate::trajectory::Trajectory;
@@ -8,7 +9,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The energy balance B = E + dissipated - injected + limited.
+/// The energy balance B = E + dissipated - injected + limited. On rods E has the kinetic energy of the motion that they allow,
+/// without that of velocities along them.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 pub struct Energy {
     /// Kinetic and all potential energies at the start, J.
@@ -28,7 +30,7 @@ pub struct Energy {
     /// The number of instants the class was taken from.
     #[serde(default)]
     pub samples: Option<usize>,
-    /// Kinetic energy at the end.
+    /// Kinetic energy at the end, on rods without that of velocities along them.
     pub kinetic_final_j: Option<f64>,
     /// Potential energy at the end, by the id of the effect that holds it.
     pub potential_final_j: BTreeMap<String, f64>,
@@ -147,7 +149,7 @@ pub(crate) struct Sum {
 
 impl Sum {
     pub(crate) fn new(system: &ParticleSystem, t: f64, x: &[f64], v: &[f64], work: Work) -> Self {
-        let mut energy = system.kinetic(v);
+        let mut energy = kinetic_on_rods(system, x, v);
         let mut largest = energy.max(work.dissipated.abs()).max(work.injected.abs());
         largest = largest.max(work.limited.abs());
         for (_, effect) in system.effects() {
@@ -222,7 +224,7 @@ impl EnergySeries {
                 fluctuation: None,
                 class: None,
                 samples: None,
-                kinetic_final_j: Some(system.kinetic(run.v(end))),
+                kinetic_final_j: Some(kinetic_on_rods(system, run.x(end), run.v(end))),
                 potential_final_j: effects
                     .map(|(row, effect)| (row.id.to_owned(), potential(effect.as_ref())))
                     .collect(),

@@ -19,14 +19,17 @@ pub struct Statics {
     fixed: Vec<usize>,
 }
 
-/// The largest loads of a run, over its recorded instants; null where they were not asked for.
+/// The largest loads of a run, over its recorded instants; null where they were not asked for. What a strain limit does is
+/// in none of them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Loads {
     /// The largest pull of a spring, N; null without springs.
     pub tension_max: Option<Tension>,
     /// The smallest, N: below 0 where a spring pushes.
     pub tension_min: Option<Tension>,
-    /// What holds each fixed particle at the last finite instant.
+    /// What holds each fixed particle at the last finite instant. A strain limit acts by impulses between steps, which are
+    /// left out: their sum over the run and over what is fixed is `strain.impulse_n_s`, and over the run's time it is the
+    /// mean force with which the limit pulls there.
     pub reactions_final: Vec<Reaction>,
 }
 
@@ -71,7 +74,7 @@ impl Statics {
 
     /// The force that holds each fixed particle, N, 3 a particle; 0 for free ones.
     ///
-    /// Minus the sum of all other forces on it (inverse dynamics). A fixed particle has no weight here, and of a driven
+    /// Minus the sum of all other forces on it (inverse dynamics); the impulses of a strain limit are no force of a state. A fixed particle has no weight here, and of a driven
     /// one m a is left out: in scenes its mass means nothing. Wind acts on what is free.
     pub fn reactions(&self, state: &State) -> Vec<f64> {
         let mut forces = vec![0.0; state.x.len()];

@@ -18,13 +18,14 @@ pub struct Strain {
     pub spring: usize,
     /// When, s.
     pub t_s: f64,
-    /// Whether no strain was beyond the limit by more than a hundredth of it, or 1e-6.
+    /// Whether no strain was beyond the limit by more than a hundredth of it, or 1e-6, at these instants. Sweeps go on to
+    /// 1e-9 of a length, as far as their number allows.
     pub met: bool,
     /// Springs corrected, each time counted; null where nobody counts them.
     pub corrections: Option<u64>,
     /// Sweeps that corrected any spring.
     pub sweeps: Option<u64>,
-    /// The sum of the impulses of its corrections on fixed particles, N s.
+    /// The sum of the impulses of its corrections on fixed particles, N s. Reactions leave them out.
     pub impulse_n_s: Option<[f64; 3]>,
 }
 

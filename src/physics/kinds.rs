@@ -133,10 +133,16 @@ impl Refused {
                     explicit Runge-Kutta methods (rk4) and adaptive pairs take them"
                 .to_owned();
         }
+        let rods = self.kinds.has(ForceKinds::CONSTRAINED);
+        let (neither, any) = if rods {
+            ("neither rods nor a force", "both")
+        } else {
+            ("no force", "any")
+        };
         format!(
-            "no force that is {}{} is taken: how velocity is treated needs forces linear in it, as dampers, drag and \
-             magnetic fields are; explicit Runge-Kutta methods (rk4), adaptive pairs and symplectic_euler take any",
-            self.kinds,
+            "{neither} that is {}{} is taken: how velocity is treated needs forces linear in it, as dampers, drag and \
+             magnetic fields are; explicit Runge-Kutta methods (rk4), adaptive pairs and symplectic_euler take {any}",
+            self.kinds.without(ForceKinds::CONSTRAINED),
             list(&self.effects)
         )
     }

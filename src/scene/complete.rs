@@ -7,7 +7,10 @@ use super::expand;
 use super::expect::engine;
 use super::expectation::{Names, Scope};
 use super::limits::{self, DRIVEN_ACCELERATION, DRIVEN_SPEED};
-use super::model::{Driven, Knots, NO_PARTICLES, Named, Particle, Scene, Triangle, Wind, Written};
+use super::model::{
+    Constraints, Driven, Knots, NO_PARTICLES, Named, Particle, Scene, Spring, Stabilisation,
+    Triangle, Wind, Written,
+};
 use super::object::{Body, called};
 use super::place::Problem;
 use super::read::Reading;
@@ -116,6 +119,7 @@ pub(super) fn expanded(
         }
     }
     rods::check(&scene, &starts, &objects)?;
+    idle(&scene)?;
     for (at, found) in scene.triangles.iter().enumerate() {
         ends(
             &found.corners,
@@ -165,6 +169,31 @@ pub(super) fn expanded(
         normalise(wind)?;
     }
     Ok(scene)
+}
+
+/// Checks that rods and strain limits that are asked for have something to act on.
+fn idle(scene: &Scene) -> Result<(), Problem> {
+    if let Some(constraints) = &scene.constraints {
+        if scene.rods.is_empty() {
+            let message = "expected rods to keep, found none";
+            let help = "`constraints` says how rods are kept: remove it, or add `rods`";
+            return Problem::because("constraints", message, help);
+        }
+        let usual = Constraints::default().rate;
+        if constraints.stabilisation != Stabilisation::Baumgarte && constraints.rate != usual {
+            let message = "expected `stabilisation: baumgarte`, which alone has a rate";
+            let help = "remove `rate`, or choose baumgarte";
+            return Problem::because("constraints.rate", message, help);
+        }
+    }
+    let free = |end: &usize| !scene.particles[*end].fixed;
+    let limits = |spring: &Spring| spring.rest_length > 0.0 && spring.ends.iter().any(free);
+    if scene.strain_limit.is_some() && !scene.springs.iter().any(limits) {
+        let message = "expected a spring to limit, with a rest length and a free end, found none";
+        let help = "remove `strain_limit`, or give a spring a `rest_length` above 0";
+        return Problem::because("strain_limit", message, help);
+    }
+    Ok(())
 }
 
 /// Checks that programs have names of their own, and that every engine something is expected of exists.

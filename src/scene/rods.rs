@@ -6,7 +6,7 @@ use super::object::called;
 use super::place::Problem;
 use crate::gram::{DEPENDENT, Gram, NoFactor};
 
-/// How far a start may be off a rod: of its length, and of the speed of its faster end.
+/// How far a start may be off a rod: of its length, and of the speed of its faster end or of a length in the duration.
 pub(super) const OFF: f64 = 1e-9;
 
 /// Checks the rods of a scene whose particles start at `starts`; lengths are filled in. `objects` are those that made
@@ -39,8 +39,12 @@ pub(super) fn check(
     let mut found = gram.room();
     gram.look(&x, &mut found);
     let mut velocities: Vec<[f64; 3]> = scene.particles.iter().map(|p| p.velocity).collect();
+    let speed = |v: &[f64; 3]| v[0].hypot(v[1]).hypot(v[2]);
+    let mut speeds: Vec<f64> = velocities.iter().map(speed).collect();
     for drive in scene.drives() {
         velocities[drive.particle] = drive.at(0.0)[1];
+        // It may start where it turns: what is 0 there has the rounding of its fastest.
+        speeds[drive.particle] = drive.speed_bound(scene.duration);
     }
     for (at, rod) in scene.rods.iter().enumerate() {
         let [one, other] = rod.ends.map(|id| called(&scene.bodies, id));
@@ -63,14 +67,14 @@ pub(super) fn check(
         let along: f64 = (0..3)
             .map(|axis| found.directions[at][axis] * (b[axis] - a[axis]))
             .sum();
-        let speed = [a, b].map(|v| v[0].hypot(v[1]).hypot(v[2]));
-        if along.abs() > OFF * speed[0].max(speed[1]) {
+        let [a, b] = rod.ends.map(|end| speeds[end]);
+        if along.abs() > OFF * a.max(b).max(length / scene.duration) {
             let message = format!(
                 "expected no velocity along the rod, found that particles {one} and {other} {} each other at {:?} m/s",
                 if along > 0.0 { "leave" } else { "approach" },
                 along.abs()
             );
-            let help = "give its ends the same velocity along it, to 1e-9 of the faster one";
+            let help = "give its ends the same velocity along it, to 1e-9 of the faster one or of a rod's length in the duration";
             return Problem::because(path(at, "particle_ids"), message, help);
         }
     }

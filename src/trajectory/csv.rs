@@ -2,7 +2,7 @@
 
 use super::{Observer, SaveError, Selection};
 use crate::physics::State;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 
 /// Values of a state beside it, such as forces.
 pub type Values = Box<dyn Fn(&State) -> Vec<f64> + Send>;
@@ -18,7 +18,7 @@ enum Columns {
 
 /// Writes rows as a run goes on. Numbers have the fewest digits that read back to the same bits.
 pub struct CsvWriter<W: Write> {
-    out: W,
+    out: BufWriter<W>,
     columns: Columns,
     selection: Selection,
     timestep: f64,
@@ -27,7 +27,7 @@ pub struct CsvWriter<W: Write> {
 }
 
 impl<W: Write> CsvWriter<W> {
-    /// Writes every `every`-th of `steps` steps (0 counts as 1), and the last. `out` should be buffered.
+    /// Writes every `every`-th of `steps` steps (0 counts as 1), and the last.
     pub fn new(out: W, steps: u64, every: u64, timestep: f64) -> Self {
         let header = "t,id,x,y,z,vx,vy,vz";
         Self::begin(
@@ -71,13 +71,8 @@ impl<W: Write> CsvWriter<W> {
         Self::begin(out, &format!("t,id,{name}"), columns, selection, timestep)
     }
 
-    fn begin(
-        mut out: W,
-        header: &str,
-        columns: Columns,
-        selection: Selection,
-        timestep: f64,
-    ) -> Self {
+    fn begin(out: W, header: &str, columns: Columns, selection: Selection, timestep: f64) -> Self {
+        let mut out = BufWriter::new(out);
         Self {
             written: writeln!(out, "{header}"),
             out,
@@ -91,10 +86,14 @@ impl<W: Write> CsvWriter<W> {
     ///
     /// # Errors
     /// The first failure of the stream, whenever it happened.
-    pub fn finish(mut self) -> Result<W, SaveError> {
+    pub fn finish(self) -> Result<W, SaveError> {
         self.written?;
-        self.out.flush()?;
-        Ok(self.out)
+        let mut out = self
+            .out
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error)?;
+        out.flush()?;
+        Ok(out)
     }
 
     fn write(&mut self, step: u64, state: &State) -> io::Result<()> {

@@ -21,6 +21,7 @@ mod order;
 mod oscillator;
 mod rest;
 mod rods;
+mod rods_energy;
 mod rods_order;
 mod solver;
 mod stiff;

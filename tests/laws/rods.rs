@@ -439,6 +439,33 @@ fn a_chain_that_is_drawn_straight_fails_by_name() {
     assert_eq!(tensions, Err(RodError::Dependent { rod: 1 }));
 }
 
+/// Masses are no directions: a heavy end is called heavy, and not a chain that is drawn straight.
+#[test]
+fn masses_too_far_apart_are_named() {
+    let [light, even, heavy] = [1e-9, 1.0, 1e6];
+    for (masses, told) in [
+        (vec![even, 1e10], None),
+        (vec![even, 1e14], Some(1e14)),
+        (vec![even, 1e18], Some(1e18)),
+        (vec![light, heavy, light], Some(1e15)),
+    ] {
+        let bobs = masses.iter().enumerate();
+        let bobs = bobs.map(|(at, mass)| free([at as f64 + 1.0, 0.0, 0.0], *mass));
+        let particles = std::iter::once(fixed([0.0; 3])).chain(bobs).collect();
+        let scene = row(particles, Stabilisation::Project);
+        let system = ParticleSystem::new(&scene);
+        let start = ParticleSystem::initial_state(&scene);
+        match (system.rod_tensions(0.0, &start.x, &start.v), told) {
+            // Level and at rest: nothing pulls along the rods.
+            (Ok(tensions), None) => assert!(tensions.iter().all(|t| *t == 0.0), "{tensions:?}"),
+            (Err(RodError::Masses { ratio, .. }), Some(told)) => {
+                assert!((ratio / told - 1.0).abs() < 1e-12, "{ratio:e}");
+            }
+            (found, _) => panic!("{masses:?}: {found:?}"),
+        }
+    }
+}
+
 /// A polygon of n rods, equal weights at its corners, between ends 1 m apart: golden numbers of the catenary.
 #[test]
 fn rods_hang_in_the_polygon_of_the_catenary() {

@@ -2,9 +2,11 @@
 
 use crate::testkit::scenes::parsed;
 use springcheck::integrators::{Method, PerStep, Settings, fixed};
+use springcheck::measure::order::{Study, Verdict};
 use springcheck::physics::{Counting, ForceKinds, ParticleSystem, State, System};
 use springcheck::scene::Scene;
 use springcheck::solvers::{Setting, Solver, advance};
+use springcheck::truth::{self, Demand, NoStore};
 
 const STABILISATIONS: [&str; 3] = ["project", "baumgarte", "none"];
 /// Seconds of every run.
@@ -230,5 +232,51 @@ fn refusals_name_rods_and_point_to_rattle() {
         assert!(integrator.step(&system, 0.01, &mut state).is_err());
         assert_eq!(state.x, before.x, "{}", method.id);
         assert_eq!(state.v, before.v, "{}", method.id);
+    }
+}
+
+/// Three particles fall together: beside the fall there is no motion but rounding, and none of it is a divergence.
+/// x = -g n (n + 1) h²/2 under symplectic Euler, off by g t h/2: of order 1.
+#[test]
+fn a_body_that_only_falls_shows_the_order() {
+    let particles = "solver: {type: symplectic_euler, timestep: 0.002}\nduration: 1\nparticles:\n\
+                     - {pos: [0, 0, 0], mass: 1}\n- {pos: [1, 0, 0], mass: 1}\n- {pos: [0, 1, 0], mass: 1}\n";
+    for bonds in [
+        "rods: [{particle_ids: [0, 1]}, {particle_ids: [1, 2]}]",
+        "springs: [{particle_ids: [0, 1], stiffness: 100}, {particle_ids: [1, 2], stiffness: 100}]",
+    ] {
+        let scene = parsed(&format!("{particles}{bonds}\n"));
+        let system = ParticleSystem::new(&scene);
+        let truth = truth::find(&scene, &system, Demand::Auto, 1.0, &NoStore);
+        let motion = truth.motion().expect("a truth");
+        let study = Study::of_scene(&scene, &system, motion, 1.0);
+        let measured = study.method(crate::testkit::method("symplectic_euler"));
+        assert_eq!(
+            measured.observed.verdict,
+            Verdict::Meets,
+            "{bonds}: {measured:?}"
+        );
+        assert!(measured.left_out.is_empty(), "{:?}", measured.left_out);
+    }
+}
+
+/// A method that takes neither rods nor quadratic drag names both, and who takes both does.
+#[test]
+fn a_refusal_of_rods_and_drag_names_both() {
+    let scene = parsed(
+        "solver: {type: rattle, timestep: 0.01}\nparticles:\n- {pos: [0, 0, 0], fixed: true}\n\
+         - {pos: [1, 0, 0], mass: 1, quadratic_drag: 0.1}\nrods: [{particle_ids: [0, 1]}]\n",
+    );
+    let system = ParticleSystem::new(&scene);
+    let admits = |id: &str| system.admits(id, crate::testkit::method(id).takes());
+    let reason = admits("implicit_euler").expect_err("a refusal").reason();
+    let both =
+        "neither rods nor a force that is non-linear in the velocity (quadratic_drag) is taken: ";
+    assert!(reason.starts_with(both), "{reason}");
+    assert!(reason.contains("symplectic_euler take both"), "{reason}");
+    for id in ["rk4", "dopri5", "symplectic_euler"] {
+        if let Some(method) = springcheck::integrators::find(id) {
+            assert_eq!(system.admits(id, method.takes()), Ok(()));
+        }
     }
 }

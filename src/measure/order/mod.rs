@@ -17,7 +17,7 @@ use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
 use crate::truth::Motion;
 use rayon::prelude::*;
-use run::{Grid, TestProblem};
+use run::{Grid, TestProblem, plain};
 
 /// The default budget of a study, in steps times coordinates: a fraction of a second for explicit methods.
 pub const BUDGET: u64 = 4_000_000;
@@ -407,10 +407,10 @@ pub fn check(subject: &str, measured: &MeasuredOrder) -> Check {
     let stated = seen.stated;
     let range = match seen.used.as_slice() {
         [coarse, .., fine] => format!(
-            "{} steps from {:.2e} to {:.2e} s",
+            "{} steps from {} to {} s",
             seen.used.len(),
-            coarse.h,
-            fine.h
+            plain(coarse.h),
+            plain(fine.h)
         ),
         _ => format!("{} steps", measured.points.len()),
     };
@@ -423,7 +423,7 @@ pub fn check(subject: &str, measured: &MeasuredOrder) -> Check {
     let (status, message) = match seen.verdict {
         Verdict::Inconclusive(reason) => {
             let ended = measured.left_out.last();
-            let ended = ended.map(|(h, why)| format!("; the run at h = {h:.2e} s {why}"));
+            let ended = ended.map(|(h, why)| format!("; the run at h = {} s {why}", plain(*h)));
             let ended = ended.unwrap_or_default();
             (
                 CheckStatus::Inconclusive,

@@ -15,6 +15,8 @@ const DIVERGED: f64 = 1e6;
 const FEWEST: u64 = 31;
 /// Most numbers of the truth that are kept.
 const MEMORY: u64 = 1 << 22;
+/// A motion of so many times the truth's error bar and the rounding of coordinates is none.
+const FLOOR: f64 = 100.0;
 /// Relative size of the disturbance whose response tells how much rounding grows.
 const DISTURBANCE: f64 = 1e-7;
 
@@ -33,11 +35,22 @@ pub(super) struct Grid {
     /// The last time, s.
     pub until: f64,
     truth: States,
-    /// Largest way any particle gets from its start, m; where nothing is fixed, beside the way they go together,
-    /// in which no method that damps a motion errs.
+    /// Largest way any particle gets from its start, m.
+    way: f64,
+    /// The same, where nothing is fixed beside the way they go together, in which no method that damps a motion errs;
+    /// unless there is no more beside it than rounding and the truth's own error.
     pub reach: f64,
     /// Largest coordinate, m.
     pub size: f64,
+}
+
+/// Three digits, as people write them: `0`, `0.0323`, `6.3e-5`.
+pub(super) fn plain(value: f64) -> String {
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    match rounded.abs() {
+        v if v == 0.0 || (1e-3..1e4).contains(&v) => rounded.to_string(),
+        _ => format!("{rounded:e}"),
+    }
 }
 
 /// Subtracts what all particles have in common.
@@ -67,19 +80,24 @@ impl Grid {
         let start = &problem.start.x;
         let free = problem.system.inverse_mass().iter().all(|w| *w > 0.0);
         let together = free && dim > 3;
-        let reach = each()
-            .map(|x| {
-                let mut way: Vec<f64> = x.iter().zip(start).map(|(x, start)| x - start).collect();
-                if together {
-                    leave_common(&mut way);
-                }
-                farthest(&way, &vec![0.0; dim])
-            })
-            .fold(0.0, f64::max);
+        let (mut way, mut beside) = (0.0_f64, 0.0_f64);
+        for x in each() {
+            let mut moved: Vec<f64> = x.iter().zip(start).map(|(x, start)| x - start).collect();
+            way = way.max(farthest(&moved, &vec![0.0; dim]));
+            leave_common(&mut moved);
+            beside = beside.max(farthest(&moved, &vec![0.0; dim]));
+        }
         let size = each().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let unknown = FLOOR * (problem.motion.error_bar(until) + f64::EPSILON * size);
+        let reach = if together && beside > unknown {
+            beside
+        } else {
+            way
+        };
         Self {
             instants,
             until,
+            way,
             reach,
             size,
             truth,
@@ -130,12 +148,12 @@ impl TestProblem<'_> {
                 state.t = step as f64 * h;
                 let end = (step + 1) as f64 * h;
                 advance(integrator.as_mut(), self.system, h, end, &mut state)
-                    .map_err(|error| format!("failed at {:.3e} s: {error}", step as f64 * h))?;
+                    .map_err(|error| format!("failed at {} s: {error}", plain(step as f64 * h)))?;
             }
             let error = farthest(&state.x, grid.truth.x(instant as usize));
-            if !error.is_finite() || (grid.reach > 0.0 && error > DIVERGED * grid.reach) {
+            if !error.is_finite() || (grid.way > 0.0 && error > DIVERGED * grid.way) {
                 let t = (instant + 1) as f64 * m as f64 * h;
-                return Err(format!("diverged by {t:.3e} s"));
+                return Err(format!("diverged by {} s", plain(t)));
             }
             run.error = run.error.max(error);
             run.x.extend_from_slice(&state.x);

@@ -17,18 +17,21 @@ pub(super) struct Jacobi {
     pub dn: f64,
 }
 
+/// The means agree to this fraction: their limit is then known to its square.
+const AGREE: f64 = 1e-8;
+
 impl Modulus {
     /// The quarter period K, infinite at k = 1.
     pub fn quarter_period(&self) -> f64 {
-        let mean = self.means().last().map_or(1.0, |(a, _)| a);
         if self.complement > 0.0 {
-            std::f64::consts::FRAC_PI_2 / mean
+            std::f64::consts::FRAC_PI_2 / self.means().1
         } else {
             f64::INFINITY
         }
     }
 
-    /// sn, cn and dn at `u` (Abramowitz and Stegun 16.4).
+    /// sn, cn and dn at `u`, each to its own last digits also where k' is tiny: Landen's transformation on cotangents,
+    /// all of whose sums are of positive terms (Bulirsch 1965, Numer. Math. 7).
     pub fn at(&self, u: f64) -> Jacobi {
         if self.complement == 0.0 {
             let fall = 1.0 / u.cosh();
@@ -38,45 +41,63 @@ impl Modulus {
                 dn: fall,
             };
         }
-        let means: Vec<(f64, f64)> = self.means().collect();
-        let last = means.last().map_or(1.0, |(a, _)| *a);
-        let mut amplitude = last * u * 2f64.powi(means.len() as i32);
-        for (a, c) in means.iter().rev() {
-            amplitude = 0.5 * (amplitude + (c / a * amplitude.sin()).asin());
+        let (means, mean) = self.means();
+        let (sin, cos) = (mean * u).sin_cos();
+        // The square of the cotangent has to be finite.
+        if sin.abs() < 1e-100 {
+            return Jacobi {
+                sn: u,
+                cn: cos,
+                dn: 1.0,
+            };
         }
-        let (sn, cn) = amplitude.sin_cos();
-        let dn = self.complement.hypot(self.k * cn);
-        Jacobi { sn, cn, dn }
+        let mut dn = 1.0;
+        let mut ratio = cos / sin;
+        let mut cot = mean * ratio;
+        for (a, b) in means.iter().rev() {
+            let square = cot * ratio;
+            cot *= dn;
+            dn = (b + square) / (a + square);
+            ratio = cot / a;
+        }
+        let sn = 1.0_f64.copysign(sin) / cot.hypot(1.0);
+        Jacobi {
+            sn,
+            cn: cot * sn,
+            dn,
+        }
     }
 
-    /// The means a_n of 1 and k', each with c_n, from n = 1 until c_n is below rounding.
-    fn means(&self) -> impl Iterator<Item = (f64, f64)> {
-        let (mut a, mut b, mut c) = (1.0, self.complement, self.k);
-        std::iter::from_fn(move || {
-            if b == 0.0 || c <= f64::EPSILON * a {
-                return None;
-            }
-            let next = 0.5 * (a + b);
-            // (a - b) / 2 without its cancellation.
-            c = 0.25 * c * c / next;
-            b = (a * b).sqrt();
-            a = next;
-            Some((a, c))
-        })
+    /// The arithmetic and geometric means from 1 and k' on until they agree, and their limit.
+    fn means(&self) -> (Vec<(f64, f64)>, f64) {
+        let (mut a, mut b) = (1.0, self.complement);
+        let mut means = vec![(a, b)];
+        while a - b > AGREE * a {
+            (a, b) = (0.5 * (a + b), (a * b).sqrt());
+            means.push((a, b));
+        }
+        (means, 0.5 * (a + b))
     }
 }
 
 impl Jacobi {
     /// The functions at the sum of two arguments. Its denominator 1 - k² sn² sn² is taken as a sum
-    /// of squares.
+    /// of squares, of which `most` is divided out: where k' is tiny they leave the range of a double.
     pub fn plus(&self, other: &Self, modulus: &Modulus) -> Self {
         let (p, q) = (self, other);
-        let below = p.cn * p.cn + p.sn * p.sn * q.dn * q.dn;
+        let most = p.cn.abs().max((p.sn * q.dn).abs());
+        if most == 0.0 {
+            // At the top for ever.
+            return *p;
+        }
+        let [a, b] = [p.cn, p.sn * q.dn].map(|c| c / most);
+        let [p_dn, q_cn, q_dn] = [p.dn, q.cn, q.dn].map(|c| c / most);
+        let below = a * a + b * b;
         let k2 = modulus.k * modulus.k;
         Self {
-            sn: (p.sn * q.cn * q.dn + q.sn * p.cn * p.dn) / below,
-            cn: (p.cn * q.cn - p.sn * q.sn * p.dn * q.dn) / below,
-            dn: (p.dn * q.dn - k2 * p.sn * q.sn * p.cn * q.cn) / below,
+            sn: (b * q_cn + a * q.sn * p_dn) / below,
+            cn: (a * q_cn - b * q.sn * p_dn) / below,
+            dn: (p_dn * q_dn - k2 * p.sn * q_cn * q.sn * a) / below,
         }
     }
 }

@@ -24,7 +24,8 @@ mod words;
 
 pub use pendulum::Pendulum;
 
-use super::{Motion, States, Truth, TruthKind};
+use super::converged::HORIZON;
+use super::{Motion, States, Truth, TruthKind, farthest};
 use crate::physics::ParticleSystem;
 use crate::scene::{Drive, Scene};
 use fall::Fall;
@@ -69,9 +70,9 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
         methods.push("rest");
         reasons.push("nothing is free to move");
     }
-    let (method, reason) = (methods.join(" and "), reasons.join("; "));
+    let (method, mut reason) = (methods.join(" and "), reasons.join("; "));
     let motion = Apart {
-        farthest: start.x.iter().fold(0.0, |m, x| m.max(x.abs())),
+        largest: start.x.iter().fold(0.0, |m, x| m.max(x.abs())),
         x: start.x,
         v: start.v,
         drives: scene.drives(),
@@ -79,16 +80,42 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
     };
     // A product on the way to the end may be too large for a double.
     let end = motion.states(&[until]);
-    let error_bound = motion.error_bar(until);
-    let finite = end.x.iter().chain(&end.v).all(|c| c.is_finite()) && error_bound.is_finite();
-    finite.then(|| Truth {
+    let finite = end.x.iter().chain(&end.v).all(|c| c.is_finite());
+    if !(finite && motion.error_bar(until).is_finite()) {
+        return None;
+    }
+    let size = scene.size().max(farthest(&end.x, &motion.x));
+    let horizon = horizon(&motion, until, HORIZON * size)?;
+    if horizon < until {
+        reason += "; beyond it a rounding of the start has grown too large";
+    }
+    Some(Truth {
         kind: TruthKind::ClosedForm,
         method: Some(method),
         reason,
-        horizon: until,
-        error_bound,
+        horizon,
+        error_bound: motion.error_bar(horizon),
         motion: Some(Box::new(motion)),
     })
+}
+
+/// The last time up to `until`, s, at which the error bar is at most `limit`, m; None where it is above from the start.
+fn horizon(motion: &Apart, until: f64, limit: f64) -> Option<f64> {
+    let within = |t: &f64| motion.error_bar(*t) <= limit;
+    if within(&until) {
+        return Some(until);
+    }
+    let (mut below, mut above) = (0.0, until);
+    // Bars never fall; twelve digits of the time are enough.
+    for _ in 0..40 {
+        let middle = 0.5 * (below + above);
+        if within(&middle) {
+            below = middle;
+        } else {
+            above = middle;
+        }
+    }
+    (below > 0.0).then_some(below)
 }
 
 /// Each text once, in order of first appearance; `others` stands for those after three.
@@ -164,7 +191,7 @@ struct Apart {
     x: Vec<f64>,
     v: Vec<f64>,
     /// Largest coordinate, m.
-    farthest: f64,
+    largest: f64,
     drives: Vec<Drive>,
     parts: Vec<Part>,
 }
@@ -199,6 +226,6 @@ impl Motion for Apart {
         let late = speeds.fold(0.0, |most, speed| f64::max(most, speed * t)) * 4.0 * f64::EPSILON;
         let bars = self.parts.iter().map(|p| p.error_bar(t)).chain([late]);
         // A position is a sum with the start, which may lie far from the origin.
-        bars.fold(0.0, f64::max) + f64::EPSILON * self.farthest
+        bars.fold(0.0, f64::max) + f64::EPSILON * self.largest
     }
 }

@@ -5,6 +5,7 @@
 use super::rank::reach;
 use super::samples::{Sampler, Samples};
 use super::settings::Sweep;
+use crate::physics::constraints::kinetic_on_rods;
 use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
 use crate::solvers::{Counts, Ended, Limits, Run, Setting, Solver, SolverKind, Status};
@@ -135,7 +136,7 @@ impl<'a> Setup<'a> {
         let scale = self.scale?;
         let balance = |k: usize| {
             let (x, v) = (states.x(k), states.v(k));
-            let energy = self.system.kinetic(v) + self.system.potential(t[k], x);
+            let energy = kinetic_on_rods(self.system, x, v) + self.system.potential(t[k], x);
             work[k].balance(energy)
         };
         let start = (!t.is_empty()).then(|| balance(0))?;

@@ -2,7 +2,7 @@
 
 use super::identity::is_joined_for_rods;
 use super::plan::{Case, Plan};
-use crate::integrators::{EnergyLaw, Method, PerStep, Settings, Stable};
+use crate::integrators::{Coefficients, EnergyLaw, Method, PerStep, Settings, Stable};
 use crate::measure::stability::{Effort, Limit, Linearised, Prediction};
 use crate::measure::{Behaviour, Energy, EnergyClass};
 use crate::physics::effects::BendingForce;
@@ -83,9 +83,18 @@ fn strain(plan: &Plan, case: &Case, outcome: &Outcome) -> Vec<String> {
     };
     let mut remarks = Vec::new();
     if let Some(most) = strain.largest.filter(|_| !strain.met) {
+        let why = match most {
+            // Of no length at all.
+            -1.0 => {
+                "its ends are in one place, so there is no direction to part them in, and more `iterations` do not help"
+            }
+            ..0.0 => {
+                "take more `iterations`, unless other particles hold its ends that close together"
+            }
+            _ => "take more `iterations`, unless other particles hold its ends that far apart",
+        };
         remarks.push(format!(
-            "the strain limit of {} is not met: spring {} is at {} at t = {} s, after {}; take more `iterations`, unless \
-             fixed particles hold it that far apart",
+            "the strain limit of {} is not met: spring {} is at {} at t = {} s, after {}; {why}",
             words::percent(strain.ratio),
             strain.spring,
             words::percent(most),
@@ -189,7 +198,14 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<S
     let effects = plan.system.effects();
     let kinds = plan.system.kinds();
     match case.solver.as_method() {
-        Some(method) if kinds.has(ForceKinds::CONSTRAINED) => Some(on_rods(method, class)),
+        Some(method) if kinds.has(ForceKinds::CONSTRAINED) => {
+            // Symplectic, where nothing takes or gives energy.
+            let keeps = matches!(method.coefficients, Coefficients::Rattle(_))
+                && !kinds.depends_on_velocity()
+                && !kinds.has(ForceKinds::DRIVEN)
+                && plan.system.strain_limiter().is_none();
+            Some(on_rods(method, class, keeps))
+        }
         Some(method) if effects.iter().all(|(row, _)| row.constant) => {
             under_constant_force(method, class)
         }
@@ -233,14 +249,23 @@ fn under_constant_force(method: &Method, class: EnergyClass) -> Option<String> {
     })
 }
 
-/// Rods are neither an oscillator nor a constant acceleration: only the order is left.
-fn on_rods(method: &Method, class: EnergyClass) -> String {
+/// Rods are neither an oscillator nor a constant acceleration: what is left is the order, and whether energy is kept for
+/// good.
+fn on_rods(method: &Method, class: EnergyClass, keeps: bool) -> String {
+    let change = energy_change(class);
+    if keeps {
+        return format!(
+            "{change}: on rods it is bounded for good well below its stability limit; {TREND_LIKE}"
+        );
+    }
     format!(
-        "{}: on rods its error is of order {}, and a smaller step lessens it",
-        energy_change(class),
+        "{change}: on rods its error is of order {}, and a smaller step lessens it",
         method.order
     )
 }
+
+/// What is no trend of a symplectic method and looks like one.
+const TREND_LIKE: &str = "a step at that limit, a force that jumps, or less than a period of its swing all look like a trend";
 
 /// The explanation by the method's energy law on an oscillator, where that is the cause.
 fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
@@ -263,8 +288,7 @@ fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
             })
         }
         (_, Stable::Below(limit)) if !damped => Some(format!(
-            "{change}: on an oscillator it is bounded for good while h ω < {limit:.4}; a step at that \
-             limit, a force that jumps, or less than a period of its swing all look like a trend"
+            "{change}: on an oscillator it is bounded for good while h ω < {limit:.4}; {TREND_LIKE}"
         )),
         _ => None,
     }

@@ -3,6 +3,7 @@
 use super::Shared;
 use crate::integrators::{Amplification, Stage};
 use crate::measure::stability::{Limit, MeasuredLimit, Prediction};
+use crate::report::words::digits;
 use crate::solvers::Solver;
 use crate::verbs::stability::StabilityRow;
 
@@ -57,8 +58,10 @@ fn tightest(shared: &Shared, row: &StabilityRow) -> Option<String> {
     };
     (tightest.limit_s < start * (1.0 - RESOLUTION)).then(|| {
         format!(
-            "along the trajectory of {} the predicted limit is tightest at t = {:.3e} s: {:.4e} s",
-            method.id, tightest.t_s, tightest.limit_s
+            "along the trajectory of {} the predicted limit is tightest at t = {} s: {} s",
+            method.id,
+            digits(tightest.t_s),
+            digits(tightest.limit_s)
         )
     })
 }
@@ -76,8 +79,8 @@ fn lower(predicted: &Limit, measured: &Limit) -> bool {
 fn difference(predicted: &Limit, measured: &Limit) -> Option<String> {
     let text = match (predicted, measured) {
         _ if lower(predicted, measured) => {
-            "the measured limit is lower: forces are not linear, and the state moves to where they \
-             are stiffer than where they were linearised"
+            "the measured limit is lower: forces are not linear, and predicted is small motion about the \
+             start; farther from it they may be stiffer, or a step may fail"
         }
         (Limit::At(p), Limit::At(m)) if m > &(p * (1.0 + RESOLUTION)) => {
             "the measured limit is higher: forces are not linear, and growth ends where they no \

@@ -217,6 +217,8 @@ const PARTS: &[Row] = &[
     ("strain limit of half a sweep", "strain_limit: {iterations: »2.5}", &["strain_limit.iterations", "expected a whole number, found 2.5"]),
     ("strain limit of too many sweeps", "strain_limit: {iterations: »2000000}", &["strain_limit.iterations", "at most 1e6 (sweeps)"]),
     ("compression as a number", "strain_limit: {also_compression: »1}", &["strain_limit.also_compression", "expected true or false"]),
+    ("strain limit without springs", "strain_limit: »{ratio: 0.1}", &["strain_limit", "expected a spring to limit, with a rest length and a free end, found none"]),
+    ("strain limit of springs without rest length", "springs: [{particle_ids: [0, 1], stiffness: 1, rest_length: 0}]\nstrain_limit: »{}", &["strain_limit", "expected a spring to limit"]),
     ("strain limit with an unknown key", "strain_limit: {»limit: 0.1}", &["strain_limit", "unknown key `limit`"]),
     ("field without numbers", "magnetic: »{}", &["magnetic.field", "missing", "in tesla"]),
     ("field of two", "magnetic: {field: »[0, 1]}", &["magnetic.field", "a list of 3 numbers, found 2"]),

@@ -43,12 +43,14 @@ pub const REFUSED: &[Row] = &[
     ("stabilisation, in American", "constraints: {»stabilization: project}", &["constraints", "did you mean `stabilisation`?"]),
     ("stabilisation, unknown", "constraints: {stabilisation: »projekt}", &["constraints.stabilisation", "unknown choice `projekt`", "project, baumgarte, none", "did you mean `project`?"]),
     ("stabilisation by a number", "constraints: {stabilisation: »3}", &["constraints.stabilisation", "expected text"]),
+    ("rate of a projection", "rods: [{particle_ids: [0, 1]}]\nconstraints: {rate: »5}", &["constraints.rate", "expected `stabilisation: baumgarte`, which alone has a rate"]),
+    ("constraints without rods", "constraints: »{stabilisation: none}", &["constraints", "expected rods to keep, found none"]),
     ("rate negative", "constraints: {stabilisation: baumgarte, rate: »-1}", &["constraints.rate", "at least 0 (1/s), found -1"]),
     ("rate NaN", "constraints: {stabilisation: baumgarte, rate: ».nan}", &["constraints.rate", "finite number (1/s)"]),
     ("rate infinite", "constraints: {stabilisation: baumgarte, rate: ».inf}", &["constraints.rate", "finite number (1/s)"]),
 ];
 
-/// A rod has its distance at the start, to 1e-9 of it. How rods are kept may be said where there are none.
+/// A rod has its distance at the start, to 1e-9 of it.
 #[test]
 fn rods_have_defaults() {
     let rod = |more: &str| {
@@ -65,11 +67,30 @@ fn rods_have_defaults() {
         ("{}", Stabilisation::Project),
         ("{stabilisation: none}", Stabilisation::None),
     ] {
-        let scene = parse(&complete(&format!("constraints: {text}"))).unwrap();
+        let scene = format!("rods: [{{particle_ids: [0, 1]}}]\nconstraints: {text}");
+        let scene = parse(&complete(&scene)).unwrap();
         let constraints = scene.constraints.unwrap();
         assert_eq!(
             (constraints.stabilisation, constraints.rate),
             (stabilisation, 10.0)
         );
     }
+}
+
+/// A drive that starts where it turns has a velocity of rounding alone, as 0.5 m/s times the cosine of π/2.
+#[test]
+fn a_drive_may_start_where_it_turns() {
+    let phase = std::f64::consts::FRAC_PI_2;
+    let driven = |phase: f64| {
+        parse(&format!(
+            "solver: {{type: rk4, timestep: 0.01}}\nparticles:\n- {{pos: [0, 0, 0], fixed: true}}\n\
+             - {{pos: [0, 0, -1], mass: 1}}\nrods: [{{particle_ids: [0, 1]}}]\n\
+             driven: [{{particle_id: 0, sine: {{amplitude: [0, 0, 0.1], omega: 5, phase: {phase}}}}}]\n"
+        ))
+    };
+    for quarter in [1.0, -1.0, 3.0, 5.0] {
+        driven(quarter * phase).unwrap_or_else(|error| panic!("{error}"));
+    }
+    // 1e-8 of its fastest is no rounding.
+    assert!(driven(phase + 1e-8).is_err() && driven(0.0).is_err());
 }

@@ -212,6 +212,14 @@ fn written(changed: Option<(&Part, &Row, &str)>) -> String {
             entries.retain(|(key, _)| *key != row.key);
             entries.push((row.key, value));
         }
+        // Baumgarte's way alone has a rate, and a limit needs springs with a rest length.
+        let of = changed.map(|(of, row, _)| (of.key, row.key));
+        if *key == "constraints" && of == Some(("constraints", "rate")) {
+            entries.push(("stabilisation", "baumgarte"));
+        }
+        if *key == "strain_limit" && of.is_some_and(|(of, _)| of == "springs") {
+            continue;
+        }
         let lines = entries.iter().map(|(key, value)| format!("{key}: {value}"));
         let lines: Vec<String> = lines.collect();
         text += &match *key {
@@ -221,7 +229,11 @@ fn written(changed: Option<(&Part, &Row, &str)>) -> String {
                 lines.join(", ")
             ),
             // What is driven may set out along it.
-            "rods" if changed.is_some_and(|(of, ..)| of.key.starts_with("driven")) => String::new(),
+            "rods" | "constraints"
+                if changed.is_some_and(|(of, ..)| of.key.starts_with("driven")) =>
+            {
+                String::new()
+            }
             "driven" => {
                 driven = lines.join(", ");
                 continue;

@@ -109,3 +109,27 @@ fn a_run_of_another_step_is_refused() {
          help: times are multiples of 0.1: --timestep 0.1"
     );
 }
+
+/// Counts the calls that reach a file.
+#[derive(Default)]
+struct Calls(u64, u64);
+
+impl std::io::Write for Calls {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0 += 1;
+        self.1 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn rows_reach_the_file_in_blocks() {
+    let mut csv = CsvWriter::new(Calls::default(), STEPS, 1, STEP);
+    drive(&mut csv);
+    let Calls(calls, bytes) = csv.finish().expect("text");
+    // Blocks of 8 KiB, but for a row that does not fit in and the end.
+    assert!(calls <= bytes / 4096 + 1, "{calls} calls for {bytes} bytes");
+}

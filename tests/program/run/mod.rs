@@ -1,6 +1,7 @@
 //! The program as its users run it.
 
 mod compare;
+mod constraints;
 mod contract;
 mod errors;
 mod saved;

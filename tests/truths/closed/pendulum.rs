@@ -1,7 +1,8 @@
 //! The plane pendulum on a rod, against numbers from elsewhere and its own equation.
 
-use super::gauss;
+use super::{form, gauss};
 use crate::testkit::Conservative;
+use crate::testkit::scenes::parsed;
 use springcheck::physics::State;
 use springcheck::truth::Motion;
 use springcheck::truth::closed::Pendulum;
@@ -136,7 +137,7 @@ fn any_plane_and_the_edges() {
         assert!(Pendulum::new(length, gravity, 0.1, 0.0).is_none());
     }
 
-    // At rest below, at rest above, and exactly fast enough to reach the top: all finite.
+    // At rest below, near the top, and exactly fast enough to reach the top: all finite.
     let w2 = 2.0 * (9.81_f64).sqrt();
     for (angle, rate) in [
         (0.0, 0.0),
@@ -156,4 +157,91 @@ fn any_plane_and_the_edges() {
             );
         }
     }
+}
+
+/// Position (x, z) and velocity along x at the start, time; position then. Near the top, and at the energy that only just
+/// reaches it. By power series of 40 terms at 60 digits (mpmath), the same with 16 and with 20 steps a second.
+#[rustfmt::skip]
+const BESIDE_THE_TOP: [[f64; 6]; 9] = [
+    [1e-3, 1.0, 0.0, 20.0, -0.5062049590017814, -0.8624137866952295],
+    [1e-10, 1.0, 0.0, 8.0, 0.09692316492806774, -0.9952918667910065],
+    [1e-12, 1.0, 0.0, 12.0, -0.0015210614778564395, 0.9999988431853205],
+    [1e-9, 1.0, -2e-9, 9.0, -0.05065722013245415, 0.9987160988231101],
+    [0.0, 1.0, 1e-7, 9.0, -0.0005737625369060634, 0.9999998353982621],
+    [0.0, -1.0, 6.264183905346333, 2.0, 0.007612981387440572, 0.9999710208373013],
+    [0.0, -1.0, 6.264183905346333, 5.0, 6.307174970300224e-7, 0.999999999999801],
+    [0.0, -1.0, 6.2641839, 5.0, 0.0027009317686841785, 0.9999963524771383],
+    [0.0, -1.0, 6.264184, 10.0, -0.0005184944941201209, 0.9999998655817207],
+];
+
+#[test]
+fn beside_the_top_digits_are_kept() {
+    let w = 9.81_f64.sqrt();
+    for [x, z, speed, t, side, up] in BESIDE_THE_TOP {
+        // The same in a tilted frame, whose start has a rounding of its own.
+        let (sin, cos) = 0.6_f64.sin_cos();
+        for (turn, exact) in [([0.0, 1.0], true), ([sin, cos], false)] {
+            let [sin, cos] = turn;
+            let at = |x: f64, z: f64| [cos * x + sin * z, 0.0, cos * z - sin * x];
+            let gravity = at(0.0, -9.81);
+            // Across the rod.
+            let velocity = at(speed, -speed * x / z);
+            let one = Pendulum::hung([0.0; 3], at(x, z), velocity, gravity);
+            let Some(one) = one else {
+                // Rounding took the velocity out of the plane: no closed form is no wrong one.
+                assert!(!exact);
+                continue;
+            };
+            let (states, bar) = (one.states(&[t]), one.error_bar(t));
+            let off = crate::testkit::distance(states.x(0), &at(side, up));
+            assert!(off < bar, "{x}, {speed}: {off:e} of {bar:e}");
+            // From the start's own digits nothing is lost but where 1 - k² has lost them; what that leaves
+            // grows as exp(w t), at 5 s and 10 s to 6e6 and 4e13 roundings.
+            let most = if speed > 1.0 {
+                20.0 * f64::EPSILON * (w * t).exp()
+            } else {
+                1e-12
+            };
+            assert!(!exact || bar < most, "{x}, {speed}: {bar:e}");
+        }
+    }
+    // So little that its square is no number: 1e-200 cosh(w t), 1e-200 m times 8.3e26.
+    let little = Pendulum::hung([0.0; 3], [1e-200, 0.0, 1.0], [0.0; 3], [0.0, 0.0, -9.81]);
+    let side = little.expect("one").states(&[20.0]).x(0)[0];
+    let grown = 1e-200 * (w * 20.0).cosh();
+    assert!((side / grown - 1.0).abs() < 1e-12, "{side:e}");
+}
+
+/// A pendulum at rest upright stays there, to the last bit, for ever.
+#[test]
+fn upright_stays_upright() {
+    let upright = Pendulum::hung([0.0; 3], [0.0, 0.0, 1.0], [0.0; 3], [0.0, 0.0, -9.81]);
+    let upright = upright.expect("one");
+    let states = upright.states(&[0.0, 20.0, 1e6]);
+    for k in 0..3 {
+        assert_eq!(
+            (states.x(k), states.v(k)),
+            (&[0.0, 0.0, 1.0][..], &[0.0; 3][..])
+        );
+    }
+    assert!(upright.error_bar(20.0) < 1e-12);
+}
+
+/// Where a rounding of the start has grown to the size of the motion the truth ends before.
+#[test]
+fn a_bar_as_large_as_the_motion_is_beyond_the_horizon() {
+    let scene = parsed(
+        "solver: {type: rattle, timestep: 0.01}\nparticles:\n- {pos: [0, 0, 0], fixed: true}\n\
+         - {pos: [0, 0, -1], vel: [6.264183905346333, 0, 0], mass: 1}\nrods: [{particle_ids: [0, 1]}]\n",
+    );
+    let near = form(&scene, 5.0).expect("a form");
+    assert_eq!(near.horizon, 5.0);
+    let far = form(&scene, 20.0).expect("a form");
+    // 16 eps exp(w t) is 1e-6 of the size, 2 m or so, at 6.5 s.
+    assert!((5.0..8.0).contains(&far.horizon), "{}", far.horizon);
+    assert!(
+        far.error_bound <= 1e-6 * scene.size(),
+        "{}",
+        far.error_bound
+    );
 }

@@ -14,6 +14,7 @@
 use super::perturbation::{Perturbation, Quadratic};
 use super::probe::{EnergyLevel, Gauge, Probed, Runs};
 use crate::measure::scale::free_fall;
+use crate::physics::constraints::kinetic_on_rods;
 use crate::physics::{ForceKinds, ParticleSystem, State, System};
 use crate::scene::Scene;
 
@@ -131,9 +132,9 @@ impl ExcessEnergy {
     }
 }
 
-/// E, J.
+/// E, J, on rods without that of velocities along them.
 fn energy(system: &ParticleSystem, state: &State) -> f64 {
-    system.kinetic(&state.v) + system.potential(state.t, &state.x)
+    kinetic_on_rods(system, &state.x, &state.v) + system.potential(state.t, &state.x)
 }
 
 impl Gauge for ExcessEnergy {

@@ -45,6 +45,8 @@ pub struct Linearised {
     /// What the scene's forces are: a method that does not take them has no limit.
     kinds: ForceKinds,
     excluded: Vec<String>,
+    /// The number of modes that grow in truth, of those that were counted.
+    growing: usize,
     /// The reason why nothing, or not everything, is known.
     failed: Option<&'static str>,
     /// Whether some particle has two dampers, so that a sweep over them is not their exact flow.
@@ -66,6 +68,7 @@ impl Linearised {
             parts: Vec::new(),
             kinds: system.kinds(),
             excluded: Vec::new(),
+            growing: 0,
             failed: None,
             shared: system.dampers() == Dampers::Shared,
             uniform: true,
@@ -97,6 +100,7 @@ impl Linearised {
             }
             linearised.parts.push(spectrum);
         }
+        linearised.growing = unstable;
         for (count, what) in [
             (
                 at_rest,
@@ -152,6 +156,11 @@ impl Linearised {
         self.omega_max().is_none() && (self.failed.is_some() || self.parts.iter().any(unknown))
     }
 
+    /// The number of modes that grow in truth, of those that were counted: a method that follows them is right.
+    pub fn growing(&self) -> usize {
+        self.growing
+    }
+
     /// A bound on the rates of damping, 1/s: by row sums, no less than the largest.
     pub fn damping_max(&self) -> f64 {
         let norms = self.parts.iter().map(|of| of.part.damping.norm());
@@ -181,6 +190,11 @@ impl Linearised {
         if on_rods && matches!(method.coefficients, Coefficients::Rattle(_)) && !self.uniform {
             return Prediction::unknown(
                 "how dampers and the impulses of rods act together in this method is not worked out",
+            );
+        }
+        if self.growing > 0 && self.parts.iter().all(|part| part.modes.is_empty()) {
+            return Prediction::unknown(
+                "all that moves here grows in truth, and a method that follows it is right",
             );
         }
         let method = &method.under(self.kinds);

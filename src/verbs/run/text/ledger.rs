@@ -82,19 +82,25 @@ pub fn loads(report: &Report) -> String {
         let all: Vec<String> = held.chain(more).collect();
         (!all.is_empty()).then(|| all.join("; "))
     });
+    let limited = match rows.iter().any(|(o, _)| o.strain.is_some()) {
+        true => {
+            " The impulses of the strain limit are left out: their sum stands under *Strain limit*."
+        }
+        false => "",
+    };
     let intro = "Newtons. A spring pulls where its tension is above 0, its damper included, and pushes below. What holds a \
                  fixed particle is minus the sum of the other forces on it.";
-    format!("{intro}\n\n{}", table.in_markdown())
+    format!("{intro}{limited}\n\n{}", table.in_markdown())
 }
 
 /// Fixed particles that a text names.
 const HELD: usize = 4;
 
-/// The loads of the first engine that has some, for the terminal.
+/// The loads of one engine, for the terminal.
 pub fn own_loads(report: &Report) -> Vec<(&'static str, String)> {
-    let first = report.outcomes().iter().find(|o| o.loads.is_some());
+    let spoken = super::spoken_of(report, |o| o.loads.is_some());
     let Some((engine, loads)) =
-        first.and_then(|o| Some((words::one_line(&o.engine), o.loads.as_ref()?)))
+        spoken.and_then(|o| Some((words::one_line(&o.engine), o.loads.as_ref()?)))
     else {
         return Vec::new();
     };
@@ -104,7 +110,10 @@ pub fn own_loads(report: &Report) -> Vec<(&'static str, String)> {
     }
     for (at, held) in loads.reactions_final.iter().take(HELD).enumerate() {
         let label = if at == 0 { "reaction" } else { "" };
-        let text = format!("{engine} at the end: {}", reaction(held, report));
+        let mut text = format!("{engine} at the end: {}", reaction(held, report));
+        if spoken.is_some_and(|o| o.strain.is_some()) {
+            text += ", without what the strain limit does";
+        }
         lines.push((label, text));
     }
     lines

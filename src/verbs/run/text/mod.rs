@@ -4,7 +4,6 @@
 mod identity;
 mod ledger;
 mod rods;
-
 mod strain;
 mod table;
 mod verdict;
@@ -72,6 +71,14 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome], columns: usize) -> Vie
         }),
         last: labels.zip(identity::fault(report)).collect(),
     }
+}
+
+/// The outcome that the terminal's lines are about: that of the scene's own integrator, else the first that `has` what they
+/// say.
+fn spoken_of(report: &Report, has: impl Fn(&Outcome) -> bool) -> Option<&Outcome> {
+    let with = || report.outcomes().iter().filter(|outcome| has(outcome));
+    let own = with().find(|outcome| report.header.is_own(&outcome.engine));
+    own.or_else(|| with().next())
 }
 
 /// The place of a remark: the terminal shows the first few.

@@ -15,19 +15,22 @@ pub fn length_error(outcome: &Outcome) -> Option<String> {
     })
 }
 
-/// The scene's own integrator on its rods, for the terminal: label and text; else the first engine's.
+/// One engine on its rods, for the terminal: label and text.
 pub fn lines(report: &Report) -> Vec<(&'static str, String)> {
-    let with = || report.outcomes().iter().filter(|o| o.rods.is_some());
-    let own = with().find(|o| report.header.is_own(&o.engine));
-    let Some((engine, rods)) = (own.or_else(|| with().next()))
-        .and_then(|o| Some((words::one_line(&o.engine), o.rods.as_ref()?)))
+    let spoken = super::spoken_of(report, |o| o.rods.is_some());
+    let Some((engine, rods)) =
+        spoken.and_then(|o| Some((words::one_line(&o.engine), o.rods.as_ref()?)))
     else {
         return Vec::new();
     };
     let mut lines = vec![("rods", format!("{engine}: {}", off(rods)))];
     if let Some((least, most)) = rods.tension_min.as_ref().zip(rods.tension_max.as_ref()) {
-        let text = format!("{engine}: from {} to {}", tension(least), tension(most));
-        lines.push(("tension", text));
+        let text = format!(
+            "their tension is from {} to {}",
+            tension(least),
+            tension(most)
+        );
+        lines.push(("", text));
     }
     lines
 }

@@ -37,6 +37,11 @@ fn own(report: &Report) -> Option<String> {
     let energy = first.energy.as_ref()?;
     let behaviour = energy.behaviour()?;
     let does = match (behaviour, energy.relative_error_max) {
+        (Behaviour::Growing | Behaviour::Dissipating | Behaviour::Drifting, Some(error))
+            if energy.limited_j.is_some() =>
+        {
+            limited(energy, behaviour, error, header.scene.energy_scale_j)
+        }
         (Behaviour::Steady | Behaviour::Bounded, Some(error)) => {
             format!("is off by at most {}", words::share(error))
         }
@@ -67,6 +72,31 @@ fn own(report: &Report) -> Option<String> {
     let name = words::one_line(&first.engine);
     Some(format!("{name} {does}{distance}"))
 }
+
+/// What the balance with a strain limit does: not what the energy does, which the limit changes in every step.
+fn limited(energy: &Energy, behaviour: Behaviour, error: f64, scale: Option<f64>) -> String {
+    let does = match behaviour {
+        Behaviour::Growing => "grows",
+        Behaviour::Dissipating => "falls",
+        _ => "drifts",
+    };
+    let joules = scale.map(|scale| error * scale);
+    let change = energy.final_j.zip(energy.initial_j);
+    let change = change.map(|(end, start)| (end - start).abs());
+    match joules.zip(change) {
+        Some((joules, change)) if change < KEPT * joules => format!(
+            "ends with the energy that it began with, though its balance with the strain limit {does} by {} J",
+            words::short(joules)
+        ),
+        _ => format!(
+            "has a balance with the strain limit that {does} by {}",
+            words::share(error)
+        ),
+    }
+}
+
+/// A change of the energy below this part of the balance's error is none to speak of.
+const KEPT: f64 = 0.01;
 
 fn groups(report: &Report) -> Vec<Clause> {
     let ended = |s: Status| move |o: &Outcome| o.status == s;

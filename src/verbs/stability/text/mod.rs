@@ -215,7 +215,7 @@ fn place(row: &StabilityRow, timestep: f64) -> String {
     match (row.holds(timestep), row.limit()) {
         (Some(true), _) => "inside".into(),
         (Some(false), Some(limit)) if limit > 0.0 && timestep / limit < 1e6 => {
-            format!("{} x beyond", words::quantity(timestep / limit))
+            format!("{} x beyond", digits(timestep / limit))
         }
         (Some(false), _) => "beyond".into(),
         (None, _) if row.unsupported => "unsupported".into(),
