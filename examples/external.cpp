@@ -59,7 +59,7 @@ int main(int count, char** arguments) {
     // What this program does not compute, it must not pretend to.
     for (const char* effect : {"\"drag\"", "\"quadratic_drag\"", "\"air_drag\"", "\"wind\"", "\"gravitational\"",
                                "\"cubic_springs\"", "\"driven\"", "\"magnetic\"", "\"bending\"", "\"rods\"",
-                               "\"strain_limit\""}) {
+                               "\"strain_limit\"", "\"colliders\""}) {
         const auto effects = find(json, "effects");
         if (json.substr(effects, json.find(']', effects) - effects).find(effect) != std::string::npos)
             fail(std::string("cannot compute ") + effect);

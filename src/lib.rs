@@ -52,6 +52,7 @@ pub mod measure;
 pub mod physics;
 pub mod report;
 pub mod scene;
+pub mod shape;
 pub mod solvers;
 pub mod trajectory;
 pub mod truth;

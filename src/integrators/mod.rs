@@ -2,6 +2,7 @@
 
 pub mod adaptive;
 mod amplification;
+pub mod events;
 mod facts;
 mod implicit;
 mod newton;
@@ -21,6 +22,7 @@ pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
 
 use crate::physics::constraints::RodError;
+use crate::physics::constraints::contact::Obstacles;
 use crate::physics::{ForceKinds, Refused, State, System};
 use crate::scene::Stabilisation;
 use crate::vector::axpy;
@@ -45,6 +47,9 @@ pub trait Integrator: Send {
     fn takes(&self) -> ForceKinds {
         ForceKinds::ANY
     }
+
+    /// Forgets what it keeps of the last step: the next one is under other forces.
+    fn forget(&mut self) {}
 
     /// Whether its steps end on the rods of a system, so that nothing has to be done about them.
     fn keeps_rods(&self) -> bool {
@@ -107,6 +112,14 @@ pub enum StepError {
         t: f64,
         /// The particle with the largest estimated error.
         particle: usize,
+    },
+    #[error(
+        "more impacts and other events in one step than can be located, at t = {t} s: a particle is squeezed between \
+         obstacles, or bounces on and on"
+    )]
+    TooManyEvents {
+        /// s.
+        t: f64,
     },
     #[error("the step left the range of finite numbers at particle {particle}")]
     NotFinite {
@@ -197,7 +210,13 @@ impl Method {
     ///
     /// An explicit kick's errors in the forces of rods lie across them, where a projection takes them away: with it a
     /// composition keeps its order, without it has that of dampers.
+    ///
+    /// On obstacles that bend, methods that take no rods slide on the plane that touches them, which is of order 1.
     pub fn order_on<S: System + ?Sized>(&self, system: &S) -> u32 {
+        let bends = system.obstacles().is_some_and(Obstacles::bend);
+        if bends && !self.takes().has(ForceKinds::CONSTRAINED) {
+            return 1;
+        }
         let (kinds, rods) = (system.kinds(), system.rods());
         let of = self.under(kinds);
         let kicks = matches!(self.coefficients, Coefficients::Composition(..));

@@ -128,6 +128,10 @@ impl Integrator for Rattle {
         ForceKinds::LINEAR.with(ForceKinds::CONSTRAINED)
     }
 
+    fn forget(&mut self) {
+        self.verlet.forget();
+    }
+
     fn keeps_rods(&self) -> bool {
         true
     }

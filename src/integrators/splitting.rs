@@ -425,6 +425,10 @@ impl Integrator for Splitting {
     fn takes(&self) -> ForceKinds {
         self.damping.takes_in(self.stages)
     }
+
+    fn forget(&mut self) {
+        self.kept.valid = false;
+    }
 }
 
 impl Splitting {

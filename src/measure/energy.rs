@@ -46,6 +46,12 @@ pub struct Energy {
     /// Null without a limit, and where nobody says it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limited_j: Option<f64>,
+    /// Energy lost in impacts on obstacles over the run, J; null without obstacles, and where nobody says it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub impacts_j: Option<f64>,
+    /// Energy lost in sliding along obstacles over the run, J; null without obstacles, and where nobody says it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_j: Option<f64>,
 }
 
 /// What a run's energy does, for a reader: its class, unless its error is too small or too large for
@@ -141,7 +147,7 @@ impl Energy {
 pub(crate) struct Sum {
     /// Kinetic and potential.
     pub energy: f64,
-    /// E + dissipated - injected + limited.
+    /// E + dissipated - injected + limited + impacts + friction.
     pub balance: f64,
     /// The largest term of these sums, which rounding is relative to.
     pub largest: f64,
@@ -151,7 +157,9 @@ impl Sum {
     pub(crate) fn new(system: &ParticleSystem, t: f64, x: &[f64], v: &[f64], work: Work) -> Self {
         let mut energy = kinetic_on_rods(system, x, v);
         let mut largest = energy.max(work.dissipated.abs()).max(work.injected.abs());
-        largest = largest.max(work.limited.abs());
+        for taken in [work.limited, work.impacts, work.friction] {
+            largest = largest.max(taken.abs());
+        }
         for (_, effect) in system.effects() {
             let u = effect.potential(t, x);
             energy += u;
@@ -210,7 +218,10 @@ impl EnergySeries {
             injected,
             projected,
             limited,
+            impacts,
+            friction,
         } = run.work(end);
+        let obstacles = system.obstacles();
         Some(Self {
             t: samples.iter().map(|(k, ..)| run.time(*k)).collect(),
             instants: samples.iter().map(|(k, ..)| *k).collect(),
@@ -232,6 +243,8 @@ impl EnergySeries {
                 injected_j: Some(injected),
                 projected_j: system.rods().map(|_| projected),
                 limited_j: system.strain_limiter().map(|_| limited),
+                impacts_j: obstacles.map(|_| impacts),
+                friction_j: obstacles.map(|_| friction),
             },
             floor: f64::EPSILON * largest * run.step(end).max(8) as f64,
         })
@@ -302,6 +315,8 @@ mod tests {
                 injected_j: None,
                 projected_j: None,
                 limited_j: None,
+                impacts_j: None,
+                friction_j: None,
             },
             floor: 1e-13,
         };

@@ -2,6 +2,7 @@
 
 mod check;
 mod constrained;
+mod contact;
 mod energy;
 mod error;
 pub mod identify;
@@ -17,6 +18,7 @@ pub mod twin;
 
 pub use check::{Check, CheckStatus};
 pub use constrained::{Constrained, Growth, RodTension, constrained};
+pub use contact::Contact;
 pub(crate) use energy::Sum;
 pub use energy::{Behaviour, Energy, EnergySeries, judge};
 pub use error::{Deviation, ErrorSummary, Errors, TOLERANCE, TrueStates, deviation, errors, reach};

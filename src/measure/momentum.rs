@@ -21,7 +21,8 @@ pub struct Momentum {
 /// Largest departures from the initial values over the recorded instants; each None where
 /// something is fixed or an effect does not keep it. None where velocities are not known.
 pub fn momentum(scene: &Scene, system: &ParticleSystem, run: &Trajectory) -> Option<Momentum> {
-    let free = scene.particles.iter().all(|p| !p.fixed);
+    // Obstacles push, as what is fixed does.
+    let free = scene.particles.iter().all(|p| !p.fixed) && scene.colliders.is_empty();
     let keeps = |keeps: fn(&dyn crate::physics::effects::Effect) -> bool| {
         free && system.effects().iter().all(|(_, e)| keeps(e.as_ref()))
     };

@@ -33,7 +33,9 @@ pub fn energy_scale(scene: &Scene, system: &ParticleSystem, peak: Option<f64>) -
 pub fn divergence_limit(scene: &Scene, scale: Option<f64>) -> Option<f64> {
     let fall = free_fall(scene) * scene.duration * scene.duration;
     let drives = scene.drives();
-    let fastest = drives.iter().map(|d| d.speed_bound(scene.duration));
+    let obstacles = scene.colliders.iter().filter_map(|one| one.displacement());
+    let all = drives.into_iter().chain(obstacles);
+    let fastest = all.map(|drive| drive.speed_bound(scene.duration));
     let speed = fastest.fold(0.0, f64::max);
     let free = scene.particles.iter().filter(|p| !p.fixed);
     let driven = 0.5 * free.map(|p| p.mass).sum::<f64>() * speed * speed;

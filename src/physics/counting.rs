@@ -1,5 +1,6 @@
 //! Counts an integrator's force evaluations, independently of the integrator and the system.
 
+use super::constraints::contact::Obstacles;
 use super::constraints::{Rods, StrainLimiter};
 use super::{Dampers, ForceKinds, Injected, Jacobian, Linearization, Power, Sweep, System};
 use std::cell::Cell;
@@ -57,6 +58,10 @@ impl<S: System> System for Counting<S> {
     fn rods(&self) -> Option<&Rods> {
         self.inner.rods()
     }
+    fn obstacles(&self) -> Option<&Obstacles> {
+        self.inner.obstacles()
+    }
+
     fn strain_limiter(&self) -> Option<&StrainLimiter> {
         self.inner.strain_limiter()
     }

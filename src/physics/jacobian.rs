@@ -147,7 +147,7 @@ impl Jacobian {
 impl PairBlock {
     /// Visits every entry (row, column, value).
     #[inline]
-    fn for_each(&self, mut entry: impl FnMut(usize, usize, f64)) {
+    pub(crate) fn for_each(&self, mut entry: impl FnMut(usize, usize, f64)) {
         let [i, j] = self.ends.map(|end| 3 * end as usize);
         for (row, column, sign) in [(i, j, 1.0), (i, i, -1.0), (j, j, -1.0), (j, i, 1.0)] {
             for r in 0..3 {

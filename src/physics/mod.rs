@@ -20,6 +20,7 @@ pub use state::{Injected, Power, State, Work};
 pub use sweep::{Dampers, Sweep};
 pub(crate) use sweep::{phi1, phi2};
 
+use constraints::contact::Obstacles;
 use constraints::{Rods, StrainLimiter};
 
 /// A second-order mechanical system M x'' = f(t, x, v) over `dim` coordinates.
@@ -103,6 +104,11 @@ pub trait System {
 
     /// The strain limit, which acts after a step and not in the acceleration; None where there is none.
     fn strain_limiter(&self) -> Option<&StrainLimiter> {
+        None
+    }
+
+    /// The obstacles, which act between and within steps and not in the acceleration; None where there are none.
+    fn obstacles(&self) -> Option<&Obstacles> {
         None
     }
 

@@ -4,6 +4,7 @@ use super::{
     Dampers, Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, Refused, State,
     Sweep, System,
 };
+use crate::physics::constraints::contact::Obstacles;
 use crate::physics::constraints::{RodError, Rods, StrainLimiter};
 use crate::physics::effects::{self, Effect, EffectRow, Scaled};
 use crate::scene::{Drive, Scene};
@@ -25,6 +26,7 @@ pub struct ParticleSystem {
     dampers: Dampers,
     rods: Option<Arc<Rods>>,
     limiter: Option<Arc<StrainLimiter>>,
+    obstacles: Option<Arc<Obstacles>>,
 }
 
 impl ParticleSystem {
@@ -58,6 +60,7 @@ impl ParticleSystem {
         Self {
             rods: Rods::new(scene).map(Arc::new),
             limiter: StrainLimiter::new(scene).map(Arc::new),
+            obstacles: Obstacles::new(scene).map(Arc::new),
             ..Self::of(inverse_mass, effects.collect())
         }
     }
@@ -110,6 +113,7 @@ impl ParticleSystem {
             jumps: jumps.into(),
             rods: None,
             limiter: None,
+            obstacles: None,
         }
     }
 
@@ -335,6 +339,10 @@ impl System for ParticleSystem {
 
     fn strain_limiter(&self) -> Option<&StrainLimiter> {
         self.limiter.as_deref()
+    }
+
+    fn obstacles(&self) -> Option<&Obstacles> {
+        self.obstacles.as_deref()
     }
 
     fn rounding(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {

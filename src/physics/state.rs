@@ -34,6 +34,8 @@ impl State {
             && self.work.injected.is_finite()
             && self.work.projected.is_finite()
             && self.work.limited.is_finite()
+            && self.work.impacts.is_finite()
+            && self.work.friction.is_finite()
     }
 }
 
@@ -51,12 +53,16 @@ pub struct Work {
     pub projected: f64,
     /// Energy taken out by the strain limit; negative where it put some in. It is the model's, so the balance leaves it out.
     pub limited: f64,
+    /// Energy lost in impacts on obstacles; grows.
+    pub impacts: f64,
+    /// Energy lost in sliding along obstacles; grows.
+    pub friction: f64,
 }
 
 impl Work {
-    /// The balance B = E + dissipated - injected + limited of a state of energy E, J.
+    /// The balance B = E + dissipated - injected + limited + impacts + friction of a state of energy E, J.
     pub fn balance(&self, energy: f64) -> f64 {
-        energy + self.dissipated - self.injected + self.limited
+        energy + self.dissipated - self.injected + self.limited + self.impacts + self.friction
     }
 
     /// Adds `h` seconds at constant power.

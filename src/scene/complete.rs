@@ -1,15 +1,16 @@
 //! Checks that involve several values of a scene, defaults that follow from other values, and the check of
 //! a timestep against a duration.
 
-use super::drive::Drive;
+use super::colliders;
+use super::drive::motion;
 use super::error::Refusal;
 use super::expand;
 use super::expect::engine;
 use super::expectation::{Names, Scope};
-use super::limits::{self, DRIVEN_ACCELERATION, DRIVEN_SPEED};
+use super::limits;
 use super::model::{
-    Constraints, Driven, Knots, NO_PARTICLES, Named, Particle, Scene, Spring, Stabilisation,
-    Triangle, Wind, Written,
+    Constraints, Driven, NO_PARTICLES, Named, Particle, Scene, Spring, Stabilisation, Triangle,
+    Written,
 };
 use super::object::{Body, called};
 use super::place::Problem;
@@ -17,6 +18,7 @@ use super::read::Reading;
 use super::rods;
 use super::table::Value;
 use super::values::Number;
+use super::vectors::normalise;
 use nalgebra::Vector3;
 use std::fmt::Display;
 use std::sync::Arc;
@@ -166,8 +168,10 @@ pub(super) fn expanded(
         }
     }
     if let Some(wind) = &mut scene.wind {
-        normalise(wind)?;
+        normalise(&mut wind.direction, "wind.direction")?;
     }
+    colliders::complete(&mut scene)?;
+    colliders::check(&scene, &starts)?;
     Ok(scene)
 }
 
@@ -286,45 +290,7 @@ fn driven(at: usize, driven: &Driven, scene: &Scene) -> Result<(), Problem> {
         let message = format!("particle {} has two motions", called(&scene.bodies, id));
         return because(message, "keep one of them; a table can be any motion");
     }
-    let motions = [
-        ("sine", driven.sine.is_some()),
-        ("velocity", driven.velocity.is_some()),
-        ("table", driven.table.is_some()),
-    ];
-    let given: Vec<&str> = motions.iter().filter(|m| m.1).map(|m| m.0).collect();
-    if given.len() != 1 {
-        let found = if given.is_empty() {
-            "none".to_owned()
-        } else {
-            given.join(" and ")
-        };
-        let message = format!("expected one of `sine`, `velocity` and `table`, found {found}");
-        let help = "a particle has one motion: `sine: {amplitude, omega}`, `velocity: [x, y, z]`, or `table` with two rows \
-                    [t, x, y, z] or more";
-        return Problem::because(of, message, help);
-    }
-    let rows = driven.table.iter().flat_map(|Knots(rows)| rows);
-    let times: Vec<f64> = rows.map(|row| row[0]).collect();
-    if driven.table.is_some() && times.len() < 2 {
-        let message = format!("expected two rows or more, found {}", times.len());
-        return Problem::because(format!("{of}.table"), message, "a row is [t, x, y, z]");
-    }
-    if let Some(row) = (1..times.len()).find(|&row| times[row] <= times[row - 1]) {
-        let [before, found] = [times[row - 1], times[row]];
-        let message = format!("expected a time after {before:?} s, found {found:?}");
-        let help = "rows are in the order of their times, and no two have the same";
-        return Problem::because(format!("{of}.table[{row}]"), message, help);
-    }
-    let wild = |drive: Drive| drive.wild(DRIVEN_SPEED, DRIVEN_ACCELERATION);
-    if let Some(row) = Drive::new(scene, driven).and_then(wild) {
-        let message = format!(
-            "expected a motion of at most {DRIVEN_SPEED:e} m/s and {DRIVEN_ACCELERATION:e} m/s² up to this row, found \
-             a faster one"
-        );
-        let help = "its rows are too near in time for how far apart their places are";
-        return Problem::because(format!("{of}.table[{row}]"), message, help);
-    }
-    Ok(())
+    motion(&of, &driven.motion())
 }
 
 /// Checks that no two corners start in one place, nor all three on one line.
@@ -405,24 +371,6 @@ fn attraction(
             format!("expected two particles apart, found them {apart:?} m from each other");
         return Refusal::because(message, "the attraction is infinite at distance 0");
     }
-    Ok(())
-}
-
-/// Makes the direction a unit vector.
-fn normalise(wind: &mut Wind) -> Result<(), Problem> {
-    // The vector is scaled first, so that the squares of tiny components do not vanish.
-    let largest = wind.direction.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
-    if largest == 0.0 {
-        let message = "expected a direction, found a vector of length 0";
-        return Problem::because("wind.direction", message, "");
-    }
-    let scaled = wind.direction.map(|d| d / largest);
-    let length = scaled.iter().map(|d| d * d).sum::<f64>().sqrt();
-    // A unit vector, to the few roundings that made it one, stays as it is: once more would round it once more.
-    if (length * largest - 1.0).abs() <= 8.0 * f64::EPSILON {
-        return Ok(());
-    }
-    wind.direction = scaled.map(|d| d / length);
     Ok(())
 }
 

@@ -1,6 +1,8 @@
 //! The motion of a driven particle as a function of time.
 
-use super::model::{Driven, Knots, Scene, Sine};
+use super::limits::{DRIVEN_ACCELERATION, DRIVEN_SPEED};
+use super::model::{self, Driven, Knots, Scene, Sine, Table};
+use super::place::Problem;
 
 /// Where a driven particle is at any time, and how fast.
 ///
@@ -54,15 +56,35 @@ impl Scene {
     }
 }
 
+impl Driven {
+    /// Its motion, whatever it moves.
+    pub(super) fn motion(&self) -> model::Motion {
+        model::Motion {
+            sine: self.sine.clone(),
+            velocity: self.velocity,
+            table: self.table.clone(),
+        }
+    }
+}
+
 impl Drive {
     /// None where the entry says no motion, or of no particle.
     pub(super) fn new(scene: &Scene, driven: &Driven) -> Option<Self> {
-        let sine = driven.sine.clone().map(Motion::Sine);
-        let steady = driven.velocity.map(Motion::Steady);
-        let spline = driven.table.as_ref().and_then(Spline::new);
         Some(Self {
             particle: driven.particle,
             origin: scene.particles.get(driven.particle)?.position,
+            ..Self::displacement(&driven.motion())?
+        })
+    }
+
+    /// The displacement of an obstacle, m: it is of no particle. None where it says no motion.
+    pub(super) fn displacement(motion: &model::Motion) -> Option<Self> {
+        let sine = motion.sine.clone().map(Motion::Sine);
+        let steady = motion.velocity.map(Motion::Steady);
+        let spline = motion.table.as_ref().and_then(Spline::new);
+        Some(Self {
+            particle: usize::MAX,
+            origin: [0.0; 3],
             motion: sine.or(steady).or(spline.map(Motion::Spline))?,
             how: How::Itself,
             late: 0.0,
@@ -271,6 +293,49 @@ impl Drive {
     }
 }
 
+/// Checks that there is one motion, and a table that can be followed.
+pub(super) fn motion(of: &str, motion: &model::Motion) -> Result<(), Problem> {
+    let motions = [
+        ("sine", motion.sine.is_some()),
+        ("velocity", motion.velocity.is_some()),
+        ("table", motion.table.is_some()),
+    ];
+    let given: Vec<&str> = motions.iter().filter(|m| m.1).map(|m| m.0).collect();
+    if given.len() != 1 {
+        let found = if given.is_empty() {
+            "none".to_owned()
+        } else {
+            given.join(" and ")
+        };
+        let message = format!("expected one of `sine`, `velocity` and `table`, found {found}");
+        let help = "a motion is one of `sine: {amplitude, omega}`, `velocity: [x, y, z]`, or `table` with two rows \
+                    [t, x, y, z] or more";
+        return Problem::because(of, message, help);
+    }
+    let rows = motion.table.iter().flat_map(|table| &table.0);
+    let times: Vec<f64> = rows.map(|row| row[0]).collect();
+    if motion.table.is_some() && times.len() < 2 {
+        let message = format!("expected two rows or more, found {}", times.len());
+        return Problem::because(format!("{of}.table"), message, "a row is [t, x, y, z]");
+    }
+    if let Some(row) = (1..times.len()).find(|&row| times[row] <= times[row - 1]) {
+        let [before, found] = [times[row - 1], times[row]];
+        let message = format!("expected a time after {before:?} s, found {found:?}");
+        let help = "rows are in the order of their times, and no two have the same";
+        return Problem::because(format!("{of}.table[{row}]"), message, help);
+    }
+    let wild = |drive: Drive| drive.wild(DRIVEN_SPEED, DRIVEN_ACCELERATION);
+    if let Some(row) = Drive::displacement(motion).and_then(wild) {
+        let message = format!(
+            "expected a motion of at most {DRIVEN_SPEED:e} m/s and {DRIVEN_ACCELERATION:e} m/s² up to this row, found \
+             a faster one"
+        );
+        let help = "its rows are too near in time for how far apart their places are";
+        return Problem::because(format!("{of}.table[{row}]"), message, help);
+    }
+    Ok(())
+}
+
 /// The natural cubic spline through some rows: twice continuously differentiable, without curvature at both ends, and
 /// straight beyond them (de Boor, A Practical Guide to Splines, IV).
 #[derive(Debug, Clone, PartialEq)]
@@ -290,7 +355,7 @@ struct Knot {
 
 impl Spline {
     /// None of fewer than two rows. Times ascend.
-    fn new(Knots(rows): &Knots) -> Option<Self> {
+    fn new(Table(rows): &Knots) -> Option<Self> {
         let mut knots: Vec<Knot> = rows
             .iter()
             .map(|&[t, x, y, z]| Knot {

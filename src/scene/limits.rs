@@ -96,6 +96,10 @@ fn plain(bound: f64) -> String {
 
 /// A coordinate of a position, and of `plot.y_range`.
 pub const POSITION: Bounds = Bounds::signed(1e12, "m");
+/// A radius or half extent of an obstacle.
+pub const OBSTACLE: Bounds = Bounds::from(1e-30, 1e12, "m");
+/// The last vertex of a mesh.
+pub const VERTICES: f64 = 1e7;
 /// A spring's stiffness.
 pub const STIFFNESS: Bounds = Bounds::not_negative(1e18, "N/m");
 /// Rest lengths over the distances at the start.

@@ -7,6 +7,7 @@
 //! Only [`Scene`] and its parts leave this module, so later stages need not check numbers again: ids are
 //! valid, quantities are finite and within their bounds.
 
+mod colliders;
 mod complete;
 mod drive;
 mod error;
@@ -28,15 +29,16 @@ mod vectors;
 pub(crate) mod words;
 mod write;
 
+pub use colliders::TOUCHING;
 pub use complete::check_times;
 pub use drive::Drive;
 pub use error::{Refusal, SceneError};
 pub(crate) use expectation::{ALL, REST, SKIP};
 pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
-    Air, Axis, Bending, Constraints, DampingModel, Driven, GravitationalPair, Knots, Magnetic,
-    Particle, Plot, Rod, Scene, Sine, SolverSpec, Spring, Stabilisation, StrainLimit, Triangle,
-    Wind, steps,
+    Air, Axis, Bending, Collider, Constraints, DampingModel, Driven, GravitationalPair, Knots,
+    Magnetic, Particle, Plot, Rod, Scene, Sine, SolverSpec, Spring, Stabilisation, StrainLimit,
+    Table, Triangle, Wind, steps,
 };
 pub use number::ObjectNumber;
 pub use table::{Value, Vectors};

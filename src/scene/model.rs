@@ -15,14 +15,14 @@
 use super::expectation::{Expectation, Scope, Skipped};
 use super::limits::{self, Bounds, Form};
 use super::object::{Body, Object};
-use super::table::{Field, Value, Vectors, declare, member, words};
+use super::table::{Field, Value, Vectors, declare, member, part, words};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use serde::Serialize;
 use std::sync::Arc;
 
 /// All parts: the mappings a file consists of.
-pub static PARTS: [&Part; 16] = [
+pub static PARTS: [&Part; 24] = [
     &SPRINGS,
     &RODS,
     &CONSTRAINTS,
@@ -33,6 +33,14 @@ pub static PARTS: [&Part; 16] = [
     &GRAVITATIONAL,
     &DRIVEN,
     &SINE,
+    &COLLIDERS,
+    &PLANE,
+    &BALL,
+    &BOX,
+    &CAPSULE,
+    &MESH,
+    &MOTION,
+    &MOTION_SINE,
     &WIND,
     &AIR,
     &MAGNETIC,
@@ -191,7 +199,7 @@ use Absent::{Derived, Required, Unless, Usual};
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    reserved ["colliders"];
+    reserved ["contact"];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
@@ -249,6 +257,8 @@ declare! {
         "gravitational" => ValueKind::Part(&GRAVITATIONAL), Usual, None;
     /// Motions of fixed particles.
     driven: Vec<Driven> = Vec::new(), "driven" => ValueKind::Part(&DRIVEN), Usual, None;
+    /// Obstacles that particles collide with.
+    colliders: Vec<Collider> = Vec::new(), "colliders" => ValueKind::Part(&COLLIDERS), Usual, None;
     /// A constant force.
     wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
     /// The air that drag acts against; at rest, as at sea level, where the scene says nothing of it.
@@ -457,7 +467,8 @@ declare! {
 
 declare! {
     /// A displacement amplitude sin(omega t + phase).
-    SINE: Sine, inside (driven sine), "a mapping with `amplitude` and `omega`", reserved [];
+    SINE (driven sine) and MOTION_SINE (colliders driven sine): Sine, inside, "a mapping with `amplitude` and `omega`",
+    reserved [];
 
     /// Metres.
     amplitude: [f64; 3] = [0.0; 3], "amplitude" => ValueKind::Numbers(3, limits::POSITION),
@@ -470,21 +481,134 @@ declare! {
         Usual, Some("phases");
 }
 
-/// Rows [t, x, y, z] of a table, s and m.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Knots(pub Vec<[f64; 4]>);
+declare! {
+    /// An obstacle: one shape, at rest or moved. Free particles collide with it, each as a ball of its radius.
+    COLLIDERS: Collider, list colliders,
+    "an obstacle: a mapping with one of `plane`, `ball`, `box`, `capsule` and `mesh`", reserved [];
 
-impl Field for Knots {
+    /// All behind a plane.
+    plane: Option<Plane> = None, "plane" => ValueKind::Part(&PLANE), Usual, None;
+    /// A ball.
+    ball: Option<Ball> = None, "ball" => ValueKind::Part(&BALL), Usual, None;
+    /// A box.
+    block: Option<Block> = None, "box" => ValueKind::Part(&BOX), Usual, None;
+    /// A cylinder with a half ball at each end.
+    capsule: Option<Capsule> = None, "capsule" => ValueKind::Part(&CAPSULE), Usual, None;
+    /// Triangles.
+    mesh: Option<Mesh> = None, "mesh" => ValueKind::Part(&MESH), Usual, None;
+    /// Its motion, in addition to its place.
+    driven: Option<Motion> = None, "driven" => ValueKind::Part(&MOTION), Usual, None;
+    /// e, from 0 to 1: the part of the normal velocity that an impact gives back (Newton).
+    restitution: f64 = 0.0, "restitution" => ValueKind::Number(Bounds::from(0.0, 1.0, "a part of the speed")),
+        Usual, Some("restitution");
+    /// µ: sliding friction is µ times the normal force (Coulomb).
+    friction: f64 = 0.0, "friction" => ValueKind::Number(Bounds::not_negative(1e6, "a pure number")),
+        Usual, Some("friction");
+    /// What sticks slides beyond this times the normal force; not below `friction`, which it is where it is absent.
+    static_friction: f64 = 0.0,
+        "static_friction" => ValueKind::Number(Bounds::not_negative(1e6, "a pure number")),
+        Derived, Some("static_friction");
+}
+
+declare! {
+    /// A half space: what is behind a plane is solid.
+    PLANE: Plane, inside (colliders plane), "a mapping with `normal` and `offset`", reserved [];
+
+    /// Points out of the solid; a unit vector, in the file of any length but 0.
+    normal: [f64; 3] = [0.0, 0.0, 1.0],
+        "normal" => ValueKind::Numbers(3, Bounds::signed(1e12, "any unit")),
+        Required("say which side is free: `normal: [0, 0, 1]`"), Some("normals");
+    /// Metres along the unit normal from the origin.
+    offset: f64 = 0.0, "offset" => ValueKind::Number(limits::POSITION), Usual, Some("offsets");
+}
+
+declare! {
+    /// A solid ball.
+    BALL: Ball, inside (colliders ball), "a mapping with `center` and `radius`", reserved [];
+
+    /// Metres.
+    center: [f64; 3] = [0.0; 3], "center" => ValueKind::Numbers(3, limits::POSITION),
+        Required("say where it is: `center: [x, y, z]`"), Some("centers");
+    /// Metres, positive.
+    radius: f64 = 1.0, "radius" => ValueKind::Number(limits::OBSTACLE),
+        Required("give its radius in metres"), Some("radii");
+}
+
+declare! {
+    /// A solid box.
+    BOX: Block, inside (colliders block), "a mapping with `center` and `half_extents`", reserved [];
+
+    /// Metres.
+    center: [f64; 3] = [0.0; 3], "center" => ValueKind::Numbers(3, limits::POSITION),
+        Required("say where it is: `center: [x, y, z]`"), Some("centers");
+    /// Metres from the centre to each side, positive.
+    half_extents: [f64; 3] = [1.0; 3], "half_extents" => ValueKind::Numbers(3, limits::OBSTACLE),
+        Required("give half of its length, depth and height in metres"), Some("half_extents");
+    /// The axis it is turned about, of a length that is the angle, rad.
+    rotation: [f64; 3] = [0.0; 3], "rotation" => ValueKind::Numbers(3, Bounds::signed(1e3, "rad")),
+        Usual, Some("rotations");
+}
+
+declare! {
+    /// All points within a radius of a segment.
+    CAPSULE: Capsule, inside (colliders capsule), "a mapping with `a`, `b` and `radius`", reserved [];
+
+    /// One end of the segment, m.
+    a: [f64; 3] = [0.0; 3], "a" => ValueKind::Numbers(3, limits::POSITION),
+        Required("give one end of its axis: `a: [x, y, z]`"), Some("a");
+    /// The other end, m.
+    b: [f64; 3] = [1.0, 0.0, 0.0], "b" => ValueKind::Numbers(3, limits::POSITION),
+        Required("give the other end of its axis: `b: [x, y, z]`"), Some("b");
+    /// Metres, positive.
+    radius: f64 = 1.0, "radius" => ValueKind::Number(limits::OBSTACLE),
+        Required("give its radius in metres"), Some("radii");
+}
+
+declare! {
+    /// A surface of triangles, solid from both sides and without an inside.
+    MESH: Mesh, inside (colliders mesh), "a mapping with `vertices` and `triangles`", reserved [];
+
+    /// Rows x, y, z, m.
+    vertices: Table<3> = Table(Vec::new()), "vertices" => ValueKind::Table(3, limits::POSITION),
+        Required("list its corners: `vertices: [[x, y, z], ...]`"), Some("vertices");
+    /// Rows of three vertices, which count from 0.
+    triangles: Table<3> = Table(Vec::new()),
+        "triangles" => ValueKind::Table(3, Bounds::not_negative(limits::VERTICES, "a vertex")),
+        Required("list its triangles: `triangles: [[0, 1, 2], ...]`"), Some("triangles");
+}
+
+declare! {
+    /// The motion of an obstacle, in addition to its place: one of the three, as of a driven particle.
+    MOTION: Motion, inside (colliders driven), "one of `sine`, `velocity` and `table`", reserved [];
+
+    /// It swings.
+    sine: Option<Sine> = None, "sine" => ValueKind::Part(&MOTION_SINE), Usual, None;
+    /// Metres per second: it moves on and on. A plane that moves along itself is a belt.
+    velocity: Option<[f64; 3]> = None,
+        "velocity" => ValueKind::Numbers(3, Bounds::signed(limits::DRIVEN_SPEED, "m/s")), Usual, Some("velocities");
+    /// Rows of a time, s, ascending, and a displacement, m: it passes them on a natural cubic spline.
+    table: Option<Knots> = None,
+        "table" => ValueKind::Table(4, Bounds::signed(1e12, "s, then m")), Usual, Some("tables");
+}
+
+/// Rows [t, x, y, z] of a table, s and m.
+pub type Knots = Table<4>;
+
+/// Rows of as many numbers.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table<const N: usize>(pub Vec<[f64; N]>);
+
+impl<const N: usize> Field for Table<N> {
     fn value(&self, component: usize) -> Option<Value<'_>> {
-        self.0.get(component / 4)?.value(component % 4)
+        self.0.get(component / N)?.value(component % N)
     }
 
     fn put(&mut self, component: usize, value: Value<'_>) {
-        if component / 4 == self.0.len() {
-            self.0.push([0.0; 4]);
+        if component / N == self.0.len() {
+            self.0.push([0.0; N]);
         }
-        if let Some(row) = self.0.get_mut(component / 4) {
-            row.put(component % 4, value);
+        if let Some(row) = self.0.get_mut(component / N) {
+            row.put(component % N, value);
         }
     }
 }

@@ -127,20 +127,24 @@ macro_rules! words {
 /// The `key` of a part, and its members: one by its index (`get`, `get_mut`) and their number (`len`). A part is the scene `itself`, `one`
 /// member, `maybe` one, a `list`, or what is `inside` each member of one.
 macro_rules! member {
-    (key ($list:ident $part:ident)) => {
-        concat!(stringify!($list), ".", stringify!($part))
+    // `box` is a word of the language.
+    (key ($list:ident block)) => {
+        concat!(stringify!($list), ".box")
+    };
+    (key ($list:ident $part:ident $($inner:ident)?)) => {
+        concat!(stringify!($list), ".", stringify!($part) $(, ".", stringify!($inner))?)
     };
     (key $part:ident) => {
         stringify!($part)
     };
-    (len inside $scene:ident ($list:ident $part:ident)) => {
+    (len inside $scene:ident ($list:ident $($part:ident)+)) => {
         $scene.$list.len()
     };
-    (get inside $scene:ident ($list:ident $part:ident), $at:ident) => {
-        $scene.$list.get($at).and_then(|member| member.$part.as_ref())
+    (get inside $scene:ident ($list:ident $($part:ident)+), $at:ident) => {
+        $scene.$list.get($at)$(.and_then(|member| member.$part.as_ref()))+
     };
-    (get_mut inside $scene:ident ($list:ident $part:ident), $at:ident) => {
-        $scene.$list.get_mut($at).and_then(|member| member.$part.as_mut())
+    (get_mut inside $scene:ident ($list:ident $($part:ident)+), $at:ident) => {
+        $scene.$list.get_mut($at)$(.and_then(|member| member.$part.as_mut()))+
     };
     (len $how:ident $scene:ident $part:ident) => {
         member!(slice $how $scene $part).len()
@@ -172,8 +176,16 @@ macro_rules! member {
 }
 
 /// Declares a type of the model: its fields with their defaults, and the row of each. A field in
-/// brackets has no key.
+/// brackets has no key. A type that stands inside two parts has the rows of each.
 macro_rules! declare {
+    (
+        $(#[$about:meta])*
+        $name:ident $place:tt and $other:ident $beside:tt: $type:ident, inside, $expected:literal, reserved $reserved:expr;
+        $($rows:tt)*
+    ) => {
+        declare! { $(#[$about])* $name: $type, inside $place, $expected, reserved $reserved; $($rows)* }
+        part! { $other, inside $beside, $expected, reserved $reserved; $($rows)* }
+    };
     (
         $(#[$about:meta])*
         $name:ident: $type:ident, $how:ident $place:tt, $expected:literal, reserved $reserved:expr;
@@ -198,6 +210,22 @@ macro_rules! declare {
 
         impl Field for $type {}
 
+        part! {
+            $name, $how $place, $expected, reserved $reserved;
+            $($(#[doc = $summary])* $field: $of = $default, $key => $kind, $absent, $flat;)*
+        }
+    };
+}
+
+/// Declares the rows of a type in one place of the file.
+macro_rules! part {
+    (
+        $name:ident, $how:ident $place:tt, $expected:literal, reserved $reserved:expr;
+        $(
+            $(#[doc = $summary:literal])*
+            $field:ident: $of:ty = $default:expr, $key:literal => $kind:expr, $absent:expr, $flat:expr;
+        )*
+    ) => {
         pub static $name: Part = Part {
             key: member!(key $place),
             list: matches!(stringify!($how).as_bytes(), b"list"),
@@ -222,4 +250,4 @@ macro_rules! declare {
         };
     };
 }
-pub(super) use {declare, member, words};
+pub(super) use {declare, member, part, words};

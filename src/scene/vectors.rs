@@ -1,6 +1,7 @@
-//! A key that takes a number, [x, y, z] or a list of such vectors.
+//! A key that takes a number, [x, y, z] or a list of such vectors; and directions.
 
 use super::error::{Refusal, refuse};
+use super::place::Problem;
 use super::values::{Any, Number, Numbers, number};
 use serde::de::{Error, SeqAccess, Visitor};
 use std::fmt;
@@ -98,4 +99,21 @@ impl<F: FnMut(usize, Number) -> Result<(), Refusal>> Either for Element<'_, F> {
         let vector = Numbers(3, |axis, number| judge(3 * at + axis, number));
         vector.visit_seq(list).map(|()| true)
     }
+}
+
+/// Makes a direction a unit vector.
+pub(super) fn normalise(direction: &mut [f64; 3], path: &str) -> Result<(), Problem> {
+    // The vector is scaled first, so that the squares of tiny components do not vanish.
+    let largest = direction.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+    if largest == 0.0 {
+        let message = "expected a direction, found a vector of length 0";
+        return Problem::because(path, message, "");
+    }
+    let scaled = direction.map(|d| d / largest);
+    let length = scaled.iter().map(|d| d * d).sum::<f64>().sqrt();
+    // A unit vector, to the few roundings that made it one, stays as it is: once more would round it once more.
+    if (length * largest - 1.0).abs() > 8.0 * f64::EPSILON {
+        *direction = scaled.map(|d| d / length);
+    }
+    Ok(())
 }

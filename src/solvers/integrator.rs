@@ -2,7 +2,7 @@
 
 use super::{Counts, Engine};
 use crate::integrators::adaptive::{Adaptive, Pair};
-use crate::integrators::{Integrator, Method, Settings, StepError};
+use crate::integrators::{Coefficients, Integrator, Method, Settings, StepError, events};
 use crate::physics::constraints::{Corrections, limit, stabilise};
 use crate::physics::{Counting, ParticleSystem, State, System};
 use crate::scene::Scene;
@@ -23,11 +23,15 @@ pub fn advance(
     end: f64,
     state: &mut State,
 ) -> Result<Corrections, StepError> {
-    let start = system.rods().map(|_| state.clone());
-    let stepped = integrator.step(system, h, state).and_then(|()| {
+    let start = (system.rods().is_some() || system.obstacles().is_some()).then(|| state.clone());
+    let stepped = events::through(integrator, system, h, state).and_then(|impacts| {
         state.t = end;
         system.place(end, &mut state.x, &mut state.v);
-        correct(integrator.keeps_rods(), system, start.as_ref(), state)
+        let corrected = correct(integrator.keeps_rods(), system, start.as_ref(), state)?;
+        Ok(Corrections {
+            impacts,
+            ..corrected
+        })
     });
     if let (Err(_), Some(start)) = (&stepped, start) {
         *state = start;
@@ -136,6 +140,8 @@ pub struct AdaptiveEngine {
     state: State,
     until: f64,
     corrected: Corrections,
+    /// The formula that advances, for steps that an event cuts.
+    formula: Box<dyn Integrator>,
 }
 
 impl AdaptiveEngine {
@@ -154,6 +160,7 @@ impl AdaptiveEngine {
             state: ParticleSystem::initial_state(scene),
             until: if until.is_finite() { until } else { 0.0 },
             corrected: Corrections::default(),
+            formula: Coefficients::Pair(*pair).build(&Settings::default()),
         }
     }
 }
@@ -164,9 +171,25 @@ impl Engine for AdaptiveEngine {
         if self.done() {
             return Ok(());
         }
-        let start = self.system.rods().map(|_| self.state.clone());
+        let obstacles = self.system.obstacles();
+        let start =
+            (self.system.rods().is_some() || obstacles.is_some()).then(|| self.state.clone());
         self.stepper
             .step(&self.system, self.until, &mut self.state)?;
+        if let (Some(obstacles), Some(start)) = (obstacles, &start) {
+            // The pair has chosen the length of the step; what happens in it is found on steps of that length.
+            let end = self.state.t;
+            self.state = start.clone();
+            let formula = self.formula.as_mut();
+            self.corrected.impacts += events::step(
+                formula,
+                &self.system,
+                obstacles,
+                end - start.t,
+                &mut self.state,
+            )?;
+            self.state.t = end;
+        }
         let State { t, x, v, .. } = &mut self.state;
         self.system.place(*t, x, v);
         match (
@@ -209,7 +232,8 @@ fn evaluated(system: &Counting<ParticleSystem>, corrected: &Corrections) -> Coun
     Counts {
         force_evaluations: Some(evaluations.forces),
         damping_evaluations: Some(evaluations.damping),
-        corrections: system.strain_limiter().map(|_| *corrected),
+        corrections: (system.strain_limiter().is_some() || system.obstacles().is_some())
+            .then_some(*corrected),
         ..Counts::default()
     }
 }

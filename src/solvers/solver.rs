@@ -139,6 +139,8 @@ impl Solver {
     pub fn law(&self, scene: &Scene) -> Option<(&'static str, u32)> {
         match &self.source {
             Source::Method(method) if method.pair().is_none() => Some((method.id, 1)),
+            // Its contact has a law of its own.
+            Source::Forces(_) | Source::Joints(_) if !scene.colliders.is_empty() => None,
             Source::Method(_) | Source::Own(_) | Source::Program(_) => None,
             // Forces are set once a step and held over its substeps.
             Source::Forces(_) if self.substeps > 1 => {

@@ -162,7 +162,9 @@ pub fn find(
             "what a strain limit does depends on the timestep and on its sweeps: no motion is the true one",
         );
     }
-    if let Some(found) = closed::find(scene, system, until)
+    // Closed forms know of no obstacle.
+    let open = system.obstacles().is_none();
+    if let Some(found) = open.then(|| closed::find(scene, system, until)).flatten()
         && found.error_bound.is_finite()
     {
         return found;
@@ -198,7 +200,7 @@ pub fn expected(
     let few = scene.particles.len() <= FEW;
     if demand != Demand::Auto
         || system.strain_limiter().is_some()
-        || (few && closed::find(scene, system, until).is_some())
+        || (few && system.obstacles().is_none() && closed::find(scene, system, until).is_some())
     {
         return 0;
     }

@@ -8,7 +8,7 @@ use springcheck::measure::{CheckStatus, twin};
 use springcheck::physics::{
     ForceKinds, Jacobian, Linearization, ParticleSystem, Power, State, System,
 };
-use springcheck::scene::{DampingModel, Driven, Knots, Scene, Sine, Wind};
+use springcheck::scene::{DampingModel, Driven, Scene, Sine, Table, Wind};
 use springcheck::solvers::advance;
 use springcheck::truth::{self, Demand, Motion, NoStore};
 use std::cell::Cell;
@@ -63,7 +63,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         springs: vec![spring([0, 1], 30.0, 1.0)],
         driven: vec![Driven {
             // Rows where every method's steps end.
-            table: Some(Knots(vec![
+            table: Some(Table(vec![
                 [0.0, 0.0, 0.0, 0.0],
                 [0.2, 0.1, 0.0, 0.05],
                 [0.4, 0.3, -0.1, 0.0],

@@ -7,6 +7,7 @@ mod adaptive;
 mod bending;
 mod coincidence;
 mod conformance;
+mod contact;
 mod damping_flow;
 mod driven;
 mod effects;

@@ -418,7 +418,7 @@ fn a_chain_that_is_drawn_straight_fails_by_name() {
     );
     scene.driven = vec![Driven {
         particle: 2,
-        table: Some(springcheck::scene::Knots(vec![
+        table: Some(springcheck::scene::Table(vec![
             [0.0, 0.0, 0.0, 0.0],
             [1.0, 0.1, 0.0, 0.0],
             [4.0, 2.0, 0.0, 0.0],

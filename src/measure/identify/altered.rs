@@ -3,6 +3,7 @@
 
 use super::step::acceleration;
 use crate::integrators::StepError;
+use crate::physics::constraints::contact::Obstacles;
 use crate::physics::constraints::{Rods, StrainLimiter};
 use crate::physics::{Dampers, ForceKinds, Jacobian, Linearization, Power, State, Sweep, System};
 use crate::vector::axpy;
@@ -178,6 +179,10 @@ impl System for Altered<'_> {
 
     fn place(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
         self.inner.place(t, x, v);
+    }
+
+    fn obstacles(&self) -> Option<&Obstacles> {
+        self.inner.obstacles()
     }
 
     fn strain_limiter(&self) -> Option<&StrainLimiter> {

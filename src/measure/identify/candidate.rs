@@ -5,7 +5,7 @@ use super::altered::{Altered, Altering, Around};
 use super::keeping::{Keeping, Kept, keep};
 use super::step::Step;
 use crate::integrators::{
-    Coefficients, Integrator, Method, PerStep, Settings, StepError, Velocities, fixed,
+    Coefficients, Integrator, Method, PerStep, Settings, StepError, Velocities, events, fixed,
 };
 use crate::physics::constraints::limit;
 use crate::physics::{ParticleSystem, State, System};
@@ -368,11 +368,17 @@ impl<'a> Replayer<'a> {
             let fresh = |before| step.build(&self.settings, before);
             match (candidate.around, &mut self.kept) {
                 (Some(around), _) => {
-                    let one = |f: &dyn System, h, s: &mut State| fresh(None).step(f, h, s);
+                    let one = |f: &dyn System, h, s: &mut State| {
+                        events::through(fresh(None).as_mut(), f, h, s).map(|_| ())
+                    };
                     around(&one, system, inner, candidate.substeps, state)?;
                 }
-                (None, Some(kept)) => kept.step(system, inner, state)?,
-                (None, None) => fresh(before).step(system, inner, state)?,
+                (None, Some(kept)) => {
+                    events::through(kept.as_mut(), system, inner, state)?;
+                }
+                (None, None) => {
+                    events::through(fresh(before).as_mut(), system, inner, state)?;
+                }
             }
             self.scale(ScaledAt::Kick, inner, &start.x, state);
             self.scale(ScaledAt::End, inner, &start.x, state);

@@ -1,9 +1,10 @@
 //! What keeps a motion on a surface. Constraint forces are part of the acceleration ([`System::acceleration`]);
 //! what they leave to drift is taken away after a step ([`stabilise`]). A strain limit acts after a step alone
-//! ([`limit`]).
+//! ([`limit`]), obstacles within a step ([`contact`]).
 //!
 //! [`System::acceleration`]: crate::physics::System::acceleration
 
+pub mod contact;
 mod rods;
 mod strain;
 
@@ -25,7 +26,7 @@ pub struct ConstraintRow {
 }
 
 /// Every constraint.
-pub static REGISTRY: &[ConstraintRow] = &[rods::ROW, strain::ROW];
+pub static REGISTRY: &[ConstraintRow] = &[rods::ROW, strain::ROW, contact::ROW];
 
 /// Moves a state onto the rods, if they are stabilised so, and books the energy that this puts in.
 ///

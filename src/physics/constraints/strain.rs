@@ -15,7 +15,7 @@ use crate::scene::Scene;
 /// Lengths within this part of a limit are at it.
 const SLACK: f64 = 1e-9;
 
-/// What a limiter has done.
+/// What was done to a state within and after steps.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Corrections {
     /// Springs corrected, each time counted.
@@ -24,12 +24,15 @@ pub struct Corrections {
     pub sweeps: u64,
     /// The sum of the impulses that acted on fixed ends, N s.
     pub impulse: [f64; 3],
+    /// Impacts on obstacles.
+    pub impacts: u64,
 }
 
 impl std::ops::AddAssign for Corrections {
     fn add_assign(&mut self, other: Self) {
         self.springs += other.springs;
         self.sweeps += other.sweeps;
+        self.impacts += other.impacts;
         for (sum, part) in self.impulse.iter_mut().zip(other.impulse) {
             *sum += part;
         }

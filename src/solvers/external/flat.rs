@@ -3,8 +3,8 @@
 use super::Task;
 use crate::physics::System;
 use crate::scene::model::{
-    BENDING, DRIVEN, GRAVITATIONAL, PARTICLES, Part, RODS, Row, SINE, SPRINGS, STRAIN_LIMIT,
-    TRIANGLES, ValueKind,
+    BENDING, COLLIDERS, DRIVEN, GRAVITATIONAL, MESH, MOTION, MOTION_SINE, PARTICLES, Part, RODS,
+    Row, SINE, SPRINGS, STRAIN_LIMIT, TRIANGLES, ValueKind,
 };
 use crate::scene::{Scene, Value};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -34,6 +34,7 @@ impl Serialize for Flat<'_> {
         // What a program does not know it refuses, constraints too.
         effects.extend(system.rods().map(|_| "rods"));
         effects.extend(system.strain_limiter().map(|_| "strain_limit"));
+        effects.extend(system.obstacles().map(|_| "colliders"));
 
         let mut map = to.serialize_map(None)?;
         map.serialize_entry("schema_version", &SCHEMA_VERSION)?;
@@ -57,11 +58,49 @@ impl Serialize for Flat<'_> {
         if scene.strain_limit.is_some() {
             map.serialize_entry("strain_limit", &Keys(scene, &STRAIN_LIMIT))?;
         }
+        if !scene.colliders.is_empty() {
+            map.serialize_entry("colliders", &Colliders(scene))?;
+        }
         map.serialize_entry("gravitational", &Arrays(scene, &[&GRAVITATIONAL]))?;
         map.serialize_entry("effects", &effects)?;
         map.serialize_entry("timestep", &timestep)?;
         map.serialize_entry("duration", &scene.duration)?;
         map.serialize_entry("steps", &steps)?;
+        map.end()
+    }
+}
+
+/// The obstacles: which shape each has, what all have, and the arrays of each shape, with zeros where it is another.
+struct Colliders<'a>(&'a Scene);
+
+impl Serialize for Colliders<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let scene = self.0;
+        let shapes = COLLIDERS.rows.iter().filter_map(|row| match row.kind {
+            ValueKind::Part(part) if part.key != MOTION.key => Some((row.key, part)),
+            _ => None,
+        });
+        let mut map = to.serialize_map(None)?;
+        let has = |part: &Part, at| {
+            part.rows
+                .iter()
+                .any(|row| (row.get)(scene, at, 0).is_some())
+        };
+        let shape = |at| {
+            shapes
+                .clone()
+                .find(|(_, part)| has(part, at))
+                .map(|(key, _)| key)
+        };
+        let of_each: Vec<_> = (0..scene.colliders.len()).map(shape).collect();
+        map.serialize_entry("shapes", &of_each)?;
+        let radii: Vec<f64> = scene.particles.iter().map(|p| p.radius).collect();
+        map.serialize_entry("radii", &radii)?;
+        arrays(&mut map, scene, &COLLIDERS)?;
+        for (key, part) in shapes {
+            map.serialize_entry(key, &Arrays(scene, &[part]))?;
+        }
+        map.serialize_entry("driven", &Arrays(scene, &[&MOTION, &MOTION_SINE]))?;
         map.end()
     }
 }
@@ -73,7 +112,13 @@ fn arrays<M: SerializeMap>(map: &mut M, scene: &Scene, part: &Part) -> Result<()
         let count = (part.count)(scene);
         if let ValueKind::Table(width, _) = row.kind {
             let rows = (0..count).map(|at| row.values(scene, at).count() / width);
-            map.serialize_entry("rows", &rows.collect::<Vec<_>>())?;
+            // A mesh has two tables.
+            let key = if part.key == MESH.key {
+                format!("{name}_rows")
+            } else {
+                "rows".to_owned()
+            };
+            map.serialize_entry(&key, &rows.collect::<Vec<_>>())?;
         }
         map.serialize_entry(name, &Array(scene, row, count))?;
     }

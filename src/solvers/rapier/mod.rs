@@ -11,6 +11,7 @@
 mod forces;
 mod joints;
 mod mirrors;
+mod obstacles;
 mod settings;
 mod world;
 

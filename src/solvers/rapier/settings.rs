@@ -2,7 +2,7 @@
 
 /// The settings of rapier's solver, besides the timestep.
 ///
-/// rapier's continuous collision detection is always off here, since there is no contact.
+/// Where a scene has obstacles, its world changes what contact needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RapierSettings {
     /// `num_solver_iterations`, n: *substeps* of h = dt / n, each with a solve of its own. Not to

@@ -1,5 +1,6 @@
 //! A scene's particles as rapier bodies.
 
+use super::obstacles;
 use super::settings::RapierSettings;
 use crate::physics::State;
 use crate::physics::constraints::StrainLimiter;
@@ -13,8 +14,8 @@ use rapier3d::pipeline::PhysicsWorld;
 /// move.
 pub(super) const NEGLIGIBLE: f64 = 1e-20;
 
-/// A rapier world with one body for each particle, in the same order. It has no colliders, so rapier detects
-/// no collisions.
+/// A rapier world with one body for each particle, in the same order. Only where the scene has obstacles it has
+/// colliders, and rapier detects collisions.
 pub(super) struct World {
     inner: PhysicsWorld,
     bodies: Vec<RigidBodyHandle>,
@@ -22,6 +23,8 @@ pub(super) struct World {
     free: Vec<usize>,
     /// The motions of driven particles, which are kinematic bodies.
     drives: Vec<Drive>,
+    /// Obstacles that move.
+    moved: Vec<(RigidBodyHandle, Drive)>,
     /// The fixed body that stands for the air in drag joints; made on first use.
     air: Option<RigidBodyHandle>,
     /// Whether rapier disabled a body that was no longer finite.
@@ -87,11 +90,13 @@ impl World {
                 .can_sleep(false);
             bodies.push(inner.insert_body(body));
         }
+        let moved = obstacles::add(scene, &bodies, &mut inner)?;
         Ok(Self {
             inner,
             bodies,
             free,
             drives,
+            moved,
             air: None,
             quarantined: false,
         })
@@ -162,6 +167,11 @@ impl World {
         }
         if self.quarantined {
             return;
+        }
+        for (body, drive) in &self.moved {
+            if let Some(body) = self.inner.bodies.get_mut(*body) {
+                body.set_next_kinematic_translation(vector(drive.at(end)[0]));
+            }
         }
         self.inner.step();
         // rapier disables a body that is no longer finite and puts it back where it was, so a run that

@@ -6,6 +6,7 @@ use super::rate::scatter;
 use super::reference::STEPS;
 use super::stepper::Precise;
 use crate::physics::constraints::Rods;
+use crate::physics::constraints::contact::Obstacles;
 use crate::physics::{Power, System};
 use std::cell::RefCell;
 
@@ -163,6 +164,9 @@ impl System for Noisy<'_> {
     }
     fn rods(&self) -> Option<&Rods> {
         self.system.rods()
+    }
+    fn obstacles(&self) -> Option<&Obstacles> {
+        self.system.obstacles()
     }
     fn place(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
         self.system.place(t, x, v);

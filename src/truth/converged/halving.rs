@@ -106,8 +106,9 @@ pub(super) fn halve(
         let (next, next_all) = level.halved(size, most);
         mesh = next;
         let agreed = level.gap() <= target;
-        // Rods that depend on each other end a motion, and no smaller steps lead past that.
-        over += u32::from(system.rods().is_some() && level.ends_early());
+        // Rods that depend on each other end a motion, and so do obstacles that close in: no smaller steps lead past that.
+        let ends = system.rods().is_some() || system.obstacles().is_some();
+        over += u32::from(ends && level.ends_early());
         let shrunk = best
             .as_ref()
             .map(|best| best.shrunk_to(&level, target, size));

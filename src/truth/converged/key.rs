@@ -40,6 +40,12 @@ pub fn key(scene: &Scene, until: f64) -> String {
             }
         }
     }
+    // Radii are of balls among obstacles, and of nothing else.
+    if !scene.colliders.is_empty() {
+        for particle in &scene.particles {
+            hash.update(particle.radius.to_bits().to_le_bytes());
+        }
+    }
     let digest = hash.finalize();
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

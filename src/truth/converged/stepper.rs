@@ -2,6 +2,7 @@
 //! them, and whole integrations.
 
 use super::mesh::Mesh;
+use crate::integrators::{Integrator, StepError, events};
 use crate::physics::{State, System};
 use crate::truth::States;
 
@@ -116,6 +117,32 @@ pub(super) fn integrate<S: Stepper>(
     samples
 }
 
+/// A stepper as an integrator that can be cut at events. It forgets what is below the last bit.
+struct Cut<'s, S>(&'s mut S);
+
+impl<S: Stepper> Integrator for Cut<'_, S> {
+    fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
+        let mut at = Precise::from(&*state);
+        self.0.step(system, state.t, h, &mut at);
+        (state.x, state.v) = (at.x, at.v);
+        state.t += h;
+        Ok(())
+    }
+}
+
+/// One step, through the events within it; where those cannot be told apart, the state is NaN from here on.
+fn step<S: Stepper>(stepper: &mut S, system: &dyn System, t: f64, h: f64, state: &mut Precise) {
+    let Some(obstacles) = system.obstacles() else {
+        return stepper.step(system, t, h, state);
+    };
+    let mut at = State::new(state.x.clone(), state.v.clone());
+    at.t = t;
+    if events::step(&mut Cut(stepper), system, obstacles, h, &mut at).is_err() {
+        at.x.fill(f64::NAN);
+    }
+    *state = Precise::from(&at);
+}
+
 /// A step of `h` seconds from `t`, cut where a derivative of a given motion jumps.
 pub(super) fn through<S: Stepper>(
     stepper: &mut S,
@@ -128,11 +155,11 @@ pub(super) fn through<S: Stepper>(
     let jumps = system.jumps();
     let ahead = jumps[jumps.partition_point(|jump| *jump <= t)..].iter();
     for &jump in ahead.take_while(|jump| **jump < t + h) {
-        stepper.step(system, from, jump - from, state);
+        step(stepper, system, from, jump - from, state);
         keep(system, jump, state);
         (from, left) = (jump, t + h - jump);
     }
-    stepper.step(system, from, left, state);
+    step(stepper, system, from, left, state);
     keep(system, t + h, state);
 }
 

@@ -4,7 +4,8 @@ use super::plan::Plan;
 use super::record::Record;
 use super::truths::Truths;
 use super::{budget, identity, remarks};
-use crate::measure::{self, Deviation, Energy, EnergySeries, Statics, Strain, TOLERANCE};
+use crate::measure::{self, Contact, Deviation, Energy, EnergySeries, Statics, Strain, TOLERANCE};
+use crate::physics::System;
 use crate::solvers::Status;
 use crate::trajectory::Trajectory;
 use crate::verbs::run::{Outcome, WorkSummary};
@@ -29,12 +30,14 @@ pub fn all(
         let errors = trajectory.and_then(|run| truths.errors(timestep, run));
         let diverged = record.status == Status::Diverged;
         let early = trajectory.is_some() && record.status != Status::Completed;
-        // Programs do not say what their strain limit takes out.
+        // Programs and engines do not say what their strain limit or their contact takes out.
         let counted = record.counts.corrections.is_some();
         let judged = |series| {
             let energy = measure::judge(series, scale, diverged);
             Energy {
                 limited_j: energy.limited_j.filter(|_| counted),
+                impacts_j: energy.impacts_j.filter(|_| counted),
+                friction_j: energy.friction_j.filter(|_| counted),
                 ..energy
             }
         };
@@ -56,6 +59,11 @@ pub fn all(
             energy: series.as_ref().map(judged),
             rods: trajectory.and_then(|run| measure::constrained(&plan.system, run)),
             momentum: trajectory.and_then(|run| measure::momentum(plan.scene, &plan.system, run)),
+            contact: trajectory
+                .zip(plan.system.obstacles())
+                .and_then(|(run, obstacles)| {
+                    Contact::of(obstacles, plan.scene.size(), run, record.counts.corrections)
+                }),
             strain: trajectory
                 .and_then(|run| Strain::of(plan.scene, run, record.counts.corrections)),
             loads: statics

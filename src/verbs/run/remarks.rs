@@ -1,6 +1,6 @@
 //! The remarks of an outcome: plain sentences for the rows that need them.
 
-use super::identity::is_joined_for_rods;
+use super::identity::own_law;
 use super::plan::{Case, Plan};
 use crate::integrators::{Coefficients, EnergyLaw, Method, PerStep, Settings, Stable};
 use crate::measure::stability::{Effort, Limit, Linearised, Prediction};
@@ -58,13 +58,8 @@ pub fn remarks(
         }
     }
     remarks.extend(warning);
-    if outcome.status == Status::Completed && is_joined_for_rods(plan, case) {
-        remarks.push(
-            "its rods are spring joints of 1e9 N/m, which rapier's sweeps solve in part: distance from it is no error of \
-             yours"
-                .to_owned(),
-        );
-    }
+    let own = own_law(plan, case).filter(|_| outcome.status == Status::Completed);
+    remarks.extend(own.map(str::to_owned));
     remarks.extend(strain(plan, case, outcome));
     remarks.extend(coarse_drive(plan.scene, case.label.timestep));
     remarks.extend(latent(plan.scene));

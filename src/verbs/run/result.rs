@@ -2,7 +2,9 @@
 //! figures are drawn from.
 
 use crate::measure::identify::{Explained, Identity};
-use crate::measure::{Constrained, Deviation, Energy, ErrorSummary, Loads, Momentum, Strain};
+use crate::measure::{
+    Constrained, Contact, Deviation, Energy, ErrorSummary, Loads, Momentum, Strain,
+};
 use crate::solvers::{Built, SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use schemars::JsonSchema;
@@ -39,6 +41,9 @@ pub struct Outcome {
     pub rods: Option<Constrained>,
     /// Null where the scene keeps neither, or nothing was recorded.
     pub momentum: Option<Momentum>,
+    /// Contact with obstacles; null where the scene has none, or nothing was recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Contact>,
     /// The strain of springs; null where the scene has no strain limit, or nothing was recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strain: Option<Strain>,

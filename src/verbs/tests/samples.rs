@@ -83,6 +83,8 @@ fn judged(run: &Run) -> Energy {
         dissipated_j: Some(0.0),
         projected_j: None,
         limited_j: None,
+        impacts_j: None,
+        friction_j: None,
         injected_j: Some(0.0),
     }
 }
@@ -149,6 +151,7 @@ pub fn outcome(engine: &str, kind: SolverKind, timestep: f64) -> Outcome {
         deviation_m: BTreeMap::new(),
         energy: None,
         momentum: None,
+        contact: None,
         strain: None,
         loads: None,
         rods: None,

@@ -286,6 +286,7 @@ fn shipped_scenes_load() {
         "/cloth/",
         "/rods/",
         "/strain/",
+        "/contact/",
     ];
     let open = |s: &&Scene| open.iter().any(|of| s.file.contains(of));
     assert_eq!(scenes.len() - scenes.iter().filter(open).count(), 21);

@@ -1,6 +1,7 @@
 //! The scene reader: what it accepts, what it refuses and where, and that nothing upsets it.
 
 mod accepted;
+mod colliders;
 mod refused;
 mod rods;
 mod schema;

@@ -1,7 +1,7 @@
 //! Bad scenes, each with the exact place of its error. `»` marks the place and is taken out before
 //! parsing; the last column is what the message must say.
 
-use super::{NAMES, Row, complete, parse, rods};
+use super::{NAMES, Row, colliders, complete, parse, rods};
 use springcheck::scene::{self, SceneError, limits};
 use std::time::{Duration, Instant};
 
@@ -17,8 +17,8 @@ const PARTS: &[Row] = &[
     ("duplicate", "duration: 5\nname: a\n»duration: 6", &["duration", "given twice"]),
     ("duplicate inside", "springs:\n- particle_ids: [0, 1]\n  stiffness: 1\n  »stiffness: 2", &["springs[0].stiffness", "given twice"]),
     ("merge", "plot:\n  »<<: {dof: 1}\n  particle_id: 0", &["plot", "merge keys", "alias a whole value"]),
-    ("later", "springs: []\n»colliders: []", &["colliders", "not supported yet"]),
-    ("later, colliders", "»colliders: []", &["not supported yet"]),
+    ("later", "springs: []\n»contact: {}", &["contact", "not supported yet"]),
+    ("later, contact", "»contact: {}", &["not supported yet"]),
     ("moving air under wind", "wind: {direction: [1, 0, 0], »density: 3}", &["wind", "unknown key `density`", "`density` stands under `air`"]),
     ("later, profile", "wind: {direction: [1, 0, 0], »profile: log}", &["wind.profile", "not supported yet"]),
     ("list as key", "»[1, 2]: 3", &["expected a key, found a list"]),
@@ -337,6 +337,7 @@ fn judge(rows: &[Row], prepare: impl Fn(&str) -> String) {
 fn bad_parts_are_refused_at_their_place() {
     judge(PARTS, complete);
     judge(rods::REFUSED, complete);
+    judge(colliders::REFUSED, complete);
 }
 
 #[test]

@@ -88,9 +88,16 @@ fn properties<'s>(schema: &'s Value, part: &Part) -> &'s Value {
 /// The keys of which a member has exactly one, which no schema says.
 const ONE_OF: [&str; 3] = ["driven.sine", "driven.velocity", "driven.table"];
 
+/// All parts but those of obstacles, of which each has one shape: they have cases of their own.
+fn parts() -> impl Iterator<Item = &'static Part> {
+    PARTS
+        .into_iter()
+        .filter(|part| !part.key.starts_with("colliders"))
+}
+
 fn all_rows() -> impl Iterator<Item = (&'static Part, &'static Row)> {
     let rows = |part: &'static Part| part.rows.iter().map(move |row| (part, row));
-    PARTS.into_iter().flat_map(rows)
+    parts().flat_map(rows)
 }
 
 /// Values inside and outside of what a key takes. Those inside differ from one another where several values have to
@@ -316,7 +323,7 @@ fn the_schema_and_the_reader_agree_on_every_key() {
             agree(&without, optional, &format!("without {path}"));
         }
     }
-    for part in PARTS {
+    for part in parts() {
         for key in ["unknown", "Mass", "bending", "velocity"] {
             let mut scene = full();
             member(&mut scene, part)[key] = json!(1);

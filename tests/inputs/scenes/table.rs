@@ -4,9 +4,9 @@
 use super::{NAMES, parse};
 use crate::testkit::all_effects;
 use springcheck::physics::ParticleSystem;
-use springcheck::scene::model::{Absent, PARTS, Part, Row, SCENE, ValueKind};
+use springcheck::scene::model::{self, Absent, PARTS, Part, Row, SCENE, ValueKind};
 use springcheck::scene::{
-    Constraints, DampingModel, Driven, Knots, Plot, Rod, Scene, Sine, StrainLimit, Value,
+    Collider, Constraints, DampingModel, Driven, Plot, Rod, Scene, Sine, StrainLimit, Table, Value,
 };
 use springcheck::solvers::external::{Flat, Task};
 use springcheck::truth::converged::key;
@@ -42,8 +42,26 @@ fn full() -> Scene {
     scene.driven.push(Driven {
         sine: Some(Sine::default()),
         velocity: Some([0.0; 3]),
-        table: Some(Knots(vec![[0.0; 4], [1.0; 4]])),
+        table: Some(Table(vec![[0.0; 4], [1.0; 4]])),
         ..Driven::default()
+    });
+    // No obstacle may have two shapes.
+    let corners = Table(vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    scene.colliders.push(Collider {
+        plane: Some(model::Plane::default()),
+        ball: Some(model::Ball::default()),
+        block: Some(model::Block::default()),
+        capsule: Some(model::Capsule::default()),
+        mesh: Some(model::Mesh {
+            vertices: corners,
+            triangles: Table(vec![[0.0, 1.0, 2.0]]),
+        }),
+        driven: Some(model::Motion {
+            sine: Some(Sine::default()),
+            velocity: Some([0.0; 3]),
+            table: Some(Table(vec![[0.0; 4], [1.0; 4]])),
+        }),
+        ..Collider::default()
     });
     scene.rods.push(Rod::default());
     scene.strain_limit = Some(StrainLimit::default());
@@ -122,18 +140,22 @@ fn a_change_is_seen_by_whatever_depends_on_it() {
             assert_eq!((row.get)(&scene, at, component), Some(changed), "{title}");
             assert_ne!(scene, original, "{title}");
 
-            let moves = row.flat.is_some();
+            // Among obstacles radii matter, and programs get them there.
+            let radius = (part.key, row.key) == ("particles", "radius");
+            let moves = row.flat.is_some() || radius;
             assert_eq!(key(&scene, 5.0) != key(&original, 5.0), moves, "{title}");
             let name = row.flat.map(|name| match part.key {
                 "springs" | "rods" | "bending" | "gravitational" | "triangles" => {
                     format!("{}.{name}", part.key)
                 }
                 "driven" | "driven.sine" => format!("driven.{name}"),
+                "colliders.driven.sine" => format!("colliders.driven.{name}"),
+                key if key.starts_with("colliders") => format!("{key}.{name}"),
                 _ => name.to_owned(),
             });
             // Programs get it though no truth depends on it.
             let limit = (part.key == "strain_limit").then_some(title.clone());
-            let name = name.or(limit);
+            let name = name.or(limit).or(radius.then(|| "colliders.radii".into()));
             let found = differences(&flat(&scene), &flat(&original));
             assert_eq!(found, Vec::from_iter(name), "{title}");
 
@@ -170,7 +192,7 @@ fn every_number_that_moves_something_can_be_varied() {
 }
 
 /// The keys a scene has to have, with one member of every part, in the order of [`PARTS`].
-const REQUIRED: [(&str, &[(&str, &str)]); 16] = [
+const REQUIRED: [(&str, &[(&str, &str)]); 24] = [
     ("springs", &[("particle_ids", "[0, 1]"), ("stiffness", "1")]),
     ("rods", &[("particle_ids", "[0, 1]")]),
     ("constraints", &[]),
@@ -190,6 +212,15 @@ const REQUIRED: [(&str, &[(&str, &str)]); 16] = [
         "driven.sine",
         &[("amplitude", "[0.1, 0, 0]"), ("omega", "5")],
     ),
+    // What an obstacle has depends on its shape: see the tests of colliders.
+    ("colliders", &[]),
+    ("colliders.plane", &[]),
+    ("colliders.ball", &[]),
+    ("colliders.box", &[]),
+    ("colliders.capsule", &[]),
+    ("colliders.mesh", &[]),
+    ("colliders.driven", &[]),
+    ("colliders.driven.sine", &[]),
     ("wind", &[("direction", "[1, 0, 0]"), ("strength", "1")]),
     ("air", &[]),
     ("magnetic", &[("field", "[0, 0, 1]")]),
@@ -224,6 +255,7 @@ fn written(changed: Option<(&Part, &Row, &str)>) -> String {
         let lines: Vec<String> = lines.collect();
         text += &match *key {
             "file" => lines.join("\n"),
+            key if key.starts_with("colliders") => String::new(),
             "particles" => format!(
                 "particles: [{{pos: [0, 0, 1], mass: 1, fixed: true}}, {{pos: [0, 1, 0], mass: 1}}, {{{}}}]\n",
                 lines.join(", ")
@@ -266,8 +298,8 @@ fn numbers_are_read_at_their_bounds_and_refused_beyond() {
         let (ValueKind::Number(quantity) | ValueKind::Numbers(_, quantity)) = row.kind else {
             continue;
         };
-        // A rod has the length of its start.
-        if part.key == "rods" {
+        // A rod has the length of its start, and an obstacle lets no particle start inside.
+        if part.key == "rods" || part.key.starts_with("colliders") {
             continue;
         }
         let springcheck::scene::limits::Bounds { low, high, unit } = quantity;
@@ -334,7 +366,7 @@ fn a_key_left_out_means_the_default_or_is_missed() {
     for row in all.filter(|row| matches!(row.kind, ValueKind::Part(_))) {
         (row.set)(&mut defaults, 0, 0, Value::Flag(true));
     }
-    for (part, row) in rows() {
+    for (part, row) in rows().filter(|(part, _)| !part.key.starts_with("colliders")) {
         let at = (part.count)(&scene) - 1;
         let title = part.path(Some(at), row.key);
         match row.absent {

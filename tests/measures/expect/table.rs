@@ -65,8 +65,8 @@ fn leaves(path: &str, value: &Value, found: &mut BTreeMap<String, Value>) {
     }
 }
 
-/// Momentum is kept, everybody is a reference, and there is a truth; once more with a strain limit, and a pendulum whose rod
-/// drifts.
+/// Momentum is kept, everybody is a reference, and there is a truth; once more with a strain limit, a pendulum whose rod
+/// drifts, and a ball that bounces.
 fn everything() -> BTreeMap<String, Value> {
     let mut scene = free_triangle(0.0, DampingModel::Axial);
     scene.duration = 1.0;
@@ -79,11 +79,14 @@ fn everything() -> BTreeMap<String, Value> {
     limited.strain_limit = Some(StrainLimit::default());
     let drifting = shipped("rods/unstabilised.yml");
     let rods = Choice::default_for(&drifting);
+    let bouncing = shipped("contact/bouncing.yml");
+    let contact = Choice::default_for(&bouncing);
     let mut found = BTreeMap::new();
     for report in [
         run(&scene, &choice),
         run(&limited, &choice),
         run(&drifting, &rods),
+        run(&bouncing, &contact),
     ] {
         for outcome in report.outcomes() {
             let value = serde_json::to_value(outcome).expect("JSON");

@@ -6,7 +6,7 @@ use crate::testkit::{distance, driven, everything, is_its_own, part, swinging_tr
 use springcheck::integrators::{Settings, fixed};
 use springcheck::measure::identify::{Candidate, MISTAKES, Wrong, first_fault, identify, mistakes};
 use springcheck::physics::{ParticleSystem, State, System};
-use springcheck::scene::{DampingModel, Knots, Scene, StrainLimit};
+use springcheck::scene::{DampingModel, Scene, StrainLimit, Table};
 use springcheck::trajectory::Precision;
 use std::collections::BTreeMap;
 
@@ -123,7 +123,7 @@ fn every_mistake_can_be_made_and_speaks() {
     };
     let mut table = scene(DampingModel::Axial);
     table.driven[0].sine = None;
-    table.driven[0].table = Some(Knots(vec![
+    table.driven[0].table = Some(Table(vec![
         [0.0; 4],
         [1.0, 0.1, 0.0, 0.0],
         [2.0, 0.0, 0.0, 0.0],

@@ -5,7 +5,7 @@ use super::form;
 use crate::testkit::scenes::{chain, empty, fixed, free, shipped, spring};
 use crate::testkit::{Random, distance};
 use springcheck::physics::ParticleSystem;
-use springcheck::scene::{DampingModel, Driven, Knots, Scene, Sine};
+use springcheck::scene::{DampingModel, Driven, Scene, Sine, Table};
 use springcheck::truth::converged;
 use springcheck::truth::{Motion, NoStore};
 
@@ -173,7 +173,7 @@ fn no_form_of_what_leaves_its_line_or_is_a_table() {
     assert!(form(&aside, 1.0).is_none());
     let mut table = scene.clone();
     table.driven = vec![Driven {
-        table: Some(Knots(vec![[0.0; 4], [1.0, 0.1, 0.0, 0.0]])),
+        table: Some(Table(vec![[0.0; 4], [1.0, 0.1, 0.0, 0.0]])),
         ..Driven::default()
     }];
     assert!(form(&table, 1.0).is_none());
@@ -201,7 +201,7 @@ fn a_table_is_passed_on_a_natural_spline() {
     let scene = Scene {
         particles: vec![fixed([0.0; 3]), free([1.0, 0.0, 0.0], 1.0)],
         driven: vec![Driven {
-            table: Some(Knots(rows.map(|[t, x]| [t, x, -x, 0.0]).to_vec())),
+            table: Some(Table(rows.map(|[t, x]| [t, x, -x, 0.0]).to_vec())),
             ..Driven::default()
         }],
         ..empty()

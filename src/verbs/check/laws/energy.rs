@@ -18,10 +18,11 @@ pub(super) const BOUNDED: Row = Row {
     remedy: "a force of another time or place in the kick, a step that changes, or a force without a potential",
     judge: Some(|ran| {
         // A drive feeds energy in and out, and at resonance without end. On rods motion is none of oscillators, and what a
-        // strain limit does is not symplectic.
+        // strain limit or an obstacle does is not symplectic.
         let system = ran.system();
         let kinds = system.kinds();
-        let steady = system.drives().is_empty() && system.strain_limiter().is_none();
+        let limited = system.strain_limiter().is_some() || system.obstacles().is_some();
+        let steady = system.drives().is_empty() && !limited;
         if kinds.depends_on_velocity() || !steady || kinds.has(ForceKinds::CONSTRAINED) {
             return Vec::new();
         }

@@ -108,7 +108,8 @@ impl<'a> Ran<'a> {
 
     /// Whether nothing is fixed.
     pub fn is_free(&self) -> bool {
-        self.scene().particles.iter().all(|p| !p.fixed)
+        // Obstacles push, as what is fixed does.
+        self.scene().particles.iter().all(|p| !p.fixed) && self.scene().colliders.is_empty()
     }
 
     /// The relative rounding of one of a run's numbers in each step: that of its arithmetic, and of its solves.

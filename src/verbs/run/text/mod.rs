@@ -1,6 +1,7 @@
 //! The text of `run` and `compare`: one row for each engine and timestep, and the first deviating step of a
 //! comparison.
 
+mod contact;
 mod identity;
 mod ledger;
 mod rods;
@@ -44,6 +45,7 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome], columns: usize) -> Vie
         facts.extend(ledger::lines(report));
         facts.extend(ledger::own_loads(report));
         facts.extend(strain::own(report));
+        facts.extend(contact::own(report));
     }
     facts.extend(rods::lines(report));
     // The verdict of a comparison is the identity.
@@ -118,6 +120,7 @@ pub fn page(report: &Report, view: &View) -> String {
         section("Loads", ledger::loads(report)),
         section("Rods", rods::markdown(report)),
         section("Strain limit", strain::table(report)),
+        section("Contact", contact::table(report)),
         section("Effects that ran", ledger::effects(report)),
         LEGEND.to_owned(),
     ]

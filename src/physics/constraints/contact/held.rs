@@ -1,0 +1,471 @@
+//! The motion of particles that stay in contact: the same system in coordinates of which some are given.
+//!
+//! Each such particle has axes of its own. Along the first ones, the normals of its contacts, it moves as its obstacles
+//! do: these coordinates are fixed ones. Where it slides, the next axis is the direction it slides in, along which friction
+//! acts; where it sticks, all three are given. Every integrator sees flat vectors with some fixed coordinates, so each
+//! keeps what it has.
+//!
+//! On a surface that bends nothing is given to a method that takes rods: N then acts among the forces, at the normal of the
+//! moment, and the particle is moved back onto the surface after the step. Any other method has the plane that touches the
+//! surface where the step begins, which is of first order.
+//!
+//! The normal forces N ≥ 0 are those that keep it on the surface: N = m (n·a_s - n·a), a without them and a_s the
+//! surface's, turning included (complementarity: a contact that would have to pull is none).
+
+use super::member::{Contact, Member, approach, multipliers, unit};
+use super::{Beside, Obstacles, dot, minus, norm, three};
+use crate::physics::{
+    Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, State, System, Triplets,
+};
+
+/// Particles that stay in contact from one instant on, and the system they are part of.
+pub struct Held<'s> {
+    system: &'s dyn System,
+    obstacles: &'s Obstacles,
+    members: Vec<Member>,
+    inverse_mass: Vec<f64>,
+    /// The acceleration without contact at the beginning, m/s².
+    begins: Vec<f64>,
+    /// When it begins, s.
+    since: f64,
+    /// Whether friction acts among the forces. Where it turns, a method whose forces must not depend on velocity takes it
+    /// apart: see [`slow_down`](Self::slow_down).
+    friction: bool,
+}
+
+/// What ends a motion in contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    /// A contact would have to pull.
+    Leaves,
+    /// What slid has come to rest.
+    Stops,
+    /// What stuck begins to slide.
+    Slips,
+}
+
+impl<'s> Held<'s> {
+    /// What stays in contact from a state on, for a method that takes forces of these kinds; None where nothing does.
+    pub fn at(
+        system: &'s dyn System,
+        obstacles: &'s Obstacles,
+        state: &State,
+        taken: ForceKinds,
+    ) -> Option<Self> {
+        let any_velocity = taken.has(ForceKinds::NON_LINEAR);
+        let follow = taken.has(ForceKinds::CONSTRAINED);
+        let touching = obstacles.touching(state.t, &state.x, &state.v);
+        let mut resting = touching.iter().filter(|beside| beside.rests()).peekable();
+        resting.peek()?;
+        let mut a = vec![0.0; state.x.len()];
+        system.acceleration(state.t, &state.x, &state.v, &mut a);
+        let mut members: Vec<Member> = Vec::new();
+        let mut all: Vec<Beside> = resting.copied().collect();
+        while let Some(first) = all.first() {
+            let particle = first.particle;
+            let count = all.partition_point(|beside| beside.particle == particle);
+            let own: Vec<Beside> = all.drain(..count).collect();
+            let x = three(&state.x, particle);
+            let a = three(&a, particle);
+            members.extend(Member::new(obstacles, &own, state.t, [x, a], follow));
+        }
+        if members.is_empty() {
+            return None;
+        }
+        let mut inverse_mass = system.inverse_mass().to_vec();
+        for member in &members {
+            let at = 3 * member.particle;
+            inverse_mass[at..at + member.given].fill(0.0);
+        }
+        let turns = members
+            .iter()
+            .any(|member| member.slides && !member.straight);
+        Some(Self {
+            system,
+            obstacles,
+            members,
+            inverse_mass,
+            begins: a,
+            since: state.t,
+            friction: any_velocity || !turns,
+        })
+    }
+
+    /// The state in the particles' own axes.
+    pub fn inward(&self, state: &State) -> State {
+        let mut own = state.clone();
+        self.turn(&mut own.x);
+        self.turn(&mut own.v);
+        self.place(state.t, &mut own.x, &mut own.v);
+        own
+    }
+
+    /// The state in the axes of space, on surfaces that bend too.
+    pub fn outward(&self, own: &State) -> State {
+        let mut state = own.clone();
+        self.turn_back(&mut state.x);
+        self.turn_back(&mut state.v);
+        for member in &self.members {
+            member.project(self.obstacles, &mut state);
+        }
+        state
+    }
+
+    fn turn(&self, all: &mut [f64]) {
+        for member in &self.members {
+            let own = member.inward(three(all, member.particle));
+            all[3 * member.particle..3 * member.particle + 3].copy_from_slice(&own);
+        }
+    }
+
+    fn turn_back(&self, all: &mut [f64]) {
+        for member in &self.members {
+            let out = member.outward(three(all, member.particle));
+            all[3 * member.particle..3 * member.particle + 3].copy_from_slice(&out);
+        }
+    }
+
+    /// Where the friction of sliding particles is not among the forces: its flow over `h`, s, at a state in the axes of
+    /// space, which takes µ N h / m off the speed and leaves its direction.
+    pub fn slow_down(&self, h: f64, state: &mut State) {
+        if self.friction {
+            return;
+        }
+        let a = if state.t == self.since {
+            self.begins.clone()
+        } else {
+            self.free(state)
+        };
+        for member in self.members.iter().filter(|member| member.slides) {
+            let member = member.now(self.obstacles, state.t, &state.x, &state.v);
+            let pressed = member.pressed(self.obstacles, state.t, three(&a, member.particle));
+            let along = member.outer_sliding(self.obstacles, state);
+            let fast = norm(along);
+            let lost = (h * member.resistance(&pressed, 0)).min(fast);
+            if fast > 0.0 {
+                for axis in 0..3 {
+                    state.v[3 * member.particle + axis] -= lost / fast * along[axis];
+                }
+            }
+        }
+    }
+
+    /// The acceleration without contact at a state in the axes of space, m/s².
+    pub fn free(&self, state: &State) -> Vec<f64> {
+        let mut a = vec![0.0; state.x.len()];
+        self.system
+            .acceleration(state.t, &state.x, &state.v, &mut a);
+        a
+    }
+
+    /// What has changed at a state in the axes of space, with the acceleration `a` without contact there, by how much: the
+    /// largest violation, negative where none is. Each is a continuous function of time, and 0 where the change is due.
+    pub fn changes(&self, state: &State, a: &[f64]) -> Vec<(usize, Change, f64)> {
+        let mut found = Vec::new();
+        for member in &self.members {
+            let member = member.now(self.obstacles, state.t, &state.x, &state.v);
+            let pressed = member.pressed(self.obstacles, state.t, three(a, member.particle));
+            for n in &pressed {
+                found.push((member.particle, Change::Leaves, -n));
+            }
+            if member.slides {
+                let along = member.outer_sliding(self.obstacles, state);
+                let forward = dot(member.forward(), along);
+                found.push((member.particle, Change::Stops, -forward));
+            } else if member.sticks() {
+                let pull = member.pull(self.obstacles, state.t, three(a, member.particle));
+                let most = member.resistance(&pressed, 1);
+                found.push((member.particle, Change::Slips, norm(pull) - most));
+            }
+        }
+        found
+    }
+
+    /// Gives what has stopped the velocity of its obstacle.
+    pub fn stop(&self, particle: usize, state: &mut State) {
+        let found = self
+            .members
+            .iter()
+            .find(|member| member.particle == particle);
+        if let Some(member) = found.filter(|member| member.slides) {
+            let along = member.outer_sliding(self.obstacles, state);
+            for axis in 0..3 {
+                state.v[3 * particle + axis] -= along[axis];
+            }
+        }
+    }
+
+    /// Adds the work of friction and of moving obstacles over `h` seconds from a state to another, at which the
+    /// acceleration without contact is `a`: by Simpson's rule, with the middle of the cubic through both.
+    pub fn book(&self, h: f64, start: &State, end: &mut State, a: &[f64]) {
+        if !self.obstacles.any_moves() && !self.members.iter().any(|member| member.slides) {
+            return;
+        }
+        let mut middle = end.clone();
+        middle.t = start.t + 0.5 * h;
+        for at in 0..end.x.len() {
+            let ([x0, x1], [v0, v1]) = ([start.x[at], end.x[at]], [start.v[at], end.v[at]]);
+            middle.x[at] = 0.5 * (x0 + x1) + 0.125 * h * (v0 - v1);
+            middle.v[at] = 1.5 * (x1 - x0) / h - 0.25 * (v0 + v1);
+        }
+        let parts = [
+            self.powers(start, &self.begins),
+            self.powers(&middle, &self.free(&middle)),
+            self.powers(end, a),
+        ];
+        for ([lost, given], weight) in parts.into_iter().zip([1.0, 4.0, 1.0]) {
+            end.work.friction += weight * h / 6.0 * lost;
+            end.work.injected += weight * h / 6.0 * given;
+        }
+    }
+
+    /// The power lost to friction, and that of the obstacles' motions, W, at a state in the axes of space with the
+    /// acceleration `a` without contact.
+    fn powers(&self, state: &State, a: &[f64]) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        for member in &self.members {
+            let member = member.now(self.obstacles, state.t, &state.x, &state.v);
+            let mass = 1.0 / self.system.inverse_mass()[3 * member.particle];
+            let free = three(a, member.particle);
+            let pressed = member.pressed(self.obstacles, state.t, free);
+            let moved = member.contacts[0].beside.obstacle;
+            let [_, along, pushed] = self.obstacles.obstacles[moved].moved(state.t);
+            let mut force = [0.0; 3];
+            for (n, contact) in pressed.iter().zip(&member.contacts) {
+                for axis in 0..3 {
+                    force[axis] += n * contact.beside.normal[axis];
+                }
+            }
+            if member.slides {
+                let sliding = member.outer_sliding(self.obstacles, state);
+                let forward = member.forward();
+                let turns = !member.straight && dot(forward, sliding) > 0.0;
+                let direction = unit(sliding).filter(|_| turns).unwrap_or(forward);
+                let lost = member.resistance(&pressed, 0);
+                sums[0] += mass * lost * dot(direction, sliding);
+                for axis in 0..3 {
+                    force[axis] -= lost * direction[axis];
+                }
+            } else if member.sticks() {
+                force = minus(pushed, free);
+            }
+            sums[1] += mass * dot(force, along);
+        }
+        sums
+    }
+
+    /// Whether this particle stays on this obstacle.
+    pub fn holds(&self, particle: usize, obstacle: usize) -> bool {
+        let contacts = self.member(particle).map(|member| &member.contacts);
+        contacts.is_some_and(|all| all.iter().any(|one| one.beside.obstacle == obstacle))
+    }
+
+    /// Adds friction to an acceleration in the particles' own axes, and sets given coordinates to 0.
+    fn constrain(&self, t: f64, x: &[f64], v: Option<&[f64]>, a: &mut [f64]) {
+        for member in &self.members {
+            let at = 3 * member.particle;
+            let own = three(a, member.particle);
+            if member.follows {
+                let added = member.inward(self.follow(member, t, x, v, member.outward(own)));
+                for axis in 0..3 {
+                    a[at + axis] += added[axis];
+                }
+                continue;
+            }
+            if member.slides && self.friction {
+                let free = member.outward(own);
+                let pressed = member.pressed(self.obstacles, t, free);
+                let lost = member.resistance(&pressed, 0);
+                let along = v.map_or([1.0, 0.0], |v| member.direction(self.obstacles, t, v));
+                a[at + member.given] -= lost * along[0];
+                if member.given == 1 {
+                    a[at + 2] -= lost * along[1];
+                }
+            }
+            a[at..at + member.given].fill(0.0);
+        }
+    }
+
+    /// What a surface that bends adds to the acceleration `a`, in the axes of space, of a particle at positions and
+    /// velocities in the particles' own axes.
+    fn follow(
+        &self,
+        member: &Member,
+        t: f64,
+        x: &[f64],
+        v: Option<&[f64]>,
+        a: [f64; 3],
+    ) -> [f64; 3] {
+        let out = |all: &[f64]| member.outward(three(all, member.particle));
+        let (place, velocity) = (out(x), v.map_or([0.0; 3], out));
+        let contact = &member.contacts[0];
+        let at = self
+            .obstacles
+            .lone(contact.beside.obstacle, member.particle, t, place, velocity);
+        let now = Contact::new(self.obstacles, at);
+        let pressed = -approach(self.obstacles, &now, t, a);
+        let mut added = now.beside.normal.map(|n| pressed * n);
+        if member.slides && self.friction {
+            let along = now.beside.sliding();
+            let forward = dot(along, member.forward()) > 0.0;
+            let direction = unit(along).filter(|_| forward).unwrap_or(member.forward());
+            let lost = now.friction[0] * pressed.max(0.0);
+            for (added, along) in added.iter_mut().zip(direction) {
+                *added -= lost * along;
+            }
+        }
+        added
+    }
+
+    /// Positions and velocities in the axes of space.
+    fn seen<T>(&self, x: &[f64], v: &[f64], see: impl FnOnce(&[f64], &[f64]) -> T) -> T {
+        let (mut x, mut v) = (x.to_vec(), v.to_vec());
+        self.turn_back(&mut x);
+        if !v.is_empty() {
+            self.turn_back(&mut v);
+        }
+        see(&x, &v)
+    }
+
+    fn member(&self, particle: usize) -> Option<&Member> {
+        let found = self.members.binary_search_by_key(&particle, |m| m.particle);
+        found.ok().map(|at| &self.members[at])
+    }
+
+    /// The entries of a Jacobian in the particles' own axes.
+    fn turned(&self, entries: &Triplets, exact: bool, out: &mut Triplets) {
+        for &(row, column, value) in entries {
+            let [from, to] = [row, column].map(|at| self.member(at / 3));
+            let rows = from.map_or(vec![(row, 1.0)], |member| {
+                member.rows(row, exact && self.friction)
+            });
+            let columns = to.map_or(vec![(column, 1.0)], |member| member.columns(column));
+            for (row, by) in &rows {
+                for (column, along) in &columns {
+                    out.push((*row, *column, by * along * value));
+                }
+            }
+        }
+    }
+}
+
+impl System for Held<'_> {
+    fn inverse_mass(&self) -> &[f64] {
+        &self.inverse_mass
+    }
+
+    fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
+        let (mut own_x, mut own_v) = (x.to_vec(), v.to_vec());
+        self.place(t, &mut own_x, &mut own_v);
+        let still = v.iter().all(|v| *v == 0.0);
+        let seen = if still { v } else { &own_v };
+        let power = self.seen(&own_x, seen, |x, v| self.system.acceleration(t, x, v, a));
+        self.turn(a);
+        self.constrain(t, &own_x, (!still).then_some(&own_v[..]), a);
+        power
+    }
+
+    fn rounding(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
+        self.seen(x, v, |x, v| self.system.rounding(t, x, v, a));
+        for member in &self.members {
+            let off: f64 = three(a, member.particle).iter().sum();
+            a[3 * member.particle..3 * member.particle + 3].fill(off);
+        }
+    }
+
+    fn kinds(&self) -> ForceKinds {
+        let mut kinds = self.system.kinds();
+        if self.obstacles.any_moves() {
+            kinds = kinds | ForceKinds::DRIVEN;
+        }
+        let turns = self
+            .members
+            .iter()
+            .any(|member| member.slides && !member.straight);
+        if self.friction && turns {
+            kinds = kinds | ForceKinds::NON_LINEAR;
+        }
+        if self.members.iter().any(|member| member.follows) {
+            kinds = kinds | ForceKinds::CONSTRAINED;
+        }
+        kinds
+    }
+
+    fn place(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
+        self.system.place(t, x, v);
+        for member in &self.members {
+            let [place, speed] = member.placed(self.obstacles, self.since, t);
+            let at = 3 * member.particle;
+            for axis in 0..member.given {
+                x[at + axis] = place[axis];
+                if let Some(v) = v.get_mut(at + axis) {
+                    *v = speed[axis];
+                }
+            }
+        }
+    }
+
+    fn jumps(&self) -> &[f64] {
+        self.system.jumps()
+    }
+
+    fn damping(&self, t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
+        self.seen(x, w, |x, w| self.system.damping(t, x, w, a));
+        self.turn(a);
+        for member in &self.members {
+            let at = 3 * member.particle;
+            if member.slides && self.friction {
+                // Linear in the force: what presses rubs.
+                let free = member.outward(three(a, member.particle));
+                let none = multipliers(self.obstacles, &member.contacts, t, [0.0; 3]);
+                let some = multipliers(self.obstacles, &member.contacts, t, free);
+                let each = some.iter().zip(&none).zip(&member.contacts);
+                let lost: f64 = each.map(|((n, o), c)| c.friction[0] * (n - o)).sum();
+                a[at + member.given] -= lost;
+            }
+            a[at..at + member.given].fill(0.0);
+        }
+    }
+
+    fn injected(&self, t: f64, x: &[f64], moved: &[f64], h: f64) -> Injected {
+        self.seen(x, moved, |x, moved| self.system.injected(t, x, moved, h))
+    }
+
+    fn potential(&self, t: f64, x: &[f64]) -> f64 {
+        self.seen(x, &[], |x, _| self.system.potential(t, x))
+    }
+
+    fn jacobian(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        linearization: Linearization,
+        out: &mut Jacobian,
+    ) {
+        let mut own = Jacobian::in_blocks();
+        self.seen(x, v, |x, v| {
+            self.system.jacobian(t, x, v, linearization, &mut own);
+        });
+        let exact = linearization == Linearization::Exact;
+        for by in [Derivative::Position, Derivative::Velocity] {
+            let mut entries = own.triplets(by).clone();
+            for pair in own.pairs(by) {
+                if pair
+                    .ends
+                    .iter()
+                    .any(|end| self.member(*end as usize).is_some())
+                {
+                    pair.for_each(|row, column, value| entries.push((row, column, value)));
+                } else {
+                    out.add_pair(by, pair.ends.map(|end| end as usize), pair.block);
+                }
+            }
+            let place = match by {
+                Derivative::Position => &mut out.position,
+                Derivative::Velocity => &mut out.velocity,
+            };
+            self.turned(&entries, exact, place);
+        }
+    }
+}

@@ -1,0 +1,383 @@
+//! One particle that stays in contact: its axes, what presses it, and how it rubs.
+
+use super::{Beside, Obstacles, cross, dot, minus, norm, three};
+use crate::physics::State;
+use crate::shape::Bend;
+use std::borrow::Cow;
+
+/// One particle that stays.
+#[derive(Debug, Clone)]
+pub(super) struct Member {
+    pub(super) particle: usize,
+    pub(super) contacts: Vec<Contact>,
+    /// Rows: unit vectors, the given ones first.
+    pub(super) axes: [[f64; 3]; 3],
+    /// How many coordinates are given: those along normals, or all where it sticks.
+    pub(super) given: usize,
+    /// The given coordinates at the beginning, m.
+    pub(super) start: [f64; 3],
+    /// It slides along the axis `given`, against friction.
+    pub(super) slides: bool,
+    /// Whether it keeps to that direction.
+    pub(super) straight: bool,
+    /// Whether it follows a surface that bends.
+    pub(super) follows: bool,
+}
+
+/// A contact that presses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Contact {
+    pub(super) beside: Beside,
+    pub(super) friction: [f64; 2],
+    /// What the bend of the surface adds to the normal acceleration, m/s², as it was at the beginning.
+    pub(super) turning: f64,
+}
+
+impl Contact {
+    pub(super) fn new(obstacles: &Obstacles, beside: Beside) -> Self {
+        Self {
+            beside,
+            friction: obstacles.obstacles[beside.obstacle].friction,
+            turning: beside.bend.turning(beside.normal, beside.velocity),
+        }
+    }
+
+    /// The same contact at another state.
+    pub(super) fn now(&self, obstacles: &Obstacles, t: f64, x: &[f64], v: &[f64]) -> Self {
+        let Beside {
+            particle, obstacle, ..
+        } = self.beside;
+        Self::new(obstacles, obstacles.beside(particle, obstacle, t, x, v))
+    }
+}
+
+impl Member {
+    /// None where nothing presses. `a` is the acceleration without contact, m/s².
+    pub(super) fn new(
+        obstacles: &Obstacles,
+        resting: &[Beside],
+        t: f64,
+        [x, a]: [[f64; 3]; 2],
+        follow: bool,
+    ) -> Option<Self> {
+        let contacts: Vec<Contact> = resting
+            .iter()
+            .map(|beside| Contact::new(obstacles, *beside))
+            .collect();
+        let contacts = pressing(obstacles, &contacts, t, a)?;
+        let mut axes = Vec::new();
+        for contact in &contacts {
+            let n = contact.beside.normal;
+            let along = axes.iter().fold(n, |left, axis| {
+                let part = dot(*axis, n);
+                [0, 1, 2].map(|c| left[c] - part * axis[c])
+            });
+            axes.push(unit(along)?);
+        }
+        let normals = axes.len();
+        let particle = contacts[0].beside.particle;
+        let mut member = Self {
+            particle,
+            contacts,
+            axes: [[0.0; 3]; 3],
+            given: normals,
+            start: [0.0; 3],
+            slides: false,
+            straight: true,
+            follows: false,
+        };
+        let first = &member.contacts[0];
+        let sliding = member.along(first.beside.velocity);
+        let mut direction = None;
+        if normals == 3 {
+        } else if norm(sliding) > first.beside.slow {
+            direction = unit(sliding);
+        } else {
+            let pull = member.pull(obstacles, t, a);
+            let pressed = member.pressed(obstacles, t, a);
+            let rubs = member
+                .contacts
+                .iter()
+                .any(|contact| contact.friction[1] > 0.0);
+            // At the instant at which it begins to slip it slides.
+            if rubs && norm(pull) < member.resistance(&pressed, 1) {
+                member.given = 3;
+            } else {
+                direction = unit(pull);
+            }
+        }
+        member.slides = member.given < 3 && member.contacts.iter().any(|c| c.friction[0] > 0.0);
+        if let (true, Some(direction)) = (normals < 3, direction) {
+            axes.push(direction);
+            let pull = member.pull(obstacles, t, a);
+            let aside = norm(cross(direction, member.along(pull)));
+            member.straight = normals == 2 || aside <= 1e-12 * norm(a).max(f64::MIN_POSITIVE);
+        }
+        complete(&mut axes);
+        member.axes = [axes[0], axes[1], axes[2]];
+        if let ([one], true, false) = (&member.contacts[..], follow, member.sticks())
+            && one.beside.bend != Bend::Flat
+        {
+            (member.follows, member.given, member.straight) = (true, 0, false);
+        }
+        member.start = member.inward(x);
+        Some(member)
+    }
+
+    /// Whether all coordinates are given by friction.
+    pub(super) fn sticks(&self) -> bool {
+        self.given > self.contacts.len()
+    }
+
+    /// The axis that it slides along at the beginning.
+    pub(super) fn forward(&self) -> [f64; 3] {
+        self.axes[self.contacts.len().min(2)]
+    }
+
+    /// The same at another state, where surfaces bend.
+    pub(super) fn now(&self, obstacles: &Obstacles, t: f64, x: &[f64], v: &[f64]) -> Cow<'_, Self> {
+        if self
+            .contacts
+            .iter()
+            .all(|one| one.beside.bend == Bend::Flat)
+        {
+            return Cow::Borrowed(self);
+        }
+        let contacts = self.contacts.iter();
+        Cow::Owned(Self {
+            contacts: contacts.map(|one| one.now(obstacles, t, x, v)).collect(),
+            ..self.clone()
+        })
+    }
+
+    pub(super) fn inward(&self, out: [f64; 3]) -> [f64; 3] {
+        self.axes.map(|axis| dot(axis, out))
+    }
+
+    pub(super) fn outward(&self, own: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|c| (0..3).map(|axis| own[axis] * self.axes[axis][c]).sum())
+    }
+
+    /// The part of a vector along all surfaces it touches.
+    pub(super) fn along(&self, vector: [f64; 3]) -> [f64; 3] {
+        match &self.contacts[..] {
+            [one] => {
+                let n = one.beside.normal;
+                let part = dot(n, vector);
+                [0, 1, 2].map(|c| vector[c] - part * n[c])
+            }
+            [one, other] => {
+                let edge = unit(cross(one.beside.normal, other.beside.normal));
+                edge.map_or([0.0; 3], |edge| {
+                    let part = dot(edge, vector);
+                    edge.map(|c| part * c)
+                })
+            }
+            _ => [0.0; 3],
+        }
+    }
+
+    /// Along the surfaces, in the axes of space, relative to the obstacle.
+    pub(super) fn outer_sliding(&self, obstacles: &Obstacles, state: &State) -> [f64; 3] {
+        let moved = obstacles.obstacles[self.contacts[0].beside.obstacle].moved(state.t)[1];
+        self.along(minus(three(&state.v, self.particle), moved))
+    }
+
+    /// The direction of sliding in the plane of the last two axes, at velocities in its own axes. Beyond a standstill it
+    /// stays as it was: that is where the step will end.
+    pub(super) fn direction(&self, obstacles: &Obstacles, t: f64, v: &[f64]) -> [f64; 2] {
+        if self.straight || self.given != 1 {
+            return [1.0, 0.0];
+        }
+        let moved = obstacles.obstacles[self.contacts[0].beside.obstacle].moved(t)[1];
+        let own = minus(three(v, self.particle), self.inward(moved));
+        let fast = own[1].hypot(own[2]);
+        if own[1] > 0.0 && fast > 0.0 {
+            [own[1] / fast, own[2] / fast]
+        } else {
+            [1.0, 0.0]
+        }
+    }
+
+    /// N/m of each contact, m/s²; negative where it would have to pull.
+    pub(super) fn pressed(&self, obstacles: &Obstacles, t: f64, a: [f64; 3]) -> Vec<f64> {
+        multipliers(obstacles, &self.contacts, t, a)
+    }
+
+    /// The acceleration along the surfaces, relative to the obstacle, m/s², that friction has to hold.
+    pub(super) fn pull(&self, obstacles: &Obstacles, t: f64, a: [f64; 3]) -> [f64; 3] {
+        let pushed = obstacles.obstacles[self.contacts[0].beside.obstacle].moved(t)[2];
+        self.along(minus(a, pushed))
+    }
+
+    /// The deceleration by friction, m/s²: of what slides (0) or the most of what sticks (1).
+    pub(super) fn resistance(&self, pressed: &[f64], which: usize) -> f64 {
+        let each = pressed.iter().zip(&self.contacts);
+        each.map(|(n, contact)| contact.friction[which] * n.max(0.0))
+            .sum()
+    }
+
+    /// Given coordinates, and their velocities, at a time.
+    pub(super) fn placed(&self, obstacles: &Obstacles, since: f64, t: f64) -> [[f64; 3]; 2] {
+        let moved = |contact: &Contact| {
+            let obstacle = &obstacles.obstacles[contact.beside.obstacle];
+            let ([before, ..], [now, speed, _]) = (obstacle.moved(since), obstacle.moved(t));
+            [minus(now, before), speed]
+        };
+        let first = moved(&self.contacts[0]);
+        let mut all = first.map(|vector| self.inward(vector));
+        // Along a second normal the second obstacle decides.
+        for at in 1..self.contacts.len() {
+            let vectors = moved(&self.contacts[at]);
+            let n = self.inward(self.contacts[at].beside.normal);
+            for (own, vector) in all.iter_mut().zip(vectors) {
+                let before: f64 = (0..at).map(|axis| n[axis] * own[axis]).sum();
+                own[at] = (dot(self.contacts[at].beside.normal, vector) - before) / n[at];
+            }
+        }
+        let [way, speed] = all;
+        [[0, 1, 2].map(|axis| self.start[axis] + way[axis]), speed]
+    }
+
+    /// Moves a particle back onto surfaces that bend, and takes its normal velocity away.
+    pub(super) fn project(&self, obstacles: &Obstacles, state: &mut State) {
+        let flat = |contact: &Contact| contact.beside.bend == Bend::Flat;
+        if self.sticks() || self.contacts.iter().all(flat) {
+            return;
+        }
+        for contact in &self.contacts {
+            let obstacle = contact.beside.obstacle;
+            let now = obstacles.beside(self.particle, obstacle, state.t, &state.x, &state.v);
+            let parting = now.parting();
+            for axis in 0..3 {
+                state.x[3 * self.particle + axis] -= now.gap * now.normal[axis];
+                state.v[3 * self.particle + axis] -= parting * now.normal[axis];
+            }
+        }
+    }
+
+    /// The rows in its own axes that a row in the axes of space goes into, each with its factor; with friction where it
+    /// slides straight on.
+    pub(super) fn rows(&self, row: usize, friction: bool) -> Vec<(usize, f64)> {
+        let (at, axis) = (3 * self.particle, row % 3);
+        let mut rows: Vec<(usize, f64)> =
+            (0..3).map(|own| (at + own, self.axes[own][axis])).collect();
+        if friction && self.slides && self.contacts.len() == 1 {
+            // N = m a_s - n·f, so that -µ N gains µ n·f.
+            rows[1].1 += self.contacts[0].friction[0] * self.axes[0][axis];
+        }
+        rows
+    }
+
+    pub(super) fn columns(&self, column: usize) -> Vec<(usize, f64)> {
+        let (at, axis) = (3 * self.particle, column % 3);
+        (0..3).map(|own| (at + own, self.axes[own][axis])).collect()
+    }
+}
+
+/// The contacts of one particle that press, of those it touches: the ones whose normal forces are positive while no other
+/// is pressed into. None where none does.
+fn pressing(
+    obstacles: &Obstacles,
+    touching: &[Contact],
+    t: f64,
+    a: [f64; 3],
+) -> Option<Vec<Contact>> {
+    let count = touching.len().min(8);
+    let mut best: Option<(f64, Vec<Contact>)> = None;
+    for set in 1_u32..1 << count {
+        let members: Vec<Contact> = (0..count)
+            .filter(|at| set & (1 << at) != 0)
+            .map(|at| touching[at])
+            .collect();
+        if members.len() > 3 {
+            continue;
+        }
+        let pressed = multipliers(obstacles, &members, t, a);
+        if !pressed.iter().all(|n| *n >= 0.0) {
+            continue;
+        }
+        let held = [0, 1, 2].map(|axis| {
+            let each = members.iter().zip(&pressed);
+            a[axis] + each.map(|(c, n)| n * c.beside.normal[axis]).sum::<f64>()
+        });
+        // How far the others are pressed into.
+        let into = touching.iter().map(|c| -approach(obstacles, c, t, held));
+        let into = into.fold(0.0, f64::max);
+        let better = best.as_ref().is_none_or(|(least, _)| into < *least);
+        if better {
+            best = Some((into, members));
+        }
+    }
+    // Free where no contact would be pressed into; at the instant at which one leaves nothing presses.
+    let free = touching.iter().all(|c| approach(obstacles, c, t, a) >= 0.0);
+    if free { None } else { best.map(|(_, set)| set) }
+}
+
+/// How a contact would open, m/s², under an acceleration.
+pub(super) fn approach(obstacles: &Obstacles, contact: &Contact, t: f64, a: [f64; 3]) -> f64 {
+    let pushed = obstacles.obstacles[contact.beside.obstacle].moved(t)[2];
+    dot(contact.beside.normal, minus(a, pushed)) - contact.turning
+}
+
+/// N/m of contacts that keep all of them closed, m/s²: (n_i·n_j) N = -(n·a - n·a_s); not numbers where normals depend
+/// on each other.
+pub(super) fn multipliers(
+    obstacles: &Obstacles,
+    contacts: &[Contact],
+    t: f64,
+    a: [f64; 3],
+) -> Vec<f64> {
+    let right: Vec<f64> = contacts
+        .iter()
+        .map(|contact| -approach(obstacles, contact, t, a))
+        .collect();
+    let n = |at: usize| contacts[at].beside.normal;
+    match contacts.len() {
+        1 => right,
+        2 => {
+            let c = dot(n(0), n(1));
+            let det = (1.0 - c) * (1.0 + c);
+            vec![
+                (right[0] - c * right[1]) / det,
+                (right[1] - c * right[0]) / det,
+            ]
+        }
+        _ => {
+            let gram = nalgebra::Matrix3::from_fn(|i, j| dot(n(i), n(j)));
+            let solved = gram
+                .lu()
+                .solve(&nalgebra::Vector3::from_fn(|i, _| right[i]));
+            solved.map_or(vec![f64::NAN; 3], |n| n.as_slice().to_vec())
+        }
+    }
+}
+
+pub(super) fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
+    let length = norm(vector);
+    (length > 0.0 && length.is_finite()).then(|| vector.map(|c| c / length))
+}
+
+/// Adds axes until there are three.
+fn complete(axes: &mut Vec<[f64; 3]>) {
+    while axes.len() < 3 {
+        let next = match axes[..] {
+            [one, other] => cross(one, other),
+            [one] => {
+                // The axis of space that is least along it.
+                let least = |best: usize, c: usize| {
+                    if one[c].abs() < one[best].abs() {
+                        c
+                    } else {
+                        best
+                    }
+                };
+                let mut other = [0.0; 3];
+                other[(0..3).fold(0, least)] = 1.0;
+                cross(one, other)
+            }
+            _ => [1.0, 0.0, 0.0],
+        };
+        axes.push(unit(next).unwrap_or([0.0, 0.0, 1.0]));
+    }
+}

@@ -1,0 +1,95 @@
+//! Contact in words: impacts, what they and friction took, and how far particles are inside obstacles.
+
+use crate::measure::Contact;
+use crate::report::table::Table;
+use crate::report::words;
+use crate::verbs::Report;
+use crate::verbs::run::Outcome;
+
+const INTRO: &str = "\
+A step is cut where a particle meets an obstacle, and goes on with the velocity after the impact: Newton's restitution
+along the normal, Coulomb's friction across it. What stays in contact is held by normal forces that only push. *Deepest* is
+how far a particle was inside an obstacle, at the recorded instants. What impacts and friction take is part of the balance:
+B = E + dissipated - injected + impacts + friction. rapier's contact has a law of its own: it acts once a step, and rests a
+little inside.";
+
+fn rows(report: &Report) -> Vec<(&Outcome, &Contact)> {
+    let outcomes = report.outcomes().iter();
+    outcomes
+        .filter_map(|outcome| Some((outcome, outcome.contact.as_ref()?)))
+        .collect()
+}
+
+/// The table of all engines; empty without obstacles.
+pub fn table(report: &Report) -> String {
+    let rows = rows(report);
+    if rows.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(&rows);
+    table.engines(|(o, _)| (super::engine(o), report.header.mark(&o.engine)));
+    if super::several_timesteps(report) {
+        table.markdown("h (s)", |(o, _)| words::short(o.timestep));
+    }
+    table.markdown("impacts", |(_, contact)| contact.impacts.map(words::count));
+    table.markdown("lost in impacts (J)", |(o, _)| taken(o, |e| e.impacts_j));
+    table.markdown("lost to friction (J)", |(o, _)| taken(o, |e| e.friction_j));
+    table.markdown("deepest (m)", |(_, contact)| {
+        words::short(contact.deepest_m)
+    });
+    table.markdown("particle", |(_, contact)| {
+        contact.particle.map(|particle| particle.to_string())
+    });
+    table.markdown("at (s)", |(_, contact)| {
+        contact.particle.map(|_| words::short(contact.t_s))
+    });
+    table.markdown("touching at the end", |(_, contact)| {
+        words::count(contact.touching)
+    });
+    format!("{INTRO}\n\n{}", table.in_markdown())
+}
+
+fn taken(outcome: &Outcome, which: fn(&crate::measure::Energy) -> Option<f64>) -> Option<String> {
+    which(outcome.energy.as_ref()?).map(words::short)
+}
+
+/// The contact of the scene's own engine, or else the first, for the terminal.
+pub fn own(report: &Report) -> Vec<(&'static str, String)> {
+    let rows = rows(report);
+    let own = &report.header.scene.own_integrator;
+    let found = rows.iter().find(|(outcome, _)| outcome.engine == *own);
+    let Some((outcome, contact)) = found.or(rows.first()) else {
+        return Vec::new();
+    };
+    let mut parts = Vec::new();
+    if let Some(impacts) = contact.impacts {
+        parts.push(words::plural(impacts, "impact"));
+    }
+    let energy = outcome.energy.as_ref();
+    let mut lost = |joules: Option<f64>, by: &str| {
+        // Rounding of impacts that lose nothing is nothing.
+        let most = energy
+            .and_then(|energy| energy.initial_j)
+            .unwrap_or(0.0)
+            .abs();
+        if let Some(joules) = joules.filter(|joules| joules.abs() > 1e-12 * most) {
+            parts.push(format!("{} J lost {by}", words::short(joules)));
+        }
+    };
+    lost(energy.and_then(|energy| energy.impacts_j), "in impacts");
+    lost(energy.and_then(|energy| energy.friction_j), "to friction");
+    if contact.deepest_m > 0.0 {
+        parts.push(format!(
+            "at most {} m inside",
+            words::short(contact.deepest_m)
+        ));
+    }
+    let touching = match contact.touching {
+        0 => "nothing touches at the end".to_owned(),
+        1 => "one particle touches at the end".to_owned(),
+        count => format!("{} particles touch at the end", words::count(count)),
+    };
+    parts.push(touching);
+    let text = format!("{}: {}", words::one_line(&outcome.engine), parts.join(", "));
+    vec![("contact", text)]
+}

@@ -1,0 +1,67 @@
+//! Obstacles in scene files: what they default to, and what is refused at its place.
+
+use super::{Row, complete, parse};
+
+/// As the rows of `refused.rs`.
+#[rustfmt::skip]
+pub const REFUSED: &[Row] = &[
+    ("colliders, no list", "colliders: »3", &["colliders", "expected a list, found the number `3`"]),
+    ("collider of no shape", "colliders: [»{friction: 1}]", &["colliders[0]", "expected one of `plane`, `ball`, `box`, `capsule` and `mesh`, found none"]),
+    ("collider of two shapes", "colliders:\n- »plane: {normal: [0, 0, 1], offset: -9}\n  ball: {center: [0, 0, -9], radius: 1}", &["colliders[0]", "found plane and ball"]),
+    ("collider of an unknown shape", "colliders: [{»plain: {normal: [0, 0, 1]}}]", &["colliders[0]", "unknown key `plain`", "the keys here are plane, ball, box"]),
+    ("plane without normal", "colliders: [{plane: »{offset: 0}}]", &["colliders[0].plane.normal", "missing", "say which side is free"]),
+    ("plane with a normal of 0", "colliders: [{plane: {normal: »[0, 0, 0]}}]", &["colliders[0].plane.normal", "a vector of length 0"]),
+    ("plane with a normal of NaN", "colliders: [{plane: {normal: [0, 0, ».nan]}}]", &["colliders[0].plane.normal", "finite number"]),
+    ("ball without radius", "colliders: [{ball: »{center: [0, 0, -9]}}]", &["colliders[0].ball.radius", "missing"]),
+    ("ball of radius 0", "colliders: [{ball: {center: [0, 0, -9], radius: »0}}]", &["colliders[0].ball.radius", "expected a positive number (m), found 0"]),
+    ("box of no height", "colliders:\n- box: {center: [0, 0, -9], half_extents: [1, 1, »0]}", &["colliders[0].box.half_extents", "expected a positive number (m), found 0"]),
+    ("capsule of one point", "colliders:\n- capsule: {a: [0, 0, -9], b: »[0, 0, -9], radius: 1}", &["colliders[0].capsule.b", "two ends apart", "`ball: {center, radius}`"]),
+    ("mesh without triangles", "colliders:\n- mesh: {vertices: [[0, 0, -9], [1, 0, -9], [0, 1, -9]], triangles: »[]}", &["colliders[0].mesh.triangles", "expected"]),
+    ("mesh with a vertex that is not there", "colliders:\n- mesh:\n    vertices: [[0, 0, -9], [1, 0, -9], [0, 1, -9]]\n    triangles: [»[0, 1, 3]]", &["colliders[0].mesh.triangles[0]", "a vertex from 0 to 2, found 3"]),
+    ("mesh with half a vertex", "colliders:\n- mesh:\n    vertices: [[0, 0, -9], [1, 0, -9], [0, 1, -9]]\n    triangles: [»[0, 1, 0.5]]", &["colliders[0].mesh.triangles[0]", "a vertex from 0 to 2, found 0.5"]),
+    ("mesh with a triangle of no area", "colliders:\n- mesh:\n    vertices: [[0, 0, -9], [1, 0, -9], [2, 0, -9]]\n    triangles: [»[0, 1, 2]]", &["colliders[0].mesh.triangles[0]", "three corners apart, found them on one line"]),
+    ("mesh with a vertex of NaN", "colliders:\n- mesh:\n    vertices: [[0, 0, ».nan], [1, 0, -9], [0, 1, -9]]\n    triangles: [[0, 1, 2]]", &["colliders[0].mesh.vertices", "finite number"]),
+    ("restitution above 1", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  restitution: »1.1", &["colliders[0].restitution", "at most 1"]),
+    ("restitution below 0", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  restitution: »-0.1", &["colliders[0].restitution", "at least 0"]),
+    ("friction below 0", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  friction: »-0.1", &["colliders[0].friction", "at least 0"]),
+    ("static friction below the other", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  friction: 0.5\n  static_friction: »0.4", &["colliders[0].static_friction", "at least the friction (0.5), found 0.4"]),
+    ("collider with two motions", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  driven: »{velocity: [1, 0, 0], sine: {amplitude: [1, 0, 0], omega: 1}}", &["colliders[0].driven", "found sine and velocity"]),
+    ("collider with no motion", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  driven: »{}", &["colliders[0].driven", "expected one of `sine`, `velocity` and `table`, found none"]),
+    ("particle inside a plane", "particles:\n- {pos: [0, 0, 0.05], mass: 1}\ncolliders:\n- »plane: {normal: [0, 0, 1]}", &["colliders[0]", "expected every free particle outside, found 0 0.05 m inside", "a ball of radius 0.1 m"]),
+    ("particle inside a ball", "particles:\n- {pos: [0, 0, 0], mass: 1}\ncolliders:\n- »ball: {center: [0, 0, 0], radius: 1}", &["colliders[0]", "found 0 1.1 m inside"]),
+    ("colliders beside rods", "rods: [{particle_ids: [0, 1]}]\ncolliders: »[{plane: {normal: [0, 0, 1], offset: -9}}]", &["colliders", "not supported yet beside `rods`"]),
+];
+
+/// A normal is made a unit vector; static friction is sliding friction; nothing bounces or rubs unless a file says so.
+#[test]
+fn colliders_have_defaults() {
+    let one = |more: &str| {
+        let scene = parse(&complete(&format!(
+            "colliders: [{{plane: {{normal: [0, 3, 4], offset: -9}}{more}}}]"
+        )));
+        scene.unwrap().colliders.remove(0)
+    };
+    let plain = one("");
+    let plane = plain.plane.as_ref().unwrap();
+    assert_eq!((plane.normal, plane.offset), ([0.0, 0.6, 0.8], -9.0));
+    assert_eq!(
+        [plain.restitution, plain.friction, plain.static_friction],
+        [0.0; 3]
+    );
+    assert_eq!(one(", friction: 0.3").static_friction, 0.3);
+    assert_eq!(
+        one(", friction: 0.3, static_friction: 0.4").static_friction,
+        0.4
+    );
+}
+
+/// A gap of 0 is touching, and so is one that ten digits round below it.
+#[test]
+fn what_touches_is_not_inside() {
+    for z in ["0.1", "0.09999999995"] {
+        let scene = format!(
+            "particles:\n- {{pos: [0, 0, {z}], mass: 1}}\ncolliders: [{{plane: {{normal: [0, 0, 1]}}}}]"
+        );
+        assert!(parse(&complete(&scene)).is_ok(), "{z}");
+    }
+}
