@@ -171,24 +171,17 @@ impl Engine for AdaptiveEngine {
         if self.done() {
             return Ok(());
         }
-        let obstacles = self.system.obstacles();
-        let start =
-            (self.system.rods().is_some() || obstacles.is_some()).then(|| self.state.clone());
+        let obstacles = self.system.obstacles().is_some();
+        let start = (self.system.rods().is_some() || obstacles).then(|| self.state.clone());
         self.stepper
             .step(&self.system, self.until, &mut self.state)?;
-        if let (Some(obstacles), Some(start)) = (obstacles, &start) {
+        if let (true, Some(start)) = (obstacles, &start) {
             // The pair has chosen the length of the step; what happens in it is found on steps of that length.
             let end = self.state.t;
-            self.state = start.clone();
-            let formula = self.formula.as_mut();
-            self.corrected.impacts += events::step(
-                formula,
-                &self.system,
-                obstacles,
-                end - start.t,
-                &mut self.state,
-            )?;
-            self.state.t = end;
+            self.state.clone_from(start);
+            let (formula, h) = (self.formula.as_mut(), end - start.t);
+            self.corrected += advance(formula, &self.system, h, end, &mut self.state)?;
+            return Ok(());
         }
         let State { t, x, v, .. } = &mut self.state;
         self.system.place(*t, x, v);

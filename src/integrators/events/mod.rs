@@ -53,7 +53,8 @@ struct Due {
     level: f64,
 }
 
-/// A step, which obstacles cut where there are any; returns the number of impacts.
+/// Advances a state by `h` seconds from `state.t`, through all events where there are obstacles; returns the number of
+/// impacts.
 ///
 /// # Errors
 /// The integrator's, and [`StepError::TooManyEvents`]; the state is then of no use where there are obstacles.
@@ -69,11 +70,7 @@ pub fn through(
     }
 }
 
-/// Advances a state by `h` seconds from `state.t` through all events; returns the number of impacts.
-///
-/// # Errors
-/// The integrator's; the state is then of no use.
-pub fn step(
+fn step(
     integrator: &mut dyn Integrator,
     system: &dyn System,
     obstacles: &Obstacles,
@@ -129,7 +126,7 @@ struct Walk<'a> {
 impl Walk<'_> {
     /// Impacts that are due at once.
     fn settle(&mut self, state: &mut State) {
-        let touching = self.obstacles.touching(state.t, &state.x, &state.v);
+        let touching = self.obstacles.touching(state);
         let mut last = usize::MAX;
         for beside in touching.iter().filter(|beside| beside.strikes()) {
             if beside.particle != last {
@@ -144,9 +141,7 @@ impl Walk<'_> {
         self.impacts += u64::from(self.obstacles.strike(particle, state));
         let mut a = Vec::new();
         for obstacle in 0..self.obstacles.len() {
-            let beside = self
-                .obstacles
-                .beside(particle, obstacle, state.t, &state.x, &state.v);
+            let beside = self.obstacles.beside(particle, obstacle, state);
             let parting = beside.parting();
             if !beside.touches() {
                 continue;
@@ -180,38 +175,18 @@ impl Walk<'_> {
         due.extend(self.impacts(held, left, &start, &end));
         self.involved
             .extend(due.iter().map(|due| due.event.particle()));
-        if due.is_empty() || self.involved.len() > self.most {
+        let first = if self.involved.len() > self.most {
+            None
+        } else {
+            self.first(held, &mut due, left, &start)?
+        };
+        let Some((time, at, event)) = first else {
+            // Those of many particles, and those that were not found on sub-steps.
             if let (Some(held), Some(a)) = (held, &a) {
                 held.book(left, &start, &mut end, a);
             }
             *state = end;
             self.each_on_its_path(held, &due, left, &start, state);
-            return Ok(left);
-        }
-        due.sort_by(|a, b| a.due.total_cmp(&b.due));
-        let mut first: Option<(f64, State, Event)> = None;
-        let all = due.clone();
-        for mut due in due {
-            // What is not due where another event was found comes later.
-            if let Some((time, at, _)) = &first {
-                if due.clear >= *time || sign(self.obstacles, held, &due, at) >= 0.0 {
-                    continue;
-                }
-                due.due = due.due.min(*time);
-            }
-            if let Some((time, at)) = self.locate(held, &due, &start)?
-                && first.as_ref().is_none_or(|(bound, ..)| time < *bound)
-            {
-                first = Some((time, at, due.event));
-            }
-        }
-        let Some((time, at, event)) = first else {
-            // None was found on sub-steps: they count as ones of the end.
-            if let (Some(held), Some(a)) = (held, &a) {
-                held.book(left, &start, &mut end, a);
-            }
-            *state = end;
-            self.each_on_its_path(held, &all, left, &start, state);
             return Ok(left);
         };
         *state = at;
@@ -228,6 +203,34 @@ impl Walk<'_> {
             }
         }
         Ok(time)
+    }
+
+    /// The first of these events within `left` seconds, its time and the state there; None where none is found.
+    fn first(
+        &mut self,
+        held: Option<&Held>,
+        all: &mut [Due],
+        left: f64,
+        start: &State,
+    ) -> Result<Option<(f64, State, Event)>, StepError> {
+        all.sort_by(|a, b| a.due.total_cmp(&b.due));
+        let mut first: Option<(f64, State, Event)> = None;
+        for due in all {
+            let mut due = *due;
+            // What is not due where another event was found comes later.
+            if let Some((time, at, _)) = &first {
+                if due.clear >= *time || sign(self.obstacles, held, &due, at) >= 0.0 {
+                    continue;
+                }
+                due.due = due.due.min(*time);
+            }
+            if let Some((time, at)) = self.locate(held, &due, left, start)?
+                && first.as_ref().is_none_or(|(bound, ..)| time < *bound)
+            {
+                first = Some((time, at, due.event));
+            }
+        }
+        Ok(first)
     }
 
     /// The state after a sub-step of `h` seconds, without the work of friction and of moving obstacles.
@@ -297,29 +300,26 @@ impl Walk<'_> {
         found
     }
 
-    /// The time of an event and the state there, on sub-steps from the start; None where it does not happen on them.
+    /// The time of an event and the state there, on sub-steps of at most `left` seconds from the start; None where it does
+    /// not happen on them.
     fn locate(
         &mut self,
         held: Option<&Held>,
         due: &Due,
+        left: f64,
         start: &State,
     ) -> Result<Option<(f64, State)>, StepError> {
         let obstacles = self.obstacles;
         let sign = |state: &State| sign(obstacles, held, due, state);
         let mut high = due.due;
-        let mut at_high = self.sub_step(held, high, start)?;
-        let mut below = sign(&at_high);
+        let mut below = sign(&self.sub_step(held, high, start)?);
         // The cubic and the method's own path differ.
         for part in 1..=8 {
-            if below < 0.0 || high >= due.due.max(self.h) {
+            if below < 0.0 || high >= left {
                 break;
             }
-            high = due.due + (self.h - due.due) * f64::from(part) / 8.0;
-            if high <= 0.0 {
-                break;
-            }
-            at_high = self.sub_step(held, high, start)?;
-            below = sign(&at_high);
+            high = due.due + (left - due.due) * f64::from(part) / 8.0;
+            below = sign(&self.sub_step(held, high, start)?);
         }
         if below >= 0.0 {
             return Ok(None);
@@ -330,17 +330,18 @@ impl Walk<'_> {
         } else {
             sign(start)
         };
-        let mut halves = 0;
-        while above <= 0.0 {
-            // Just after a bounce the gap is 0, and grows; so is the speed of what begins to slide.
+        // Just after a bounce the gap is 0, and grows; so does the speed of what begins to slide.
+        for halves in 0.. {
+            if above > 0.0 {
+                break;
+            }
+            if halves > HALVES {
+                return Ok(None);
+            }
             low = if halves == 0 { 0.5 * high } else { 0.5 * low };
             above = sign(&self.sub_step(held, low, start)?);
             if above < 0.0 {
                 (high, below) = (low, above);
-            }
-            halves += 1;
-            if halves > HALVES {
-                return Ok(None);
             }
         }
         let tolerance = LOCATED * self.h;

@@ -132,12 +132,12 @@ impl<S: Stepper> Integrator for Cut<'_, S> {
 
 /// One step, through the events within it; where those cannot be told apart, the state is NaN from here on.
 fn step<S: Stepper>(stepper: &mut S, system: &dyn System, t: f64, h: f64, state: &mut Precise) {
-    let Some(obstacles) = system.obstacles() else {
+    if system.obstacles().is_none() {
         return stepper.step(system, t, h, state);
-    };
+    }
     let mut at = State::new(state.x.clone(), state.v.clone());
     at.t = t;
-    if events::step(&mut Cut(stepper), system, obstacles, h, &mut at).is_err() {
+    if events::through(&mut Cut(stepper), system, h, &mut at).is_err() {
         at.x.fill(f64::NAN);
     }
     *state = Precise::from(&at);

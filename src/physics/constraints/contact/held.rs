@@ -12,7 +12,7 @@
 //! The normal forces N ≥ 0 are those that keep it on the surface: N = m (n·a_s - n·a), a without them and a_s the
 //! surface's, turning included (complementarity: a contact that would have to pull is none).
 
-use super::member::{Contact, Member, approach, multipliers, unit};
+use super::member::{Contact, Member, approach, multipliers};
 use super::{Beside, Obstacles, dot, minus, norm, three};
 use crate::physics::{
     Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, State, System, Triplets,
@@ -54,7 +54,7 @@ impl<'s> Held<'s> {
     ) -> Option<Self> {
         let any_velocity = taken.has(ForceKinds::NON_LINEAR);
         let follow = taken.has(ForceKinds::CONSTRAINED);
-        let touching = obstacles.touching(state.t, &state.x, &state.v);
+        let touching = obstacles.touching(state);
         let mut resting = touching.iter().filter(|beside| beside.rests()).peekable();
         resting.peek()?;
         let mut a = vec![0.0; state.x.len()];
@@ -137,7 +137,7 @@ impl<'s> Held<'s> {
             self.free(state)
         };
         for member in self.members.iter().filter(|member| member.slides) {
-            let member = member.now(self.obstacles, state.t, &state.x, &state.v);
+            let member = member.now(self.obstacles, state);
             let pressed = member.pressed(self.obstacles, state.t, three(&a, member.particle));
             let along = member.outer_sliding(self.obstacles, state);
             let fast = norm(along);
@@ -163,7 +163,7 @@ impl<'s> Held<'s> {
     pub fn changes(&self, state: &State, a: &[f64]) -> Vec<(usize, Change, f64)> {
         let mut found = Vec::new();
         for member in &self.members {
-            let member = member.now(self.obstacles, state.t, &state.x, &state.v);
+            let member = member.now(self.obstacles, state);
             let pressed = member.pressed(self.obstacles, state.t, three(a, member.particle));
             for n in &pressed {
                 found.push((member.particle, Change::Leaves, -n));
@@ -183,11 +183,7 @@ impl<'s> Held<'s> {
 
     /// Gives what has stopped the velocity of its obstacle.
     pub fn stop(&self, particle: usize, state: &mut State) {
-        let found = self
-            .members
-            .iter()
-            .find(|member| member.particle == particle);
-        if let Some(member) = found.filter(|member| member.slides) {
+        if let Some(member) = self.member(particle).filter(|member| member.slides) {
             let along = member.outer_sliding(self.obstacles, state);
             for axis in 0..3 {
                 state.v[3 * particle + axis] -= along[axis];
@@ -224,7 +220,7 @@ impl<'s> Held<'s> {
     fn powers(&self, state: &State, a: &[f64]) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for member in &self.members {
-            let member = member.now(self.obstacles, state.t, &state.x, &state.v);
+            let member = member.now(self.obstacles, state);
             let mass = 1.0 / self.system.inverse_mass()[3 * member.particle];
             let free = three(a, member.particle);
             let pressed = member.pressed(self.obstacles, state.t, free);
@@ -238,9 +234,7 @@ impl<'s> Held<'s> {
             }
             if member.slides {
                 let sliding = member.outer_sliding(self.obstacles, state);
-                let forward = member.forward();
-                let turns = !member.straight && dot(forward, sliding) > 0.0;
-                let direction = unit(sliding).filter(|_| turns).unwrap_or(forward);
+                let direction = member.rubbed(sliding);
                 let lost = member.resistance(&pressed, 0);
                 sums[0] += mass * lost * dot(direction, sliding);
                 for axis in 0..3 {
@@ -306,9 +300,7 @@ impl<'s> Held<'s> {
         let pressed = -approach(self.obstacles, &now, t, a);
         let mut added = now.beside.normal.map(|n| pressed * n);
         if member.slides && self.friction {
-            let along = now.beside.sliding();
-            let forward = dot(along, member.forward()) > 0.0;
-            let direction = unit(along).filter(|_| forward).unwrap_or(member.forward());
+            let direction = member.rubbed(now.beside.sliding());
             let lost = now.friction[0] * pressed.max(0.0);
             for (added, along) in added.iter_mut().zip(direction) {
                 *added -= lost * along;

@@ -14,8 +14,7 @@ impl Obstacles {
     pub fn strike(&self, particle: usize, state: &mut State) -> bool {
         let mut struck = false;
         for _ in 0..SWEEPS {
-            let all = (0..self.len())
-                .map(|obstacle| self.beside(particle, obstacle, state.t, &state.x, &state.v));
+            let all = (0..self.len()).map(|obstacle| self.beside(particle, obstacle, state));
             let due: Vec<Beside> = all.filter(Beside::strikes).collect();
             if due.is_empty() {
                 break;
@@ -31,13 +30,7 @@ impl Obstacles {
     /// One impulse.
     fn apply(&self, beside: &Beside, state: &mut State) {
         // An earlier impulse may have turned it away.
-        let beside = self.beside(
-            beside.particle,
-            beside.obstacle,
-            state.t,
-            &state.x,
-            &state.v,
-        );
+        let beside = self.beside(beside.particle, beside.obstacle, state);
         let speed = -beside.parting();
         if speed <= beside.slow {
             return;
@@ -65,13 +58,7 @@ impl Obstacles {
 
     /// Takes the normal velocity of a particle that touches an obstacle away, and books the energy.
     pub fn rest(&self, beside: &Beside, state: &mut State) {
-        let beside = self.beside(
-            beside.particle,
-            beside.obstacle,
-            state.t,
-            &state.x,
-            &state.v,
-        );
+        let beside = self.beside(beside.particle, beside.obstacle, state);
         let parting = beside.parting();
         let change = beside.normal.map(|n| -parting * n);
         self.kick(beside.particle, beside.obstacle, change, state);

@@ -43,11 +43,11 @@ impl Contact {
     }
 
     /// The same contact at another state.
-    pub(super) fn now(&self, obstacles: &Obstacles, t: f64, x: &[f64], v: &[f64]) -> Self {
+    pub(super) fn now(&self, obstacles: &Obstacles, state: &State) -> Self {
         let Beside {
             particle, obstacle, ..
         } = self.beside;
-        Self::new(obstacles, obstacles.beside(particle, obstacle, t, x, v))
+        Self::new(obstacles, obstacles.beside(particle, obstacle, state))
     }
 }
 
@@ -89,10 +89,9 @@ impl Member {
         let first = &member.contacts[0];
         let sliding = member.along(first.beside.velocity);
         let mut direction = None;
-        if normals == 3 {
-        } else if norm(sliding) > first.beside.slow {
+        if normals < 3 && norm(sliding) > first.beside.slow {
             direction = unit(sliding);
-        } else {
+        } else if normals < 3 {
             let pull = member.pull(obstacles, t, a);
             let pressed = member.pressed(obstacles, t, a);
             let rubs = member
@@ -134,8 +133,16 @@ impl Member {
         self.axes[self.contacts.len().min(2)]
     }
 
+    /// The direction that friction acts against at this velocity along the surfaces, where that may turn. Beyond a
+    /// standstill it stays as it was.
+    pub(super) fn rubbed(&self, sliding: [f64; 3]) -> [f64; 3] {
+        let forward = self.forward();
+        let turns = !self.straight && dot(forward, sliding) > 0.0;
+        unit(sliding).filter(|_| turns).unwrap_or(forward)
+    }
+
     /// The same at another state, where surfaces bend.
-    pub(super) fn now(&self, obstacles: &Obstacles, t: f64, x: &[f64], v: &[f64]) -> Cow<'_, Self> {
+    pub(super) fn now(&self, obstacles: &Obstacles, state: &State) -> Cow<'_, Self> {
         if self
             .contacts
             .iter()
@@ -145,7 +152,7 @@ impl Member {
         }
         let contacts = self.contacts.iter();
         Cow::Owned(Self {
-            contacts: contacts.map(|one| one.now(obstacles, t, x, v)).collect(),
+            contacts: contacts.map(|one| one.now(obstacles, state)).collect(),
             ..self.clone()
         })
     }
@@ -247,7 +254,7 @@ impl Member {
         }
         for contact in &self.contacts {
             let obstacle = contact.beside.obstacle;
-            let now = obstacles.beside(self.particle, obstacle, state.t, &state.x, &state.v);
+            let now = obstacles.beside(self.particle, obstacle, state);
             let parting = now.parting();
             for axis in 0..3 {
                 state.x[3 * self.particle + axis] -= now.gap * now.normal[axis];

@@ -8,6 +8,7 @@ mod member;
 pub use held::{Change, Held};
 
 use super::ConstraintRow;
+use crate::physics::State;
 use crate::scene::{Collider, Drive, Scene};
 use crate::shape::{Bend, Nearest, Shape};
 
@@ -219,15 +220,10 @@ impl Obstacles {
         motion.speed_bound(to) * (to - from)
     }
 
-    /// A particle beside an obstacle, at positions and velocities of all.
-    pub fn beside(&self, particle: usize, obstacle: usize, t: f64, x: &[f64], v: &[f64]) -> Beside {
-        self.lone(
-            obstacle,
-            particle,
-            t,
-            three(x, particle),
-            three(v, particle),
-        )
+    /// A particle beside an obstacle at a state of all.
+    pub fn beside(&self, particle: usize, obstacle: usize, state: &State) -> Beside {
+        let [place, velocity] = [&state.x, &state.v].map(|all| three(all, particle));
+        self.lone(obstacle, particle, state.t, place, velocity)
     }
 
     /// The same at its own position and velocity.
@@ -263,14 +259,14 @@ impl Obstacles {
     }
 
     /// What touches at a state.
-    pub fn touching(&self, t: f64, x: &[f64], v: &[f64]) -> Vec<Beside> {
+    pub fn touching(&self, state: &State) -> Vec<Beside> {
         let touch = |(particle, obstacle): &(usize, usize)| {
-            let x = three(x, *particle);
-            self.gap(*particle, *obstacle, t, x) <= self.close(x)
+            let x = three(&state.x, *particle);
+            self.gap(*particle, *obstacle, state.t, x) <= self.close(x)
         };
         let touching = self.pairs().filter(touch);
         let mut found: Vec<Beside> = touching
-            .map(|(particle, obstacle)| self.beside(particle, obstacle, t, x, v))
+            .map(|(particle, obstacle)| self.beside(particle, obstacle, state))
             .collect();
         found.sort_by_key(|beside| (beside.particle, beside.obstacle));
         found

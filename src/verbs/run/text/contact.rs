@@ -55,10 +55,8 @@ fn taken(outcome: &Outcome, which: fn(&crate::measure::Energy) -> Option<f64>) -
 
 /// The contact of the scene's own engine, or else the first, for the terminal.
 pub fn own(report: &Report) -> Vec<(&'static str, String)> {
-    let rows = rows(report);
-    let own = &report.header.scene.own_integrator;
-    let found = rows.iter().find(|(outcome, _)| outcome.engine == *own);
-    let Some((outcome, contact)) = found.or(rows.first()) else {
+    let spoken = super::spoken_of(report, |o| o.contact.is_some());
+    let Some((outcome, contact)) = spoken.and_then(|o| Some((o, o.contact.as_ref()?))) else {
         return Vec::new();
     };
     let mut parts = Vec::new();
