@@ -1,5 +1,6 @@
 //! Shapes of obstacles: how far a point is from one, in which direction, and how the surface bends there.
 
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::query::PointQueryWithLocation;
 use parry3d::shape::{Cuboid, Segment, SegmentPointLocation, Triangle, TrianglePointLocation};
@@ -82,6 +83,22 @@ impl Shape {
     pub fn triangle(corners: [[f64; 3]; 3]) -> Self {
         let [a, b, c] = corners.map(Vector::from);
         Self::Triangle(Triangle::new(a, b, c))
+    }
+
+    /// The box around it; None of a plane, which has none.
+    pub fn bounds(&self) -> Option<Aabb> {
+        Some(match self {
+            Self::Plane { .. } => return None,
+            Self::Round { core, radius } => {
+                let ends = match core {
+                    Core::Point(center) => [*center; 2],
+                    Core::Segment(segment) => [segment.a, segment.b],
+                };
+                Aabb::from_points(ends).loosened(*radius)
+            }
+            Self::Block { half, pose } => half.aabb(pose),
+            Self::Triangle(triangle) => triangle.local_aabb(),
+        })
     }
 
     /// The place that is nearest to a point.

@@ -22,7 +22,7 @@ pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
 
 use crate::physics::constraints::RodError;
-use crate::physics::constraints::contact::Obstacles;
+use crate::physics::constraints::contact::{Obstacles, TooManyTouch};
 use crate::physics::{ForceKinds, Refused, State, System};
 use crate::scene::Stabilisation;
 use crate::vector::axpy;
@@ -75,6 +75,8 @@ pub enum StepError {
     Refused(#[from] Refused),
     #[error(transparent)]
     Rods(#[from] RodError),
+    #[error(transparent)]
+    TooManyTouch(#[from] TooManyTouch),
     #[error(
         "Newton's iteration stopped at a relative residual of {residual:.1e} after {iterations} \
          iterations (wanted {tolerance:.0e}), largest at particle {particle}: a smaller timestep \

@@ -1,7 +1,7 @@
 //! What contact leaves: how far particles are inside obstacles, and what touches at the end.
 
 use crate::physics::constraints::Corrections;
-use crate::physics::constraints::contact::Obstacles;
+use crate::physics::constraints::contact::{Against, Obstacles};
 use crate::trajectory::Trajectory;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,8 +13,10 @@ pub struct Contact {
     pub deepest_m: f64,
     /// That particle; null where none was inside.
     pub particle: Option<usize>,
-    /// That obstacle, in the order of `colliders`; null where none was inside.
+    /// That obstacle, in the order of `colliders`; null where none was inside, or another particle.
     pub collider: Option<usize>,
+    /// That other particle; null where it was an obstacle, or none.
+    pub other: Option<usize>,
     /// When, s.
     pub t_s: f64,
     /// The number of particles that touch an obstacle at the end, to a billionth of the size of the scene, or are inside.
@@ -39,6 +41,7 @@ impl Contact {
             deepest_m: 0.0,
             particle: None,
             collider: None,
+            other: None,
             t_s: 0.0,
             touching: 0,
             impacts: done.map(|done| done.impacts),
@@ -46,16 +49,25 @@ impl Contact {
         for k in 0..=last {
             let (t, x) = (run.time(k), run.x(k));
             let mut touching: Vec<usize> = Vec::new();
-            for (particle, collider) in obstacles.pairs() {
-                let at = [0, 1, 2].map(|axis| x[3 * particle + axis]);
-                let gap = obstacles.gap(particle, collider, t, at);
-                if -gap > contact.deepest_m {
+            let at = |particle: usize| [0, 1, 2].map(|axis| x[3 * particle + axis]);
+            // What touches to a billionth of the size is within a ball of that.
+            let near = obstacles.near([t; 2], |particle| (at(particle), CLOSED * size));
+            for (particle, against) in near.pairs() {
+                let gap = obstacles.gap(particle, against, t, at);
+                if -gap > contact.deepest_m.max(obstacles.close(at(particle))) {
                     (contact.deepest_m, contact.t_s) = (-gap, t);
                     contact.particle = Some(particle);
-                    contact.collider = Some(obstacles.collider(collider));
+                    contact.collider = obstacles.collider(against);
+                    contact.other = match against {
+                        Against::Particle(other) => Some(other),
+                        Against::Obstacle(_) => None,
+                    };
                 }
-                if k == last && gap <= CLOSED * size + obstacles.close(at) {
+                if k == last && gap <= CLOSED * size + obstacles.close(at(particle)) {
                     touching.push(particle);
+                    if let Against::Particle(other) = against {
+                        touching.push(other);
+                    }
                 }
             }
             touching.sort_unstable();

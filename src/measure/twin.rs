@@ -190,6 +190,7 @@ impl Pair {
         let mut stiff = ours.clone();
         // Its contact has a law of its own: the proof is of all the rest.
         stiff.colliders.clear();
+        stiff.contact = None;
         stiff.springs.extend(stand_ins(ours));
         stiff.rods.clear();
         let mut start = set_in_motion(&stiff, timestep * f64::from(JOINT_STEPS));
@@ -198,6 +199,7 @@ impl Pair {
         // Their side differs in what the caller made different, never in how it is set in motion.
         let mut other = theirs.clone();
         other.colliders.clear();
+        other.contact = None;
         for (theirs, moving) in other.particles.iter_mut().zip(&start.particles) {
             theirs.velocity = moving.velocity;
         }

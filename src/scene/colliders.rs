@@ -2,13 +2,16 @@
 
 use super::drive::{Drive, motion};
 use super::error::Refusal;
-use super::model::{Collider, Scene};
+use super::model::{Collider, Particle, Scene};
 use super::object::called;
 use super::place::Problem;
 use super::vectors::normalise;
 use crate::shape::{Core, Shape};
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
+use parry3d::partitioning::{Bvh, BvhBuildStrategy};
 use parry3d::shape::Segment;
+use std::collections::HashSet;
 
 /// How far a start may be inside an obstacle and count as touching: of the largest number that goes into its distance.
 /// Numbers of a file often have ten digits.
@@ -63,6 +66,24 @@ impl Collider {
     }
 }
 
+impl Scene {
+    /// Whether particles may collide, with obstacles or with each other.
+    pub fn collides(&self) -> bool {
+        let among = self
+            .contact
+            .as_ref()
+            .is_some_and(|contact| contact.particles);
+        among || !self.colliders.is_empty()
+    }
+
+    /// The pairs of particles that springs or rods join, the smaller first: these do not collide.
+    pub fn joined(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        let springs = self.springs.iter().map(|spring| spring.ends);
+        let rods = self.rods.iter().map(|rod| rod.ends);
+        springs.chain(rods).map(|[i, j]| [i.min(j), i.max(j)])
+    }
+}
+
 /// Fills in what is absent, and makes normals unit vectors.
 pub(super) fn complete(scene: &mut Scene) -> Result<(), Problem> {
     for (at, collider) in scene.colliders.iter_mut().enumerate() {
@@ -72,6 +93,11 @@ pub(super) fn complete(scene: &mut Scene) -> Result<(), Problem> {
         if let Some(plane) = &mut collider.plane {
             normalise(&mut plane.normal, &format!("colliders[{at}].plane.normal"))?;
         }
+    }
+    if let Some(contact) = &mut scene.contact
+        && contact.static_friction.is_nan()
+    {
+        contact.static_friction = contact.friction;
     }
     Ok(())
 }
@@ -84,27 +110,102 @@ pub(super) fn check(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
         if let Some(given) = &collider.driven {
             motion(&format!("{of}.driven"), given)?;
         }
-        if collider.static_friction < collider.friction {
-            let (low, found) = (collider.friction, collider.static_friction);
-            let message = format!("expected at least the friction ({low:?}), found {found:?}");
-            let help = "what sticks holds at least as well as what slides";
-            return Problem::because(format!("{of}.static_friction"), message, help);
-        }
+        sticks(&of, [collider.friction, collider.static_friction])?;
         for shape in collider.shapes() {
             outside(&of, collider, &shape, scene, starts)?;
         }
     }
-    if scene.colliders.is_empty() {
-        return Ok(());
-    }
+    contact(scene, starts)?;
+    let contact = scene.contact.as_ref();
+    let collide = match contact.filter(|contact| contact.particles) {
+        Some(_) => "contact",
+        None if scene.colliders.is_empty() => return Ok(()),
+        None => "colliders",
+    };
+    let driven = scene.driven.iter().map(|driven| driven.particle);
+    let on_rods = |id: usize| scene.rods.iter().any(|rod| rod.ends.contains(&id));
     for (there, key) in [
-        (!scene.rods.is_empty(), "rods"),
-        (scene.strain_limit.is_some(), "strain_limit"),
+        (driven.into_iter().any(on_rods), "rods with a driven end"),
+        (scene.strain_limit.is_some(), "`strain_limit`"),
     ] {
         if there {
             let help = "remove one of the two to run the rest of the scene";
-            let refusal = Refusal::new(format!("not supported yet beside `{key}`"), help);
-            return Err(Problem::new("colliders", refusal));
+            let refusal = Refusal::new(format!("not supported yet beside {key}"), help);
+            return Err(Problem::new(collide, refusal));
+        }
+    }
+    Ok(())
+}
+
+/// Checks that what sticks holds at least as well as what slides.
+fn sticks(of: &str, [low, found]: [f64; 2]) -> Result<(), Problem> {
+    if found >= low {
+        return Ok(());
+    }
+    let message = format!("expected at least the friction ({low:?}), found {found:?}");
+    let help = "what sticks holds at least as well as what slides";
+    Problem::because(format!("{of}.static_friction"), message, help)
+}
+
+/// Checks how particles collide: with something, and not inside of each other at the start.
+fn contact(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
+    let Some(contact) = &scene.contact else {
+        return Ok(());
+    };
+    sticks("contact", [contact.friction, contact.static_friction])?;
+    if !contact.particles {
+        for (key, value) in [
+            ("restitution", contact.restitution),
+            ("friction", contact.friction),
+            ("static_friction", contact.static_friction),
+        ] {
+            if value != 0.0 {
+                let message = "expected `particles: true`: it is of particles with each other";
+                let help = "obstacles have coefficients of their own, under `colliders`";
+                return Problem::because(format!("contact.{key}"), message, help);
+            }
+        }
+        if scene.colliders.is_empty() || contact.penalty.is_none() {
+            let message = "expected something to say of contact, found nothing";
+            let help =
+                "let particles collide with each other by `particles: true`, or remove `contact`";
+            return Problem::because("contact", message, help);
+        }
+        return Ok(());
+    }
+    apart(scene, starts)
+}
+
+/// Checks that no two free particles that collide start inside each other.
+fn apart(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
+    let joined: HashSet<[usize; 2]> = scene.joined().collect();
+    let leaf = |(id, particle): (usize, &Particle)| {
+        let half = Vector::splat(particle.radius);
+        (id, Aabb::from_half_extents(Vector::from(starts[id]), half))
+    };
+    let free = || scene.particles.iter().enumerate().filter(|(_, p)| !p.fixed);
+    let tree = Bvh::from_iter(BvhBuildStrategy::Binned, free().map(leaf));
+    for (id, particle) in free() {
+        let (_, own) = leaf((id, particle));
+        let mut others: Vec<usize> = tree
+            .intersect_aabb(&own)
+            .map(|leaf| leaf as usize)
+            .collect();
+        others.sort_unstable();
+        for other in others.into_iter().filter(|other| id < *other) {
+            let away = Vector::from(starts[other]) - Vector::from(starts[id]);
+            let deep = particle.radius + scene.particles[other].radius - away.length();
+            let ends = starts[id].iter().chain(&starts[other]);
+            let largest = ends.fold(particle.radius, |most, c| most.max(c.abs()));
+            if deep > TOUCHING * largest && !joined.contains(&[id, other]) {
+                let [one, two] = [id, other].map(|id| called(&scene.bodies, id));
+                let message = format!(
+                    "expected free particles apart, found {one} and {two} {deep:?} m inside each other at the start"
+                );
+                let help = "particles collide by their `radius`, 0.1 m unless the file says otherwise: give smaller ones, or \
+                            move them";
+                return Problem::because("contact.particles", message, help);
+            }
         }
     }
     Ok(())

@@ -22,7 +22,7 @@ use serde::Serialize;
 use std::sync::Arc;
 
 /// All parts: the mappings a file consists of.
-pub static PARTS: [&Part; 24] = [
+pub static PARTS: [&Part; 26] = [
     &SPRINGS,
     &RODS,
     &CONSTRAINTS,
@@ -41,6 +41,8 @@ pub static PARTS: [&Part; 24] = [
     &MESH,
     &MOTION,
     &MOTION_SINE,
+    &CONTACT,
+    &PENALTY,
     &WIND,
     &AIR,
     &MAGNETIC,
@@ -199,7 +201,7 @@ use Absent::{Derived, Required, Unless, Usual};
 declare! {
     /// A checked scene. Particle ids are indices into `particles`.
     SCENE: Scene, itself file, "a scene: a mapping with `solver` and `particles`",
-    reserved ["contact"];
+    reserved [];
     [
         /// The file as it was named on the command line; empty for a scene built in code.
         file: String = String::new()
@@ -259,6 +261,8 @@ declare! {
     driven: Vec<Driven> = Vec::new(), "driven" => ValueKind::Part(&DRIVEN), Usual, None;
     /// Obstacles that particles collide with.
     colliders: Vec<Collider> = Vec::new(), "colliders" => ValueKind::Part(&COLLIDERS), Usual, None;
+    /// Whether particles collide with each other, and how.
+    contact: Option<Contact> = None, "contact" => ValueKind::Part(&CONTACT), Usual, None;
     /// A constant force.
     wind: Option<Wind> = None, "wind" => ValueKind::Part(&WIND), Usual, None;
     /// The air that drag acts against; at rest, as at sea level, where the scene says nothing of it.
@@ -589,6 +593,39 @@ declare! {
     /// Rows of a time, s, ascending, and a displacement, m: it passes them on a natural cubic spline.
     table: Option<Knots> = None,
         "table" => ValueKind::Table(4, Bounds::signed(1e12, "s, then m")), Usual, Some("tables");
+}
+
+declare! {
+    /// How particles collide: with each other, if they do, and all of them by a spring instead of impulses, if that is asked
+    /// for. Particles that a spring or a rod joins do not collide, nor do fixed ones.
+    CONTACT: Contact, maybe contact, "a mapping such as {particles: true, restitution: 0.5}", reserved [];
+
+    /// Whether free particles collide with each other, each as a ball of its radius.
+    particles: bool = false, "particles" => ValueKind::Flag, Usual, Some("particles");
+    /// e of particles with each other, from 0 to 1.
+    restitution: f64 = 0.0, "restitution" => ValueKind::Number(Bounds::from(0.0, 1.0, "a part of the speed")),
+        Usual, Some("restitution");
+    /// µ of particles with each other.
+    friction: f64 = 0.0, "friction" => ValueKind::Number(Bounds::not_negative(1e6, "a pure number")),
+        Usual, Some("friction");
+    /// µ of particles that stick to each other; not below `friction`, which it is where it is absent.
+    static_friction: f64 = 0.0,
+        "static_friction" => ValueKind::Number(Bounds::not_negative(1e6, "a pure number")),
+        Derived, Some("static_friction");
+    /// A spring and a damper at every contact, instead of impulses and constraints.
+    penalty: Option<Penalty> = None, "penalty" => ValueKind::Part(&PENALTY), Usual, None;
+}
+
+declare! {
+    /// A spring and a damper while a particle is inside: the force k d + c d' for the depth d, from d = 0 until d = 0 again.
+    PENALTY: Penalty, inside (contact penalty), "a mapping with `stiffness`", reserved [];
+
+    /// k, N/m, positive.
+    stiffness: f64 = 1.0, "stiffness" => ValueKind::Number(Bounds::from(1e-12, 1e15, "N/m")),
+        Required("give its stiffness in N/m, as 10000"), Some("stiffness");
+    /// c, N s/m.
+    damping: f64 = 0.0, "damping" => ValueKind::Number(Bounds::not_negative(1e15, "N s/m")),
+        Usual, Some("damping");
 }
 
 /// Rows [t, x, y, z] of a table, s and m.

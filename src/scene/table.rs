@@ -138,13 +138,13 @@ macro_rules! member {
         stringify!($part)
     };
     (len inside $scene:ident ($list:ident $($part:ident)+)) => {
-        $scene.$list.len()
+        $scene.$list.as_slice().len()
     };
     (get inside $scene:ident ($list:ident $($part:ident)+), $at:ident) => {
-        $scene.$list.get($at)$(.and_then(|member| member.$part.as_ref()))+
+        $scene.$list.as_slice().get($at)$(.and_then(|member| member.$part.as_ref()))+
     };
     (get_mut inside $scene:ident ($list:ident $($part:ident)+), $at:ident) => {
-        $scene.$list.get_mut($at)$(.and_then(|member| member.$part.as_mut()))+
+        $scene.$list.as_mut_slice().get_mut($at)$(.and_then(|member| member.$part.as_mut()))+
     };
     (len $how:ident $scene:ident $part:ident) => {
         member!(slice $how $scene $part).len()

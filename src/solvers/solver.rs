@@ -140,7 +140,7 @@ impl Solver {
         match &self.source {
             Source::Method(method) if method.pair().is_none() => Some((method.id, 1)),
             // Its contact has a law of its own.
-            Source::Forces(_) | Source::Joints(_) if !scene.colliders.is_empty() => None,
+            Source::Forces(_) | Source::Joints(_) if scene.collides() => None,
             Source::Method(_) | Source::Own(_) | Source::Program(_) => None,
             // Forces are set once a step and held over its substeps.
             Source::Forces(_) if self.substeps > 1 => {

@@ -7,10 +7,11 @@
 mod path;
 
 use super::{Integrator, StepError};
-use crate::physics::constraints::contact::{Change, Held, Obstacles};
+use crate::physics::constraints::contact::{Against, Beside, Change, Held, Near, Obstacles};
 use crate::physics::{State, System};
 use path::{Path, crossing};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Roots are located to this part of a step.
 const LOCATED: f64 = 1e-12;
@@ -29,8 +30,8 @@ const LARGE: usize = 32;
 /// What happens to a particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Event {
-    /// It meets an obstacle.
-    Impact { particle: usize, obstacle: usize },
+    /// It meets an obstacle, or another particle.
+    Impact { particle: usize, against: Against },
     /// Its contact changes.
     Contact { particle: usize, change: Change },
 }
@@ -90,8 +91,9 @@ fn step(
             MANY
         },
         involved: BTreeSet::new(),
+        near: obstacles.near([state.t; 2], |particle| (three(&state.x, particle), 0.0)),
     };
-    walk.settle(state);
+    walk.settle(state)?;
     let mut done = 0.0;
     let mut idle = 0;
     for _ in 0..CUTS {
@@ -121,55 +123,99 @@ struct Walk<'a> {
     most: usize,
     /// The particles with events so far.
     involved: BTreeSet<usize>,
+    /// What may touch where particles are now.
+    near: Arc<Near>,
 }
 
 impl Walk<'_> {
     /// Impacts that are due at once.
-    fn settle(&mut self, state: &mut State) {
-        let touching = self.obstacles.touching(state);
-        let mut last = usize::MAX;
-        for beside in touching.iter().filter(|beside| beside.strikes()) {
-            if beside.particle != last {
-                self.strike(beside.particle, state);
-                last = beside.particle;
-            }
-        }
+    fn settle(&mut self, state: &mut State) -> Result<(), StepError> {
+        let touching = self.obstacles.touching(&self.near, state).into_iter();
+        let due = touching
+            .filter(Beside::strikes)
+            .map(|beside| beside.particle);
+        self.strike(due.collect(), state)
     }
 
-    /// An impact, after which a particle that would come back at once stays.
-    fn strike(&mut self, particle: usize, state: &mut State) {
-        self.impacts += u64::from(self.obstacles.strike(particle, state));
+    /// The impacts of these particles, after which what would come back at once stays.
+    fn strike(&mut self, due: BTreeSet<usize>, state: &mut State) -> Result<(), StepError> {
+        if due.is_empty() {
+            return Ok(());
+        }
+        let (obstacles, rods) = (self.obstacles, self.system.rods());
+        let mut struck = due.clone();
+        let impacts = obstacles.strike(&self.near, rods, due, state)?;
+        self.impacts += impacts.1;
+        struck.extend(impacts.0);
+        obstacles.push_out(&self.near, &mut struck, state);
+        // What has come to rest holds up what lies on it.
+        while self.rest(&struck, state)? {}
+        Ok(())
+    }
+
+    /// Takes the normal velocities of these particles away where they would part for less than is seen. Returns whether
+    /// that changes what they press.
+    fn rest(&self, particles: &BTreeSet<usize>, state: &mut State) -> Result<bool, StepError> {
+        let (obstacles, rods) = (self.obstacles, self.system.rods());
         let mut a = Vec::new();
-        for obstacle in 0..self.obstacles.len() {
-            let beside = self.obstacles.beside(particle, obstacle, state);
-            let parting = beside.parting();
-            if !beside.touches() {
-                continue;
-            }
-            if beside.gap < -beside.close {
-                self.obstacles.push_out(&beside, state);
-            }
-            if a.is_empty() {
-                a = vec![0.0; state.x.len()];
-                self.system
-                    .acceleration(state.t, &state.x, &state.v, &mut a);
-            }
-            // It would rise by less than is seen.
-            let down = -self.obstacles.opening(&beside, state.t, &a);
-            let high = parting * parting / (2.0 * down);
-            if parting < beside.slow || (down > 0.0 && high < self.obstacles.lowest()) {
-                self.obstacles.rest(&beside, state);
+        let mut changed = false;
+        for particle in particles {
+            for beside in obstacles.touched(&self.near, *particle, state) {
+                let beside = obstacles.beside(beside.particle, beside.against, state);
+                let parting = beside.parting();
+                if a.is_empty() {
+                    a = self.acceleration(state)?;
+                }
+                // It would rise by less than is seen.
+                let down = -obstacles.opening(&beside, state.t, &a);
+                let high = parting * parting / (2.0 * down);
+                if parting < beside.slow || (down > 0.0 && high < obstacles.lowest()) {
+                    obstacles.rest(rods, &beside, state)?;
+                    changed |= parting > beside.slow && obstacles.among_particles();
+                }
             }
         }
+        Ok(changed)
+    }
+
+    /// With the forces of what stays where particles press each other.
+    fn acceleration(&self, state: &State) -> Result<Vec<f64>, StepError> {
+        if self.obstacles.among_particles() || self.system.rods().is_some() {
+            let touching = self.obstacles.touching(&self.near, state);
+            if let Some(held) = self.held(&touching, state)? {
+                return Ok(held.whole(state));
+            }
+        }
+        let mut a = vec![0.0; state.x.len()];
+        self.system
+            .acceleration(state.t, &state.x, &state.v, &mut a);
+        Ok(a)
+    }
+
+    fn held(&self, touching: &[Beside], state: &State) -> Result<Option<Held<'_>>, StepError> {
+        let taken = self.integrator.takes();
+        Ok(Held::at(
+            self.system,
+            self.obstacles,
+            touching,
+            state,
+            taken,
+        )?)
     }
 
     /// One sub-step of at most `left` seconds, to the next event. Returns its length.
     fn advance(&mut self, left: f64, state: &mut State) -> Result<f64, StepError> {
         let start = state.clone();
-        let held = Held::at(self.system, self.obstacles, &start, self.integrator.takes());
+        let (system, obstacles) = (self.system, self.obstacles);
+        let touching = obstacles.touching(&self.near, &start);
+        let taken = self.integrator.takes();
+        let held = Held::at(system, obstacles, &touching, &start, taken)?;
         let held = held.as_ref();
         self.integrator.forget();
         let mut end = self.sub_step(held, left, &start)?;
+        self.near = obstacles.near([start.t, start.t + left], |particle| {
+            Path::new(particle, left, &start, &end).ball()
+        });
         let a = held.map(|held| held.free(&end));
         let mut due = Self::changes(held, left, &end, a.as_deref());
         due.extend(self.impacts(held, left, &start, &end));
@@ -186,7 +232,7 @@ impl Walk<'_> {
                 held.book(left, &start, &mut end, a);
             }
             *state = end;
-            self.each_on_its_path(held, &due, left, &start, state);
+            self.each_on_its_path(held, &due, left, &start, state)?;
             return Ok(left);
         };
         *state = at;
@@ -195,7 +241,7 @@ impl Walk<'_> {
             held.book(time, &start, state, &a);
         }
         match event {
-            Event::Impact { particle, .. } => self.strike(particle, state),
+            Event::Impact { particle, .. } => self.strike([particle].into(), state)?,
             Event::Contact { particle, change } => {
                 if let (Some(held), Change::Stops) = (held, change) {
                     held.stop(particle, state);
@@ -269,31 +315,40 @@ impl Walk<'_> {
     /// The impacts of particles that do not stay in contact, on the cubic through both ends of their paths.
     fn impacts(&self, held: Option<&Held>, h: f64, start: &State, end: &State) -> Vec<Due> {
         let mut found = Vec::new();
-        for obstacle in 0..self.obstacles.len() {
-            let reach = self.obstacles.reach(obstacle, start.t, start.t + h);
-            for particle in self.obstacles.particles() {
-                if held.is_some_and(|held| held.holds(particle, obstacle)) {
-                    continue;
-                }
-                let path = Path::new(particle, h, start, end);
-                let gap = |s: f64| {
-                    self.obstacles
-                        .gap(particle, obstacle, start.t + s * h, path.at(s))
+        for (particle, against) in self.near.pairs() {
+            if held.is_some_and(|held| held.holds(particle, against)) {
+                continue;
+            }
+            let path = |particle| Path::new(particle, h, start, end);
+            let (own, other) = (
+                path(particle),
+                match against {
+                    Against::Particle(other) => Some((other, path(other))),
+                    Against::Obstacle(_) => None,
+                },
+            );
+            let gap = |s: f64| {
+                let at = |which: usize| match &other {
+                    Some((other, path)) if *other == which => path.at(s),
+                    _ => own.at(s),
                 };
-                let bound = path.length() + reach;
-                let last = gap(1.0);
-                if last > bound {
-                    continue;
-                }
-                let close = self.obstacles.close(path.at(0.0));
-                if let Some(([clear, due], level)) = crossing(gap, bound, close) {
-                    found.push(Due {
-                        event: Event::Impact { particle, obstacle },
-                        clear: clear * h,
-                        due: due * h,
-                        level,
-                    });
-                }
+                self.obstacles.gap(particle, against, start.t + s * h, at)
+            };
+            let reach = self.obstacles.reach(against, start.t, start.t + h);
+            let others = other.as_ref().map_or(0.0, |(_, path)| path.length());
+            let bound = own.length() + reach + others;
+            let last = gap(1.0);
+            if last > bound {
+                continue;
+            }
+            let close = self.obstacles.close(own.at(0.0));
+            if let Some(([clear, due], level)) = crossing(gap, bound, close) {
+                found.push(Due {
+                    event: Event::Impact { particle, against },
+                    clear: clear * h,
+                    due: due * h,
+                    level,
+                });
             }
         }
         found.sort_by(|a, b| a.due.total_cmp(&b.due));
@@ -313,12 +368,11 @@ impl Walk<'_> {
         let sign = |state: &State| sign(obstacles, held, due, state);
         let mut high = due.due;
         let mut below = sign(&self.sub_step(held, high, start)?);
-        // The cubic and the method's own path differ.
-        for part in 1..=8 {
-            if below < 0.0 || high >= left {
-                break;
-            }
-            high = due.due + (left - due.due) * f64::from(part) / 8.0;
+        // The cubic and the method's own path differ, if only by rounding: a little beyond, lest it is through.
+        let mut beyond = (1e-6 * (due.due - due.clear)).max(LOCATED * self.h);
+        while below >= 0.0 && high < left {
+            high = (due.due + beyond).min(left);
+            beyond *= 8.0;
             below = sign(&self.sub_step(held, high, start)?);
         }
         if below >= 0.0 {
@@ -392,56 +446,85 @@ impl Walk<'_> {
         h: f64,
         start: &State,
         end: &mut State,
-    ) {
+    ) -> Result<(), StepError> {
         let before = end.clone();
+        let mut there = before.clone();
+        let rods = self.system.rods();
         for due in due {
-            match due.event {
+            let (particle, against) = match due.event {
                 Event::Contact { particle, change } => {
                     if let (Some(held), Change::Stops) = (held, change) {
                         held.stop(particle, end);
                     }
+                    continue;
                 }
-                Event::Impact { particle, obstacle } => {
-                    let path = Path::new(particle, h, start, &before);
-                    let gap = |s: f64| {
-                        self.obstacles
-                            .gap(particle, obstacle, start.t + s * h, path.at(s))
-                    };
-                    let (mut low, mut high) = (due.clear / h, due.due / h);
-                    for _ in 0..60 {
-                        let middle = 0.5 * (low + high);
-                        if gap(middle) < 0.0 {
-                            high = middle;
-                        } else {
-                            low = middle;
-                        }
-                    }
-                    let mut there = before.clone();
-                    there.t = start.t + high * h;
-                    there.work = end.work;
+                Event::Impact { particle, against } => (particle, against),
+            };
+            let ends = against.with(particle);
+            let paths = ends
+                .iter()
+                .map(|end| (*end, Path::new(*end, h, start, &before)));
+            let paths: Vec<(usize, Path)> = paths.collect();
+            let move_to = |s: f64, there: &mut State| {
+                there.t = start.t + s * h;
+                for (particle, path) in &paths {
                     let range = 3 * particle..3 * particle + 3;
-                    there.x[range.clone()].copy_from_slice(&path.at(high));
-                    there.v[range.clone()].copy_from_slice(&path.velocity(high));
-                    let old = path.velocity(high);
-                    self.impacts += u64::from(self.obstacles.strike(particle, &mut there));
-                    end.work = there.work;
-                    for (axis, at) in range.enumerate() {
-                        let change = there.v[at] - old[axis];
-                        end.v[at] += change;
-                        end.x[at] += change * (1.0 - high) * h;
-                    }
+                    there.x[range.clone()].copy_from_slice(&path.at(s));
+                    there.v[range].copy_from_slice(&path.velocity(s));
+                }
+            };
+            let (mut low, mut high) = (due.clear / h, due.due / h);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                move_to(middle, &mut there);
+                if self.obstacles.beside(particle, against, &there).gap < 0.0 {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            move_to(high, &mut there);
+            let old: Vec<_> = ends.iter().map(|end| three(&there.v, *end)).collect();
+            // Of its own place alone is it known when it is there.
+            let work = std::mem::replace(&mut there.work, end.work);
+            let impacts = match against {
+                Against::Obstacle(_) => self
+                    .obstacles
+                    .strike_obstacles(&self.near, rods, particle, &mut there)?,
+                Against::Particle(_) => {
+                    let beside = self.obstacles.beside(particle, against, &there);
+                    u64::from(self.obstacles.apply(rods, &beside, &mut there)?)
+                }
+            };
+            self.impacts += impacts;
+            end.work = std::mem::replace(&mut there.work, work);
+            // Rods pass impulses on to all.
+            let moved: Vec<usize> = match rods {
+                Some(_) => (0..end.v.len() / 3).collect(),
+                None => ends.clone(),
+            };
+            for moved in moved {
+                let at = ends.iter().position(|end| *end == moved);
+                let old = at.map_or_else(|| three(&before.v, moved), |at| old[at]);
+                for (axis, old) in old.into_iter().enumerate() {
+                    let place = 3 * moved + axis;
+                    let change = there.v[place] - old;
+                    end.v[place] += change;
+                    end.x[place] += change * (1.0 - high) * h;
+                    (there.x[place], there.v[place]) = (before.x[place], before.v[place]);
                 }
             }
         }
+        Ok(())
     }
 }
 
 /// Positive before an event, negative after it.
 fn sign(obstacles: &Obstacles, held: Option<&Held>, due: &Due, state: &State) -> f64 {
     match due.event {
-        Event::Impact { particle, obstacle } => {
-            let at = [0, 1, 2].map(|axis| state.x[3 * particle + axis]);
-            obstacles.gap(particle, obstacle, state.t, at) - due.level
+        Event::Impact { particle, against } => {
+            let at = |particle| three(&state.x, particle);
+            obstacles.gap(particle, against, state.t, at) - due.level
         }
         Event::Contact { particle, change } => {
             let changes = held.map(|held| held.changes(state, &held.free(state)));
@@ -450,4 +533,8 @@ fn sign(obstacles: &Obstacles, held: Option<&Held>, due: &Due, state: &State) ->
             -own.map(|c| c.2).fold(f64::NEG_INFINITY, f64::max)
         }
     }
+}
+
+fn three(all: &[f64], particle: usize) -> [f64; 3] {
+    [0, 1, 2].map(|axis| all[3 * particle + axis])
 }

@@ -37,6 +37,12 @@ impl Path {
         })
     }
 
+    /// A ball that it keeps within: its centre, and its radius, m.
+    pub fn ball(&self) -> ([f64; 3], f64) {
+        let center = [0, 1, 2].map(|c| 0.5 * (self.x[0][c] + self.x[1][c]));
+        (center, 0.5 * self.length())
+    }
+
     /// It is not longer, m.
     pub fn length(&self) -> f64 {
         let norm = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();

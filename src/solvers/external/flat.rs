@@ -3,8 +3,8 @@
 use super::Task;
 use crate::physics::System;
 use crate::scene::model::{
-    BENDING, COLLIDERS, DRIVEN, GRAVITATIONAL, MESH, MOTION, MOTION_SINE, PARTICLES, Part, RODS,
-    Row, SINE, SPRINGS, STRAIN_LIMIT, TRIANGLES, ValueKind,
+    BENDING, COLLIDERS, CONTACT, DRIVEN, GRAVITATIONAL, MESH, MOTION, MOTION_SINE, PARTICLES,
+    PENALTY, Part, RODS, Row, SINE, SPRINGS, STRAIN_LIMIT, TRIANGLES, ValueKind,
 };
 use crate::scene::{Scene, Value};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -34,7 +34,8 @@ impl Serialize for Flat<'_> {
         // What a program does not know it refuses, constraints too.
         effects.extend(system.rods().map(|_| "rods"));
         effects.extend(system.strain_limiter().map(|_| "strain_limit"));
-        effects.extend(system.obstacles().map(|_| "colliders"));
+        effects.extend((!scene.colliders.is_empty()).then_some("colliders"));
+        effects.extend(scene.contact.as_ref().map(|_| "contact"));
 
         let mut map = to.serialize_map(None)?;
         map.serialize_entry("schema_version", &SCHEMA_VERSION)?;
@@ -61,11 +62,37 @@ impl Serialize for Flat<'_> {
         if !scene.colliders.is_empty() {
             map.serialize_entry("colliders", &Colliders(scene))?;
         }
+        if scene.contact.is_some() {
+            map.serialize_entry("contact", &Collisions(scene))?;
+        }
         map.serialize_entry("gravitational", &Arrays(scene, &[&GRAVITATIONAL]))?;
         map.serialize_entry("effects", &effects)?;
         map.serialize_entry("timestep", &timestep)?;
         map.serialize_entry("duration", &scene.duration)?;
         map.serialize_entry("steps", &steps)?;
+        map.end()
+    }
+}
+
+/// How particles collide: its keys, those of the penalty where there is one, and the radii.
+struct Collisions<'a>(&'a Scene);
+
+impl Serialize for Collisions<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let scene = self.0;
+        let mut map = to.serialize_map(None)?;
+        for row in CONTACT.rows.iter().filter(|row| row.flat.is_some()) {
+            map.serialize_entry(row.key, &(row.get)(scene, 0, 0))?;
+        }
+        let penalty = scene
+            .contact
+            .as_ref()
+            .and_then(|contact| contact.penalty.as_ref());
+        if penalty.is_some() {
+            map.serialize_entry("penalty", &Keys(scene, &PENALTY))?;
+        }
+        let radii: Vec<f64> = scene.particles.iter().map(|p| p.radius).collect();
+        map.serialize_entry("radii", &radii)?;
         map.end()
     }
 }

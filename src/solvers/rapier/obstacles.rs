@@ -15,6 +15,8 @@ use rapier3d::pipeline::PhysicsWorld;
 
 const PARTICLES: Group = Group::GROUP_1;
 const OBSTACLES: Group = Group::GROUP_2;
+/// Particles as they collide with each other.
+const AMONG: Group = Group::GROUP_3;
 
 /// Adds the colliders of a scene; returns the bodies of obstacles that move.
 pub(super) fn add(
@@ -23,8 +25,20 @@ pub(super) fn add(
     world: &mut PhysicsWorld,
 ) -> Result<Vec<(RigidBodyHandle, Drive)>, Unsupported> {
     let mut moved = Vec::new();
-    if scene.colliders.is_empty() {
+    let contact = scene.contact.as_ref();
+    let among = contact.filter(|contact| contact.particles);
+    if scene.colliders.is_empty() && among.is_none() {
         return Ok(moved);
+    }
+    if among.is_some_and(|one| one.static_friction > one.friction) {
+        return Err(Unsupported {
+            reason: "contact has a static friction of its own: rapier has one coefficient".into(),
+        });
+    }
+    if contact.is_some_and(|contact| contact.penalty.is_some()) {
+        return Err(Unsupported {
+            reason: "contact has a penalty: rapier's contacts are its own".into(),
+        });
     }
     let parameters = &mut world.integration_parameters;
     parameters.contact_recycling = false;
@@ -32,7 +46,7 @@ pub(super) fn add(
     let sweeps = parameters.num_internal_stabilization_iterations.max(1);
     parameters.num_internal_stabilization_iterations = sweeps;
     // A half space is solid: nothing passes it. Continuous detection keeps what is fast from passing other shapes.
-    let solid = scene.colliders.iter().all(|one| one.plane.is_some());
+    let solid = among.is_none() && scene.colliders.iter().all(|one| one.plane.is_some());
     parameters.max_ccd_substeps = usize::from(!solid);
     for (at, collider) in scene.colliders.iter().enumerate() {
         if collider.static_friction > collider.friction {
@@ -76,6 +90,15 @@ pub(super) fn add(
             .density(0.0)
             .friction(0.0);
         world.insert_collider(ball, Some(*body));
+        // Another ball for the others, which has coefficients.
+        if let Some(contact) = among {
+            let ball = ColliderBuilder::new(SharedShape::ball(particle.radius));
+            let ball = between(ball, AMONG, AMONG)
+                .density(0.0)
+                .friction(contact.friction)
+                .restitution(contact.restitution);
+            world.insert_collider(ball, Some(*body));
+        }
         if let Some(body) = world.bodies.get_mut(*body) {
             body.enable_ccd(!solid);
         }

@@ -40,8 +40,8 @@ pub fn key(scene: &Scene, until: f64) -> String {
             }
         }
     }
-    // Radii are of balls among obstacles, and of nothing else.
-    if !scene.colliders.is_empty() {
+    // Radii are of balls that collide, and of nothing else.
+    if scene.collides() {
         for particle in &scene.particles {
             hash.update(particle.radius.to_bits().to_le_bytes());
         }

@@ -25,7 +25,7 @@ use std::time::Instant;
 const DRAWN: usize = 20_000;
 
 /// Why nothing is looked for among obstacles.
-const OBSTACLES: &str = "obstacles are not part of the search: run the scene with some damping until it rests, or remove `colliders`";
+const OBSTACLES: &str = "contact is not part of the search: run the scene with some damping until it rests, or remove `colliders` and `contact`";
 
 /// Seconds that a particle takes; in a sheet times the number of particles to the power 0.2: a cloth of 40 x 40 takes 2 s.
 const EACH: f64 = 2.5e-4;
@@ -65,7 +65,7 @@ impl RestPlan<'_> {
         let clock = Instant::now();
         let (reason, found) = match balance::find(scene) {
             // The search knows of no obstacle.
-            _ if !scene.colliders.is_empty() => (Some(OBSTACLES.to_owned()), None),
+            _ if scene.collides() => (Some(OBSTACLES.to_owned()), None),
             Ok(found) => (None, Some(found)),
             Err(error) => (Some(error.to_string()), None),
         };

@@ -46,7 +46,7 @@ pub fn own_law(plan: &Plan, case: &Case) -> Option<&'static str> {
         (SolverKind::Rapier, scene) if !scene.rods.is_empty() => Some(
             "its rods are spring joints of 1e9 N/m, which rapier's sweeps solve in part: distance from it is no error of yours",
         ),
-        (SolverKind::Rapier, scene) if !scene.colliders.is_empty() => Some(
+        (SolverKind::Rapier, scene) if scene.collides() => Some(
             "its contact acts once a step, from the velocity at its start, and rests a little inside: distance from it is no \
              error of yours",
         ),

@@ -11,9 +11,13 @@
 //!
 //! The normal forces N ≥ 0 are those that keep it on the surface: N = m (n·a_s - n·a), a without them and a_s the
 //! surface's, turning included (complementarity: a contact that would have to pull is none).
+//!
+//! Particles that touch each other, or that rods join, have such coordinates together ([`Group`]).
 
+use super::group::Group;
 use super::member::{Contact, Member, approach, multipliers};
-use super::{Beside, Obstacles, dot, minus, norm, three};
+use super::{Against, Beside, Obstacles, dot, minus, norm, three};
+use crate::physics::constraints::Rods;
 use crate::physics::{
     Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, State, System, Triplets,
 };
@@ -23,6 +27,7 @@ pub struct Held<'s> {
     system: &'s dyn System,
     obstacles: &'s Obstacles,
     members: Vec<Member>,
+    groups: Vec<Group>,
     inverse_mass: Vec<f64>,
     /// The acceleration without contact at the beginning, m/s².
     begins: Vec<f64>,
@@ -31,6 +36,19 @@ pub struct Held<'s> {
     /// Whether friction acts among the forces. Where it turns, a method whose forces must not depend on velocity takes it
     /// apart: see [`slow_down`](Self::slow_down).
     friction: bool,
+}
+
+/// The most particles whose contacts depend on each other: what these take grows as the cube of their number.
+pub const MOST: usize = 128;
+
+/// More particles than [`MOST`] touch each other, or are joined by rods while something touches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{particles} particles touch each other, or are joined by rods while something touches: at most {MOST} can be held at \
+     once"
+)]
+pub struct TooManyTouch {
+    pub particles: usize,
 }
 
 /// What ends a motion in contact.
@@ -45,34 +63,46 @@ pub enum Change {
 }
 
 impl<'s> Held<'s> {
-    /// What stays in contact from a state on, for a method that takes forces of these kinds; None where nothing does.
+    /// What stays in contact from a state on, of what touches there, for a method that takes forces of these kinds; None
+    /// where nothing does.
+    ///
+    /// # Errors
+    /// [`TooManyTouch`] where more particles depend on each other than [`MOST`].
     pub fn at(
         system: &'s dyn System,
         obstacles: &'s Obstacles,
+        touching: &[Beside],
         state: &State,
         taken: ForceKinds,
-    ) -> Option<Self> {
+    ) -> Result<Option<Self>, TooManyTouch> {
         let any_velocity = taken.has(ForceKinds::NON_LINEAR);
         let follow = taken.has(ForceKinds::CONSTRAINED);
-        let touching = obstacles.touching(state);
-        let mut resting = touching.iter().filter(|beside| beside.rests()).peekable();
-        resting.peek()?;
-        let mut a = vec![0.0; state.x.len()];
-        system.acceleration(state.t, &state.x, &state.v, &mut a);
-        let mut members: Vec<Member> = Vec::new();
+        let resting = touching.iter().filter(|beside| beside.rests());
         let mut all: Vec<Beside> = resting.copied().collect();
-        while let Some(first) = all.first() {
-            let particle = first.particle;
-            let count = all.partition_point(|beside| beside.particle == particle);
-            let own: Vec<Beside> = all.drain(..count).collect();
-            let x = three(&state.x, particle);
-            let a = three(&a, particle);
-            members.extend(Member::new(obstacles, &own, state.t, [x, a], follow));
+        if all.is_empty() {
+            return Ok(None);
         }
-        if members.is_empty() {
-            return None;
+        let mut a = vec![0.0; state.x.len()];
+        system.free_acceleration(state.t, &state.x, &state.v, &mut a);
+        let groups = grouped(obstacles, system.rods(), &mut all, state, &a)?;
+        let mut members: Vec<Member> = Vec::new();
+        for own in all.chunk_by(|one, other| one.particle == other.particle) {
+            let [x, a] = [&state.x, &a].map(|all| three(all, own[0].particle));
+            members.extend(Member::new(obstacles, own, state.t, [x, a], follow));
+        }
+        let pressed = |group: &Group| group.contacts().next().is_some();
+        if members.is_empty() && !groups.iter().any(pressed) {
+            return Ok(None);
         }
         let mut inverse_mass = system.inverse_mass().to_vec();
+        for group in &groups {
+            for particle in group.particles() {
+                inverse_mass[3 * particle..3 * particle + 3].fill(1.0 / group.mass());
+            }
+            for at in group.given() {
+                inverse_mass[at] = 0.0;
+            }
+        }
         for member in &members {
             let at = 3 * member.particle;
             inverse_mass[at..at + member.given].fill(0.0);
@@ -80,15 +110,16 @@ impl<'s> Held<'s> {
         let turns = members
             .iter()
             .any(|member| member.slides && !member.straight);
-        Some(Self {
+        Ok(Some(Self {
             system,
             obstacles,
             members,
+            groups,
             inverse_mass,
             begins: a,
             since: state.t,
             friction: any_velocity || !turns,
-        })
+        }))
     }
 
     /// The state in the particles' own axes.
@@ -108,6 +139,10 @@ impl<'s> Held<'s> {
         for member in &self.members {
             member.project(self.obstacles, &mut state);
         }
+        let (rods, h) = (self.system.rods(), state.t - self.since);
+        for group in &self.groups {
+            group.project(self.obstacles, rods, h, &mut state);
+        }
         state
     }
 
@@ -116,6 +151,7 @@ impl<'s> Held<'s> {
             let own = member.inward(three(all, member.particle));
             all[3 * member.particle..3 * member.particle + 3].copy_from_slice(&own);
         }
+        self.groups.iter().for_each(|group| group.turn(all));
     }
 
     fn turn_back(&self, all: &mut [f64]) {
@@ -123,6 +159,7 @@ impl<'s> Held<'s> {
             let out = member.outward(three(all, member.particle));
             all[3 * member.particle..3 * member.particle + 3].copy_from_slice(&out);
         }
+        self.groups.iter().for_each(|group| group.turn_back(all));
     }
 
     /// Where the friction of sliding particles is not among the forces: its flow over `h`, s, at a state in the axes of
@@ -154,7 +191,16 @@ impl<'s> Held<'s> {
     pub fn free(&self, state: &State) -> Vec<f64> {
         let mut a = vec![0.0; state.x.len()];
         self.system
-            .acceleration(state.t, &state.x, &state.v, &mut a);
+            .free_acceleration(state.t, &state.x, &state.v, &mut a);
+        a
+    }
+
+    /// The acceleration with contact at a state in the axes of space, m/s², but for that of moving obstacles.
+    pub fn whole(&self, state: &State) -> Vec<f64> {
+        let own = self.inward(state);
+        let mut a = vec![0.0; state.x.len()];
+        self.acceleration(state.t, &own.x, &own.v, &mut a);
+        self.turn_back(&mut a);
         a
     }
 
@@ -178,6 +224,9 @@ impl<'s> Held<'s> {
                 found.push((member.particle, Change::Slips, norm(pull) - most));
             }
         }
+        for group in &self.groups {
+            found.extend(group.changes(self.obstacles, self.system.rods(), state, a));
+        }
         found
     }
 
@@ -189,12 +238,16 @@ impl<'s> Held<'s> {
                 state.v[3 * particle + axis] -= along[axis];
             }
         }
+        for group in &self.groups {
+            group.stop(self.obstacles, particle, state);
+        }
     }
 
     /// Adds the work of friction and of moving obstacles over `h` seconds from a state to another, at which the
     /// acceleration without contact is `a`: by Simpson's rule, with the middle of the cubic through both.
     pub fn book(&self, h: f64, start: &State, end: &mut State, a: &[f64]) {
-        if !self.obstacles.any_moves() && !self.members.iter().any(|member| member.slides) {
+        let slides = self.members.iter().any(|member| member.slides);
+        if !self.obstacles.any_moves() && !slides && self.groups.is_empty() {
             return;
         }
         let mut middle = end.clone();
@@ -224,8 +277,8 @@ impl<'s> Held<'s> {
             let mass = 1.0 / self.system.inverse_mass()[3 * member.particle];
             let free = three(a, member.particle);
             let pressed = member.pressed(self.obstacles, state.t, free);
-            let moved = member.contacts[0].beside.obstacle;
-            let [_, along, pushed] = self.obstacles.obstacles[moved].moved(state.t);
+            let moved = member.contacts[0].beside.against;
+            let [_, along, pushed] = self.obstacles.moved(moved, state.t);
             let mut force = [0.0; 3];
             for (n, contact) in pressed.iter().zip(&member.contacts) {
                 for axis in 0..3 {
@@ -245,13 +298,19 @@ impl<'s> Held<'s> {
             }
             sums[1] += mass * dot(force, along);
         }
+        for group in &self.groups {
+            let own = group.powers(self.obstacles, self.system.rods(), state, a);
+            sums = [sums[0] + own[0], sums[1] + own[1]];
+        }
         sums
     }
 
-    /// Whether this particle stays on this obstacle.
-    pub fn holds(&self, particle: usize, obstacle: usize) -> bool {
-        let contacts = self.member(particle).map(|member| &member.contacts);
-        contacts.is_some_and(|all| all.iter().any(|one| one.beside.obstacle == obstacle))
+    /// Whether this particle stays in this contact.
+    pub fn holds(&self, particle: usize, against: Against) -> bool {
+        let is = |beside: &Beside| beside.particle == particle && beside.against == against;
+        let member = self.member(particle);
+        member.is_some_and(|member| member.contacts.iter().any(|one| is(&one.beside)))
+            || self.groups.iter().any(|group| group.contacts().any(is))
     }
 
     /// Adds friction to an acceleration in the particles' own axes, and sets given coordinates to 0.
@@ -278,6 +337,9 @@ impl<'s> Held<'s> {
             }
             a[at..at + member.given].fill(0.0);
         }
+        for group in &self.groups {
+            group.constrain(self.obstacles, t, a, true);
+        }
     }
 
     /// What a surface that bends adds to the acceleration `a`, in the axes of space, of a particle at positions and
@@ -292,10 +354,12 @@ impl<'s> Held<'s> {
     ) -> [f64; 3] {
         let out = |all: &[f64]| member.outward(three(all, member.particle));
         let (place, velocity) = (out(x), v.map_or([0.0; 3], out));
-        let contact = &member.contacts[0];
+        let Against::Obstacle(obstacle) = member.contacts[0].beside.against else {
+            return [0.0; 3];
+        };
         let at = self
             .obstacles
-            .lone(contact.beside.obstacle, member.particle, t, place, velocity);
+            .lone(obstacle, member.particle, t, place, velocity);
         let now = Contact::new(self.obstacles, at);
         let pressed = -approach(self.obstacles, &now, t, a);
         let mut added = now.beside.normal.map(|n| pressed * n);
@@ -324,14 +388,24 @@ impl<'s> Held<'s> {
         found.ok().map(|at| &self.members[at])
     }
 
+    fn group(&self, particle: usize) -> Option<&Group> {
+        let has = |group: &&Group| group.particles().binary_search(&particle).is_ok();
+        self.groups.iter().find(has)
+    }
+
     /// The entries of a Jacobian in the particles' own axes.
     fn turned(&self, entries: &Triplets, exact: bool, out: &mut Triplets) {
         for &(row, column, value) in entries {
-            let [from, to] = [row, column].map(|at| self.member(at / 3));
-            let rows = from.map_or(vec![(row, 1.0)], |member| {
-                member.rows(row, exact && self.friction)
-            });
-            let columns = to.map_or(vec![(column, 1.0)], |member| member.columns(column));
+            let rows = match (self.member(row / 3), self.group(row / 3)) {
+                (Some(member), _) => member.rows(row, exact && self.friction),
+                (_, Some(group)) => group.rows(row, exact),
+                _ => vec![(row, 1.0)],
+            };
+            let columns = match (self.member(column / 3), self.group(column / 3)) {
+                (Some(member), _) => member.columns(column),
+                (_, Some(group)) => group.columns(column),
+                _ => vec![(column, 1.0)],
+            };
             for (row, by) in &rows {
                 for (column, along) in &columns {
                     out.push((*row, *column, by * along * value));
@@ -339,6 +413,71 @@ impl<'s> Held<'s> {
             }
         }
     }
+}
+
+/// The groups of particles that touch each other, or that rods join: their contacts are taken out of `resting`, but for
+/// those of particles that nothing joins in the end.
+fn grouped(
+    obstacles: &Obstacles,
+    rods: Option<&Rods>,
+    resting: &mut Vec<Beside>,
+    state: &State,
+    a: &[f64],
+) -> Result<Vec<Group>, TooManyTouch> {
+    let contacts = resting.iter().filter_map(|beside| match beside.against {
+        Against::Particle(other) => Some([beside.particle, other]),
+        Against::Obstacle(_) => None,
+    });
+    let joined = rods.map_or(&[][..], |rods| rods.ends());
+    let free = |ends: &[usize; 2]| ends.iter().all(|end| obstacles.weights[*end] > 0.0);
+    let pairs: Vec<[usize; 2]> = contacts
+        .chain(joined.iter().copied().filter(free))
+        .collect();
+    // A rod to a fixed particle makes a group of one.
+    let alone = joined.iter().filter(|ends| !free(ends)).flatten();
+    let alone = alone.filter(|end| obstacles.weights[**end] > 0.0).copied();
+    let sets = sets(obstacles.weights.len(), &pairs, alone);
+    let mut groups = Vec::new();
+    for particles in sets {
+        if particles.len() > MOST {
+            let particles = particles.len();
+            return Err(TooManyTouch { particles });
+        }
+        let of_it = |beside: &Beside| particles.binary_search(&beside.particle).is_ok();
+        let own: Vec<Beside> = resting.iter().filter(|one| of_it(one)).copied().collect();
+        let group = Group::new(obstacles, rods, particles.clone(), &own, state, a);
+        let pair = |beside: &Beside| matches!(beside.against, Against::Particle(_));
+        let joins = group.has_rods() || group.contacts().any(pair);
+        resting.retain(|one| !of_it(one) || (!joins && !pair(one)));
+        if joins {
+            groups.push(group);
+        }
+    }
+    Ok(groups)
+}
+
+/// The sets of particles that pairs join, each ascending.
+fn sets(count: usize, pairs: &[[usize; 2]], alone: impl Iterator<Item = usize>) -> Vec<Vec<usize>> {
+    let mut root: Vec<usize> = (0..count).collect();
+    fn find(root: &mut [usize], mut at: usize) -> usize {
+        while root[at] != at {
+            root[at] = root[root[at]];
+            at = root[at];
+        }
+        at
+    }
+    let mut within = vec![false; count];
+    alone.for_each(|at| within[at] = true);
+    for [i, j] in pairs {
+        (within[*i], within[*j]) = (true, true);
+        let (i, j) = (find(&mut root, *i), find(&mut root, *j));
+        root[i.max(j)] = i.min(j);
+    }
+    let mut sets: std::collections::BTreeMap<usize, Vec<usize>> = Default::default();
+    for at in (0..count).filter(|at| within[*at]) {
+        sets.entry(find(&mut root, at)).or_default().push(at);
+    }
+    sets.into_values().collect()
 }
 
 impl System for Held<'_> {
@@ -351,7 +490,9 @@ impl System for Held<'_> {
         self.place(t, &mut own_x, &mut own_v);
         let still = v.iter().all(|v| *v == 0.0);
         let seen = if still { v } else { &own_v };
-        let power = self.seen(&own_x, seen, |x, v| self.system.acceleration(t, x, v, a));
+        let power = self.seen(&own_x, seen, |x, v| {
+            self.system.free_acceleration(t, x, v, a)
+        });
         self.turn(a);
         self.constrain(t, &own_x, (!still).then_some(&own_v[..]), a);
         power
@@ -363,10 +504,24 @@ impl System for Held<'_> {
             let off: f64 = three(a, member.particle).iter().sum();
             a[3 * member.particle..3 * member.particle + 3].fill(off);
         }
+        for group in &self.groups {
+            let own = |a: &[f64]| {
+                group
+                    .particles()
+                    .iter()
+                    .map(|p| three(a, *p))
+                    .flatten()
+                    .sum()
+            };
+            let off: f64 = own(a);
+            for particle in group.particles() {
+                a[3 * particle..3 * particle + 3].fill(off);
+            }
+        }
     }
 
     fn kinds(&self) -> ForceKinds {
-        let mut kinds = self.system.kinds();
+        let mut kinds = self.system.kinds().without(ForceKinds::CONSTRAINED);
         if self.obstacles.any_moves() {
             kinds = kinds | ForceKinds::DRIVEN;
         }
@@ -395,6 +550,15 @@ impl System for Held<'_> {
                 }
             }
         }
+        for group in &self.groups {
+            let [place, speed] = group.placed(self.obstacles, self.since, t);
+            for (own, at) in group.given().enumerate() {
+                x[at] = place[own];
+                if let Some(v) = v.get_mut(at) {
+                    *v = speed[own];
+                }
+            }
+        }
     }
 
     fn jumps(&self) -> &[f64] {
@@ -416,6 +580,9 @@ impl System for Held<'_> {
                 a[at + member.given] -= lost;
             }
             a[at..at + member.given].fill(0.0);
+        }
+        for group in &self.groups {
+            group.constrain(self.obstacles, t, a, false);
         }
     }
 
@@ -443,11 +610,11 @@ impl System for Held<'_> {
         for by in [Derivative::Position, Derivative::Velocity] {
             let mut entries = own.triplets(by).clone();
             for pair in own.pairs(by) {
-                if pair
-                    .ends
-                    .iter()
-                    .any(|end| self.member(*end as usize).is_some())
-                {
+                let turned = |end: &u32| {
+                    let end = *end as usize;
+                    self.member(end).is_some() || self.group(end).is_some()
+                };
+                if pair.ends.iter().any(turned) {
                     pair.for_each(|row, column, value| entries.push((row, column, value)));
                 } else {
                     out.add_pair(by, pair.ends.map(|end| end as usize), pair.block);

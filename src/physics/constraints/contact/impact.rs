@@ -1,81 +1,269 @@
 //! Impacts: Newton's restitution along the normal, Coulomb's friction across it.
 
-use super::{Beside, Obstacles, dot, norm};
+use super::{Against, Beside, Near, Obstacles, dot, minus, norm};
 use crate::physics::State;
+use crate::physics::constraints::{RodError, Rods};
+use nalgebra::{Matrix3, Vector3};
+use std::collections::BTreeSet;
 
-/// The most impulses of one particle that is pressed into several obstacles at once.
-const SWEEPS: usize = 1000;
+/// The most passes over particles that press each other, or that several obstacles press.
+const PASSES: usize = 1000;
 
 impl Obstacles {
-    /// Gives a particle that strikes an obstacle the velocity after the impact, and books the energy that it takes. With
-    /// V the speed of approach, the normal velocity becomes e V, and the sliding one falls by µ (1 + e) V, to 0 at most:
-    /// Coulomb's law for the impulses. What touches another obstacle as well strikes that next, until nothing is left to
-    /// strike. Returns whether something did.
-    pub fn strike(&self, particle: usize, state: &mut State) -> bool {
-        let mut struck = false;
-        for _ in 0..SWEEPS {
-            let all = (0..self.len()).map(|obstacle| self.beside(particle, obstacle, state));
-            let due: Vec<Beside> = all.filter(Beside::strikes).collect();
-            if due.is_empty() {
+    /// Gives particles that strike something the velocities after the impacts, and books the energy that they take. With V
+    /// the speed of approach, the normal velocity becomes e V, and the sliding one falls by µ (1 + e) V, to 0 at most:
+    /// Coulomb's law for the impulses. What they touch as well they strike next, and what that touches, until nothing is
+    /// left to strike: pair by pair, in ascending order of the particles. Returns the particles that were struck, and the
+    /// number of impulses.
+    ///
+    /// # Errors
+    /// [`RodError`] where rods depend on each other.
+    pub fn strike(
+        &self,
+        near: &Near,
+        rods: Option<&Rods>,
+        particles: BTreeSet<usize>,
+        state: &mut State,
+    ) -> Result<(BTreeSet<usize>, u64), RodError> {
+        let (mut struck, mut impulses) = (BTreeSet::new(), 0);
+        let mut next = particles;
+        for _ in 0..PASSES {
+            let mut later = BTreeSet::new();
+            for particle in next {
+                let all = self.touched(near, particle, state).into_iter();
+                for beside in all.filter(Beside::strikes) {
+                    if self.apply(rods, &beside, state)? {
+                        later.extend(beside.particles());
+                        impulses += 1;
+                    }
+                }
+            }
+            if later.is_empty() {
                 break;
             }
-            struck = true;
-            for beside in due {
-                self.apply(&beside, state);
-            }
+            struck.extend(&later);
+            next = later;
         }
-        struck
+        Ok((struck, impulses))
     }
 
-    /// One impulse.
-    fn apply(&self, beside: &Beside, state: &mut State) {
-        // An earlier impulse may have turned it away.
-        let beside = self.beside(beside.particle, beside.obstacle, state);
+    /// The same of one particle and the obstacles it touches alone. Returns the number of impulses.
+    ///
+    /// # Errors
+    /// [`RodError`] where rods depend on each other.
+    pub fn strike_obstacles(
+        &self,
+        near: &Near,
+        rods: Option<&Rods>,
+        particle: usize,
+        state: &mut State,
+    ) -> Result<u64, RodError> {
+        let mut impulses = 0;
+        for _ in 0..PASSES {
+            let all = self.touched(near, particle, state).into_iter();
+            let fixed = all.filter(|one| matches!(one.against, Against::Obstacle(_)));
+            let before = impulses;
+            for beside in fixed.filter(Beside::strikes) {
+                impulses += u64::from(self.apply(rods, &beside, state)?);
+            }
+            if impulses == before {
+                break;
+            }
+        }
+        Ok(impulses)
+    }
+
+    /// One impulse, unless an earlier one has turned the two away.
+    ///
+    /// # Errors
+    /// [`RodError`] where rods depend on each other.
+    pub fn apply(
+        &self,
+        rods: Option<&Rods>,
+        beside: &Beside,
+        state: &mut State,
+    ) -> Result<bool, RodError> {
+        let beside = self.beside(beside.particle, beside.against, state);
         let speed = -beside.parting();
         if speed <= beside.slow {
-            return;
+            return Ok(false);
         }
-        let obstacle = &self.obstacles[beside.obstacle];
-        let e = obstacle.restitution;
+        let surface = self.surface(beside.against);
+        let (e, friction) = (surface.restitution, surface.friction[0]);
+        let away = (1.0 + e) * speed;
+        if let Some(rods) = rods {
+            return self.apply_on_rods(rods, &beside, [away, friction], state);
+        }
         let sliding = beside.sliding();
         let fast = norm(sliding);
-        let slowed = (obstacle.friction[0] * (1.0 + e) * speed).min(fast);
-        let mut change = [0, 1, 2].map(|axis| (1.0 + e) * speed * beside.normal[axis]);
+        let slowed = (friction * away).min(fast);
+        let mut change = beside.normal.map(|n| away * n);
         if slowed > 0.0 {
             for (change, along) in change.iter_mut().zip(sliding) {
                 *change -= slowed / fast * along;
             }
         }
-        self.kick(beside.particle, beside.obstacle, change, state);
+        let before = beside.velocity;
+        self.push(&beside, change, &mut state.v);
+        let impulse = change.map(|c| c / self.lightness(&beside));
+        self.book(&beside, before, impulse, state);
+        Ok(true)
     }
 
-    /// Puts a particle that is inside an obstacle by rounding onto its surface.
-    pub fn push_out(&self, beside: &Beside, state: &mut State) {
-        for axis in 0..3 {
-            state.x[3 * beside.particle + axis] -= beside.gap * beside.normal[axis];
+    /// One impulse where rods pass some of it on: K is what an impulse here changes the velocity here by.
+    fn apply_on_rods(
+        &self,
+        rods: &Rods,
+        beside: &Beside,
+        [away, friction]: [f64; 2],
+        state: &mut State,
+    ) -> Result<bool, RodError> {
+        let mut at = rods.at(&state.x)?;
+        let mut respond = |impulse: Vector3<f64>| {
+            let mut change = vec![0.0; state.v.len()];
+            let impulse = <[f64; 3]>::from(impulse);
+            self.push(
+                beside,
+                impulse.map(|p| p * self.lightness(beside)),
+                &mut change,
+            );
+            at.still(&mut change);
+            change
+        };
+        let here = |change: &[f64]| Vector3::from(self.relative(beside, change));
+        let columns = [Vector3::x(), Vector3::y(), Vector3::z()].map(|one| here(&respond(one)));
+        let k = Matrix3::from_columns(&columns);
+        let n = Vector3::from(beside.normal);
+        let sliding = Vector3::from(beside.sliding());
+        if n.dot(&(k * n)) <= 1e-12 * self.lightness(beside) {
+            // Rods hold it there.
+            return Ok(false);
         }
-    }
-
-    /// Takes the normal velocity of a particle that touches an obstacle away, and books the energy.
-    pub fn rest(&self, beside: &Beside, state: &mut State) {
-        let beside = self.beside(beside.particle, beside.obstacle, state);
-        let parting = beside.parting();
-        let change = beside.normal.map(|n| -parting * n);
-        self.kick(beside.particle, beside.obstacle, change, state);
-    }
-
-    /// Changes a velocity by an impulse of an obstacle, and books what it takes and what the obstacle's motion does.
-    fn kick(&self, particle: usize, obstacle: usize, change: [f64; 3], state: &mut State) {
-        let mass = 1.0 / self.weights[particle];
-        let along = self.obstacles[obstacle].moved(state.t)[1];
-        let v = &mut state.v[3 * particle..3 * particle + 3];
-        let before = dot([v[0], v[1], v[2]], [v[0], v[1], v[2]]);
-        for (v, change) in v.iter_mut().zip(change) {
+        let straight = n * (away / n.dot(&(k * n)));
+        let mut impulse = straight;
+        if friction > 0.0 {
+            let sticking = k
+                .pseudo_inverse(1e-12 * k.amax())
+                .unwrap_or_else(|_| Matrix3::zeros());
+            let sticking = sticking * (n * away - sliding);
+            let pressed = sticking.dot(&n);
+            let across = sticking - n * pressed;
+            impulse = if pressed > 0.0 && across.norm() <= friction * pressed {
+                sticking
+            } else {
+                let against = (-sliding)
+                    .try_normalize(0.0)
+                    .or_else(|| across.try_normalize(0.0));
+                let along = n + against.unwrap_or_default() * friction;
+                let opens = n.dot(&(k * along));
+                if opens > 0.0 {
+                    along * (away / opens)
+                } else {
+                    straight
+                }
+            };
+            // Newton's law with friction may gain energy where rods turn one into the other (Kane 1984): never so here.
+            let after = Vector3::from(beside.velocity) + k * impulse;
+            if impulse.dot(&(Vector3::from(beside.velocity) + after)) > 0.0 {
+                impulse = straight;
+            }
+        }
+        let change = respond(impulse);
+        for (v, change) in state.v.iter_mut().zip(change) {
             *v += change;
         }
-        let after = dot([v[0], v[1], v[2]], [v[0], v[1], v[2]]);
-        let done = mass * dot(change, along);
-        state.work.injected += done;
-        state.work.impacts += 0.5 * mass * (before - after) + done;
+        self.book(beside, beside.velocity, impulse.into(), state);
+        Ok(true)
+    }
+
+    /// Puts what is inside by rounding onto surfaces: these particles, and those that they are pushed against, which join
+    /// them.
+    pub fn push_out(&self, near: &Near, particles: &mut BTreeSet<usize>, state: &mut State) {
+        for _ in 0..PASSES {
+            let mut pushed = BTreeSet::new();
+            for particle in particles.iter() {
+                for beside in self.touched(near, *particle, state) {
+                    let beside = self.beside(beside.particle, beside.against, state);
+                    if beside.gap < -beside.close {
+                        let out = beside.normal.map(|n| -beside.gap * n);
+                        self.push(&beside, out, &mut state.x);
+                        pushed.extend(beside.particles());
+                    }
+                }
+            }
+            if pushed.is_empty() {
+                return;
+            }
+            particles.extend(pushed);
+        }
+    }
+
+    /// Takes the normal velocity of what touches away, and books the energy.
+    ///
+    /// # Errors
+    /// [`RodError`] where rods depend on each other.
+    pub fn rest(
+        &self,
+        rods: Option<&Rods>,
+        beside: &Beside,
+        state: &mut State,
+    ) -> Result<(), RodError> {
+        let beside = self.beside(beside.particle, beside.against, state);
+        let parting = beside.parting();
+        if let Some(rods) = rods {
+            return self
+                .apply_on_rods(rods, &beside, [-parting, 0.0], state)
+                .map(|_| ());
+        }
+        let change = beside.normal.map(|n| -parting * n);
+        self.push(&beside, change, &mut state.v);
+        let impulse = change.map(|c| c / self.lightness(&beside));
+        self.book(&beside, beside.velocity, impulse, state);
+        Ok(())
+    }
+
+    /// Changes what two have relative to each other, each by its 1/m.
+    pub(super) fn push(&self, beside: &Beside, change: [f64; 3], all: &mut [f64]) {
+        let whole = self.lightness(beside);
+        for (end, sign) in beside.particles().into_iter().zip([1.0, -1.0]) {
+            let share = sign * (self.weights[end] / whole);
+            for axis in 0..3 {
+                all[3 * end + axis] += share * change[axis];
+            }
+        }
+    }
+
+    /// The sum of both 1/m, 1/kg.
+    fn lightness(&self, beside: &Beside) -> f64 {
+        beside
+            .particles()
+            .iter()
+            .map(|end| self.weights[*end])
+            .sum()
+    }
+
+    /// A vector at the particle relative to the other; to an obstacle as if that was at rest.
+    fn relative(&self, beside: &Beside, all: &[f64]) -> [f64; 3] {
+        let own = super::three(all, beside.particle);
+        match beside.against {
+            Against::Obstacle(_) => own,
+            Against::Particle(other) => minus(own, super::three(all, other)),
+        }
+    }
+
+    /// Books what an impulse, N s, takes out, and what the obstacle's motion does by it; `before` is the relative velocity
+    /// before it.
+    fn book(&self, beside: &Beside, before: [f64; 3], impulse: [f64; 3], state: &mut State) {
+        let along = self.moved(beside.against, state.t)[1];
+        let after = minus(self.relative(beside, &state.v), along);
+        state.work.injected += dot(impulse, along);
+        state.work.impacts -= 0.5 * (dot(impulse, before) + dot(impulse, after));
+    }
+}
+
+impl Beside {
+    /// The particles in it: one, or two.
+    pub fn particles(&self) -> Vec<usize> {
+        self.against.with(self.particle)
     }
 }

@@ -37,7 +37,7 @@ impl Contact {
     pub(super) fn new(obstacles: &Obstacles, beside: Beside) -> Self {
         Self {
             beside,
-            friction: obstacles.obstacles[beside.obstacle].friction,
+            friction: obstacles.surface(beside.against).friction,
             turning: beside.bend.turning(beside.normal, beside.velocity),
         }
     }
@@ -45,9 +45,9 @@ impl Contact {
     /// The same contact at another state.
     pub(super) fn now(&self, obstacles: &Obstacles, state: &State) -> Self {
         let Beside {
-            particle, obstacle, ..
+            particle, against, ..
         } = self.beside;
-        Self::new(obstacles, obstacles.beside(particle, obstacle, state))
+        Self::new(obstacles, obstacles.beside(particle, against, state))
     }
 }
 
@@ -186,7 +186,7 @@ impl Member {
 
     /// Along the surfaces, in the axes of space, relative to the obstacle.
     pub(super) fn outer_sliding(&self, obstacles: &Obstacles, state: &State) -> [f64; 3] {
-        let moved = obstacles.obstacles[self.contacts[0].beside.obstacle].moved(state.t)[1];
+        let moved = obstacles.moved(self.contacts[0].beside.against, state.t)[1];
         self.along(minus(three(&state.v, self.particle), moved))
     }
 
@@ -196,7 +196,7 @@ impl Member {
         if self.straight || self.given != 1 {
             return [1.0, 0.0];
         }
-        let moved = obstacles.obstacles[self.contacts[0].beside.obstacle].moved(t)[1];
+        let moved = obstacles.moved(self.contacts[0].beside.against, t)[1];
         let own = minus(three(v, self.particle), self.inward(moved));
         let fast = own[1].hypot(own[2]);
         if own[1] > 0.0 && fast > 0.0 {
@@ -213,7 +213,7 @@ impl Member {
 
     /// The acceleration along the surfaces, relative to the obstacle, m/s², that friction has to hold.
     pub(super) fn pull(&self, obstacles: &Obstacles, t: f64, a: [f64; 3]) -> [f64; 3] {
-        let pushed = obstacles.obstacles[self.contacts[0].beside.obstacle].moved(t)[2];
+        let pushed = obstacles.moved(self.contacts[0].beside.against, t)[2];
         self.along(minus(a, pushed))
     }
 
@@ -227,8 +227,8 @@ impl Member {
     /// Given coordinates, and their velocities, at a time.
     pub(super) fn placed(&self, obstacles: &Obstacles, since: f64, t: f64) -> [[f64; 3]; 2] {
         let moved = |contact: &Contact| {
-            let obstacle = &obstacles.obstacles[contact.beside.obstacle];
-            let ([before, ..], [now, speed, _]) = (obstacle.moved(since), obstacle.moved(t));
+            let moved = |t| obstacles.moved(contact.beside.against, t);
+            let ([before, ..], [now, speed, _]) = (moved(since), moved(t));
             [minus(now, before), speed]
         };
         let first = moved(&self.contacts[0]);
@@ -253,8 +253,7 @@ impl Member {
             return;
         }
         for contact in &self.contacts {
-            let obstacle = contact.beside.obstacle;
-            let now = obstacles.beside(self.particle, obstacle, state);
+            let now = obstacles.beside(self.particle, contact.beside.against, state);
             let parting = now.parting();
             for axis in 0..3 {
                 state.x[3 * self.particle + axis] -= now.gap * now.normal[axis];
@@ -323,7 +322,7 @@ fn pressing(
 
 /// How a contact would open, m/s², under an acceleration.
 pub(super) fn approach(obstacles: &Obstacles, contact: &Contact, t: f64, a: [f64; 3]) -> f64 {
-    let pushed = obstacles.obstacles[contact.beside.obstacle].moved(t)[2];
+    let pushed = obstacles.moved(contact.beside.against, t)[2];
     dot(contact.beside.normal, minus(a, pushed)) - contact.turning
 }
 

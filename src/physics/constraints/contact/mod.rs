@@ -1,16 +1,23 @@
-//! Contact of particles with obstacles: where they are, what an impact does ([`strike`](Obstacles::strike)), and the
-//! motion of particles that stay on them ([`Held`]). When impacts happen is the loop's business, not the forces'.
+//! Contact of particles with obstacles and with each other: where they are, what an impact does
+//! ([`strike`](Obstacles::strike)), and the motion of what stays in contact ([`Held`]). When impacts happen is the loop's
+//! business, not the forces'.
 
+mod group;
 mod held;
 mod impact;
 mod member;
+mod near;
 
-pub use held::{Change, Held};
+pub use held::{Change, Held, MOST, TooManyTouch};
+pub use near::Near;
 
 use super::ConstraintRow;
 use crate::physics::State;
 use crate::scene::{Collider, Drive, Scene};
-use crate::shape::{Bend, Nearest, Shape};
+use crate::shape::{Bend, Shape};
+use near::Broad;
+use std::collections::HashSet;
+use std::sync::{Arc, Mutex, PoisonError};
 
 pub(super) const ROW: ConstraintRow = ConstraintRow {
     id: "colliders",
@@ -32,6 +39,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 #[derive(Debug)]
 pub struct Obstacles {
     obstacles: Vec<Obstacle>,
+    /// How particles collide with each other; None where they do not.
+    among: Option<Among>,
     /// Of each particle, m.
     radii: Vec<f64>,
     /// Of each particle, 1/kg; 0 where it is fixed, and does not collide.
@@ -40,33 +49,70 @@ pub struct Obstacles {
     close: f64,
     /// What would rise by less, m, stays.
     lowest: f64,
+    /// Normal velocities within this are none, m/s: in a step they open no gap that is seen.
+    slow: f64,
+    /// What is near what. It changes no number.
+    broad: Mutex<Broad>,
 }
 
 /// One obstacle.
 #[derive(Debug)]
-pub struct Obstacle {
+struct Obstacle {
     /// Its index among the scene's colliders; a mesh is as many obstacles as it has triangles.
     collider: usize,
     shape: Shape,
     motion: Option<Drive>,
+    surface: Surface,
+}
+
+/// The coefficients of a contact.
+#[derive(Debug, Clone, Copy)]
+struct Surface {
     /// e.
     restitution: f64,
     /// µ of what slides, and of what sticks.
     friction: [f64; 2],
 }
 
-/// A particle beside an obstacle.
+/// Contact of particles with each other.
+#[derive(Debug)]
+struct Among {
+    surface: Surface,
+    /// Pairs that springs or rods join, the smaller first, which do not collide.
+    joined: HashSet<[usize; 2]>,
+}
+
+/// What a particle collides with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Against {
+    /// One of the scene's obstacles, which counts a mesh by its triangles.
+    Obstacle(usize),
+    /// Another particle.
+    Particle(usize),
+}
+
+impl Against {
+    /// The particles of a contact of this one: one, or two.
+    pub fn with(self, particle: usize) -> Vec<usize> {
+        match self {
+            Self::Obstacle(_) => vec![particle],
+            Self::Particle(other) => vec![particle, other],
+        }
+    }
+}
+
+/// A particle beside an obstacle, or beside another particle, of which it is then the first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beside {
     pub particle: usize,
-    pub obstacle: usize,
+    pub against: Against,
     /// The gap between the two, m; negative inside.
     pub gap: f64,
-    /// From the obstacle to the particle, a unit vector.
+    /// From the other to the particle, a unit vector.
     pub normal: [f64; 3],
     /// How surfaces at this gap bend.
     pub bend: Bend,
-    /// Relative to the obstacle, m/s.
+    /// Relative to the other, m/s.
     pub velocity: [f64; 3],
     /// A gap within this is contact, m.
     pub close: f64,
@@ -108,8 +154,10 @@ impl Obstacle {
             collider: at,
             shape,
             motion: collider.displacement(),
-            restitution: collider.restitution,
-            friction: [collider.friction, collider.static_friction],
+            surface: Surface {
+                restitution: collider.restitution,
+                friction: [collider.friction, collider.static_friction],
+            },
         })
     }
 
@@ -120,30 +168,55 @@ impl Obstacle {
             .map_or([[0.0; 3]; 3], |motion| motion.at(t))
     }
 
-    fn nearest(&self, t: f64, x: [f64; 3]) -> Nearest {
-        let moved = self.moved(t)[0];
-        self.shape.nearest(minus(x, moved))
+    /// The distance of a point from it, m.
+    fn distance(&self, t: f64, x: [f64; 3]) -> f64 {
+        self.shape.nearest(minus(x, self.moved(t)[0])).distance
+    }
+
+    /// How far it moves between two times, m, at most.
+    fn reach(&self, from: f64, to: f64) -> f64 {
+        let motion = self.motion.as_ref();
+        motion.map_or(0.0, |motion| motion.speed_bound(to) * (to - from))
+    }
+}
+
+impl Among {
+    /// None where particles do not collide with each other.
+    fn new(scene: &Scene) -> Option<Self> {
+        let contact = scene.contact.as_ref().filter(|contact| contact.particles)?;
+        Some(Self {
+            surface: Surface {
+                restitution: contact.restitution,
+                friction: [contact.friction, contact.static_friction],
+            },
+            joined: scene.joined().collect(),
+        })
     }
 }
 
 impl Obstacles {
-    /// None where the scene has none.
+    /// None where nothing collides.
     pub fn new(scene: &Scene) -> Option<Self> {
         let obstacles = scene.colliders.iter().enumerate();
         let obstacles: Vec<_> = obstacles.flat_map(Obstacle::new).collect();
+        let among = Among::new(scene);
         let weight = |p: &crate::scene::Particle| if p.fixed { 0.0 } else { 1.0 / p.mass };
-        if obstacles.is_empty() {
+        if obstacles.is_empty() && among.is_none() {
             return None;
         }
         let mut all = Self {
             obstacles,
+            among,
             radii: scene.particles.iter().map(|p| p.radius).collect(),
             weights: scene.particles.iter().map(weight).collect(),
             close: 0.0,
             lowest: 0.0,
+            slow: 0.0,
+            broad: Mutex::default(),
         };
         let size = all.size(scene);
         (all.close, all.lowest) = (TOUCHING * size, LOWEST * size);
+        all.slow = all.close / scene.solver.timestep;
         Some(all)
     }
 
@@ -152,28 +225,22 @@ impl Obstacles {
     fn size(&self, scene: &Scene) -> f64 {
         let starts = scene.starts();
         let mut size = scene.size() + self.radii.iter().fold(0.0, |most, r| r.max(most));
-        for (particle, obstacle) in self.pairs() {
-            size = size.max(self.gap(particle, obstacle, 0.0, starts[particle]));
+        for obstacle in &self.obstacles {
+            for particle in self.particles() {
+                size = size.max(obstacle.distance(0.0, starts[particle]) - self.radii[particle]);
+            }
         }
         let fastest = scene.particles.iter().map(|p| norm(p.velocity));
         let h = scene.solver.timestep;
         size.max(h * (fastest.fold(0.0, f64::max) + h * norm(scene.gravity())))
     }
 
-    /// Every particle that collides, with every obstacle.
-    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let each = |obstacle| self.particles().map(move |particle| (particle, obstacle));
-        (0..self.len()).flat_map(each)
-    }
-
-    /// The number of obstacles.
-    pub fn len(&self) -> usize {
-        self.obstacles.len()
-    }
-
-    /// Never: without obstacles there is no such thing.
-    pub fn is_empty(&self) -> bool {
-        self.obstacles.is_empty()
+    /// What may touch while each particle keeps within a ball, given by its centre and its radius, m, between two times: in
+    /// ascending order.
+    pub fn near(&self, times: [f64; 2], ball: impl Fn(usize) -> ([f64; 3], f64)) -> Arc<Near> {
+        let broad = self.broad.lock();
+        let mut broad = broad.unwrap_or_else(PoisonError::into_inner);
+        broad.near(self, times, &ball)
     }
 
     /// Whether one of them moves.
@@ -181,14 +248,31 @@ impl Obstacles {
         self.obstacles.iter().any(|one| one.motion.is_some())
     }
 
+    /// Whether particles collide with each other.
+    pub fn among_particles(&self) -> bool {
+        self.among.is_some()
+    }
+
     /// The particles that collide.
     pub fn particles(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.weights.len()).filter(|particle| self.weights[*particle] > 0.0)
     }
 
-    /// The gap between a particle at `x`, m, and an obstacle.
-    pub fn gap(&self, particle: usize, obstacle: usize, t: f64, x: [f64; 3]) -> f64 {
-        self.obstacles[obstacle].nearest(t, x).distance - self.radii[particle]
+    /// The gap between a particle and another, or an obstacle, m; `at` tells where particles are, m.
+    pub fn gap(
+        &self,
+        particle: usize,
+        against: Against,
+        t: f64,
+        at: impl Fn(usize) -> [f64; 3],
+    ) -> f64 {
+        let own = self.radii[particle];
+        match against {
+            Against::Obstacle(other) => self.obstacles[other].distance(t, at(particle)) - own,
+            Against::Particle(other) => {
+                norm(minus(at(particle), at(other))) - (own + self.radii[other])
+            }
+        }
     }
 
     /// What would rise by less than this, m, stays.
@@ -196,15 +280,18 @@ impl Obstacles {
         self.lowest
     }
 
-    /// Whether surfaces bend on which a particle may slide.
+    /// Whether surfaces of obstacles bend on which a particle may slide.
     pub fn bend(&self) -> bool {
         let flat = |one: &Obstacle| matches!(one.shape, Shape::Plane { .. });
         !self.obstacles.iter().all(flat)
     }
 
     /// Which of the scene's colliders an obstacle is, or is part of.
-    pub fn collider(&self, obstacle: usize) -> usize {
-        self.obstacles[obstacle].collider
+    pub fn collider(&self, against: Against) -> Option<usize> {
+        match against {
+            Against::Obstacle(at) => Some(self.obstacles[at].collider),
+            Against::Particle(_) => None,
+        }
     }
 
     /// A gap within this, m, is contact at `x`, m.
@@ -212,21 +299,64 @@ impl Obstacles {
         self.close + ROUNDING * x.iter().fold(0.0, |most: f64, c| most.max(c.abs()))
     }
 
-    /// How far an obstacle moves between two times, m, at most.
-    pub fn reach(&self, obstacle: usize, from: f64, to: f64) -> f64 {
-        let Some(motion) = &self.obstacles[obstacle].motion else {
-            return 0.0;
-        };
-        motion.speed_bound(to) * (to - from)
+    /// How far an obstacle moves between two times, m, at most; 0 of particles.
+    pub fn reach(&self, against: Against, from: f64, to: f64) -> f64 {
+        match against {
+            Against::Obstacle(at) => self.obstacles[at].reach(from, to),
+            Against::Particle(_) => 0.0,
+        }
     }
 
-    /// A particle beside an obstacle at a state of all.
-    pub fn beside(&self, particle: usize, obstacle: usize, state: &State) -> Beside {
+    /// The motion of an obstacle as such, as [`Obstacle::moved`]; none of particles.
+    fn moved(&self, against: Against, t: f64) -> [[f64; 3]; 3] {
+        match against {
+            Against::Obstacle(at) => self.obstacles[at].moved(t),
+            Against::Particle(_) => [[0.0; 3]; 3],
+        }
+    }
+
+    fn surface(&self, against: Against) -> Surface {
+        match (against, &self.among) {
+            (Against::Obstacle(at), _) => self.obstacles[at].surface,
+            (Against::Particle(_), Some(among)) => among.surface,
+            (Against::Particle(_), None) => Surface {
+                restitution: 0.0,
+                friction: [0.0; 2],
+            },
+        }
+    }
+
+    /// A particle beside another, or an obstacle, at a state of all.
+    pub fn beside(&self, particle: usize, against: Against, state: &State) -> Beside {
         let [place, velocity] = [&state.x, &state.v].map(|all| three(all, particle));
-        self.lone(obstacle, particle, state.t, place, velocity)
+        let other = match against {
+            Against::Obstacle(obstacle) => {
+                return self.lone(obstacle, particle, state.t, place, velocity);
+            }
+            Against::Particle(other) => other,
+        };
+        let [there, along] = [&state.x, &state.v].map(|all| three(all, other));
+        let away = minus(place, there);
+        let apart = norm(away);
+        // Two in one place part upwards.
+        let normal = if apart > 0.0 {
+            away.map(|c| c / apart)
+        } else {
+            [0.0, 0.0, 1.0]
+        };
+        Beside {
+            particle,
+            against,
+            gap: apart - (self.radii[particle] + self.radii[other]),
+            normal,
+            bend: Bend::Point(apart),
+            velocity: minus(velocity, along),
+            close: self.close(place).max(self.close(there)),
+            slow: self.slow + SLOW * norm(velocity).max(norm(along)),
+        }
     }
 
-    /// The same at its own position and velocity.
+    /// A particle beside an obstacle, at its own position and velocity.
     fn lone(
         &self,
         obstacle: usize,
@@ -241,35 +371,52 @@ impl Obstacles {
         let speed = norm(velocity).max(norm(along));
         Beside {
             particle,
-            obstacle,
+            against: Against::Obstacle(obstacle),
             gap: near.distance - self.radii[particle],
             normal: near.normal,
             bend: near.bend,
             velocity: minus(velocity, along),
             close: self.close(place),
-            slow: SLOW * speed,
+            slow: self.slow + SLOW * speed,
         }
     }
 
     /// How fast a gap would open, m/s², under accelerations of all.
     pub fn opening(&self, beside: &Beside, t: f64, a: &[f64]) -> f64 {
-        let pushed = self.obstacles[beside.obstacle].moved(t)[2];
+        let pushed = match beside.against {
+            Against::Obstacle(at) => self.obstacles[at].moved(t)[2],
+            Against::Particle(other) => three(a, other),
+        };
         let turning = beside.bend.turning(beside.normal, beside.velocity);
         dot(beside.normal, minus(three(a, beside.particle), pushed)) - turning
     }
 
-    /// What touches at a state.
-    pub fn touching(&self, state: &State) -> Vec<Beside> {
-        let touch = |(particle, obstacle): &(usize, usize)| {
-            let x = three(&state.x, *particle);
-            self.gap(*particle, *obstacle, state.t, x) <= self.close(x)
+    /// What touches at a state, in ascending order of the particles, and of what each touches.
+    pub fn touching(&self, near: &Near, state: &State) -> Vec<Beside> {
+        let at = |particle| three(&state.x, particle);
+        let touch = |(particle, against): &(usize, Against)| {
+            let close = self.close(at(*particle));
+            let close = match against {
+                Against::Particle(other) => close.max(self.close(at(*other))),
+                Against::Obstacle(_) => close,
+            };
+            self.gap(*particle, *against, state.t, at) <= close
         };
-        let touching = self.pairs().filter(touch);
-        let mut found: Vec<Beside> = touching
-            .map(|(particle, obstacle)| self.beside(particle, obstacle, state))
-            .collect();
-        found.sort_by_key(|beside| (beside.particle, beside.obstacle));
-        found
+        let touching = near.pairs().filter(touch);
+        touching
+            .map(|(particle, against)| self.beside(particle, against, state))
+            .collect()
+    }
+
+    /// A particle beside all that it touches at a state; of two particles the smaller is the first.
+    pub fn touched(&self, near: &Near, particle: usize, state: &State) -> Vec<Beside> {
+        let all = near.of(particle).iter().map(|against| match *against {
+            Against::Particle(other) if other < particle => {
+                self.beside(other, Against::Particle(particle), state)
+            }
+            against => self.beside(particle, against, state),
+        });
+        all.filter(Beside::touches).collect()
     }
 }
 
