@@ -21,6 +21,7 @@ mod objects;
 mod order;
 mod oscillator;
 mod rest;
+mod rapier_contact;
 mod rods;
 mod rods_energy;
 mod rods_order;

@@ -16,6 +16,22 @@ use rapier3d::pipeline::PhysicsWorld;
 const PARTICLES: Group = Group::GROUP_1;
 const OBSTACLES: Group = Group::GROUP_2;
 
+/// Whether rapier's contact has a counterpart of all obstacles of a scene.
+///
+/// # Errors
+/// [`Unsupported`] where it has none.
+pub fn takes(scene: &Scene) -> Result<(), Unsupported> {
+    let own = |collider: &Collider| collider.static_friction > collider.friction;
+    match scene.colliders.iter().position(own) {
+        Some(at) => Err(Unsupported {
+            reason: format!(
+                "colliders[{at}] has a static friction of its own: rapier has one coefficient"
+            ),
+        }),
+        None => Ok(()),
+    }
+}
+
 /// Adds the colliders of a scene; returns the bodies of obstacles that move.
 pub(super) fn add(
     scene: &Scene,
@@ -26,6 +42,7 @@ pub(super) fn add(
     if scene.colliders.is_empty() {
         return Ok(moved);
     }
+    takes(scene)?;
     let parameters = &mut world.integration_parameters;
     parameters.contact_recycling = false;
     // Without sweeps after the drift there is hardly any friction.
@@ -35,13 +52,6 @@ pub(super) fn add(
     let solid = scene.colliders.iter().all(|one| one.plane.is_some());
     parameters.max_ccd_substeps = usize::from(!solid);
     for (at, collider) in scene.colliders.iter().enumerate() {
-        if collider.static_friction > collider.friction {
-            return Err(Unsupported {
-                reason: format!(
-                    "colliders[{at}] has a static friction of its own: rapier has one coefficient"
-                ),
-            });
-        }
         let Some((shape, place)) = shape(collider) else {
             return Err(Unsupported {
                 reason: format!("colliders[{at}] has no shape that rapier takes"),

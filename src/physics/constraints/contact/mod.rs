@@ -178,7 +178,7 @@ impl Obstacles {
 
     /// Whether one of them moves.
     pub fn any_moves(&self) -> bool {
-        self.obstacles.iter().any(|one| one.motion.is_some())
+        (0..self.len()).any(|obstacle| self.moves(obstacle))
     }
 
     /// The particles that collide.
@@ -200,6 +200,31 @@ impl Obstacles {
     pub fn bend(&self) -> bool {
         let flat = |one: &Obstacle| matches!(one.shape, Shape::Plane { .. });
         !self.obstacles.iter().all(flat)
+    }
+
+    /// How far an obstacle has moved at a time, m.
+    pub fn displacement(&self, obstacle: usize, t: f64) -> [f64; 3] {
+        self.obstacles[obstacle].moved(t)[0]
+    }
+
+    /// Whether an obstacle moves.
+    pub fn moves(&self, obstacle: usize) -> bool {
+        self.obstacles[obstacle].motion.is_some()
+    }
+
+    /// The e of an obstacle.
+    pub fn restitution(&self, obstacle: usize) -> f64 {
+        self.obstacles[obstacle].restitution
+    }
+
+    /// The µ of what slides on an obstacle.
+    pub fn friction(&self, obstacle: usize) -> f64 {
+        self.obstacles[obstacle].friction[0]
+    }
+
+    /// 1/m of a particle, 1/kg; 0 where it is fixed, and does not collide.
+    pub fn weight(&self, particle: usize) -> f64 {
+        self.weights[particle]
     }
 
     /// Which of the scene's colliders an obstacle is, or is part of.
