@@ -17,8 +17,9 @@ const PREDICTION: f64 = 0.02;
 const PUSH_OUT: f64 = 3.0;
 /// The damping ratio of every contact.
 const DAMPING: f64 = 10.0;
-/// A gap is not known to more than this part of the coordinates it comes from.
+/// A gap is not known to more than this part of the coordinates it comes from, or of a usual radius in metres.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
+const RADIUS: f64 = 0.1;
 
 /// A contact's spring at a substep: rest at N/(m w²) inside.
 #[derive(Debug, Clone, Copy)]
@@ -86,7 +87,7 @@ impl Row {
     /// How much of a gap is rounding, m.
     fn rounding(&self, x: &[f64]) -> f64 {
         let size = at(x, self.particle).map(f64::abs);
-        ROUNDING * size.iter().fold(0.0, |most, c| c.max(most))
+        ROUNDING * size.iter().fold(RADIUS, |most, c| c.max(most))
     }
 
     /// Relative to the obstacle, m/s.
@@ -120,10 +121,7 @@ impl Row {
     fn relax(&mut self, gap: f64, h: f64, v: &mut [f64]) -> bool {
         let parting = dot(self.normal, self.velocity(v));
         let closing = parting + gap.max(0.0) / h;
-        let pressed = self.push(
-            (self.normal_impulse - closing / self.weight).max(0.0),
-            v,
-        );
+        let pressed = self.push((self.normal_impulse - closing / self.weight).max(0.0), v);
         self.rub(v) || pressed
     }
 
@@ -132,9 +130,8 @@ impl Row {
         let velocity = self.velocity(v);
         let parting = dot(self.normal, velocity);
         let old = self.tangent_impulse;
-        let mut new = [0, 1, 2].map(|axis| {
-            old[axis] - (velocity[axis] - parting * self.normal[axis]) / self.weight
-        });
+        let mut new = [0, 1, 2]
+            .map(|axis| old[axis] - (velocity[axis] - parting * self.normal[axis]) / self.weight);
         let (size, most) = (dot(new, new).sqrt(), self.friction * self.normal_impulse);
         if size > most {
             new = new.map(|part| part * (most / size));
@@ -158,12 +155,12 @@ pub struct RapierContact {
     /// The rows of the last step, and where it ended.
     kept: Vec<Row>,
     ended: Option<(Vec<f64>, Vec<f64>)>,
-    undecided: Undecided,
+    ties: Ties,
 }
 
-/// How far rounding alone may move what is in contact in a step.
+/// Ties of a step, which rounding breaks: how far it alone may move what is in contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Undecided {
+pub struct Ties {
     /// m: a gap that is 0 but for rounding counts as open or as closed, and a soft row gives up a part of its impulse in
     /// every substep.
     pub position: f64,
@@ -181,13 +178,13 @@ impl RapierContact {
             newton: Newton::new(Settings::default()),
             kept: Vec::new(),
             ended: None,
-            undecided: Undecided::default(),
+            ties: Ties::default(),
         }
     }
 
     /// What rounding decided in the last step.
-    pub fn undecided(&self) -> Undecided {
-        self.undecided
+    pub fn ties(&self) -> Ties {
+        self.ties
     }
 
     /// Takes a state as the end of the last step, whose impulses it keeps.
@@ -254,10 +251,14 @@ impl RapierContact {
     ) -> Result<(Vec<f64>, Power), StepError> {
         let mut begin = start.clone();
         for row in rows {
-            let impulse = |axis: usize| {
-                row.normal_impulse * row.normal[axis] + row.tangent_impulse[axis]
-            };
-            add(&mut begin.v, row.particle, row.weight, [0, 1, 2].map(impulse));
+            let impulse =
+                |axis: usize| row.normal_impulse * row.normal[axis] + row.tangent_impulse[axis];
+            add(
+                &mut begin.v,
+                row.particle,
+                row.weight,
+                [0, 1, 2].map(impulse),
+            );
         }
         let mut v = begin.v.clone();
         let material = Linearization::Material;
@@ -295,7 +296,7 @@ impl RapierContact {
                 }
             }
         }
-        self.undecided.position += lost * h * f64::from(self.substeps);
+        self.ties.position += lost * h * f64::from(self.substeps);
         axpy(&mut state.x, h, &v);
         state.t += h;
         system.place(state.t, &mut state.x, &mut v);
@@ -331,7 +332,7 @@ impl Integrator for RapierContact {
         let obstacles = system.obstacles();
         let mut rows = obstacles.map_or(Vec::new(), |all| self.rows(all, h, state));
         let (begin, mut next) = (state.t, state.clone());
-        self.undecided = Undecided::default();
+        self.ties = Ties::default();
         let part = h / f64::from(self.substeps);
         for n in 0..self.substeps {
             next.t = begin + f64::from(n) * part;
@@ -343,7 +344,7 @@ impl Integrator for RapierContact {
             let rounding = ROUNDING * speed.abs() + 2.0 * row.rounding(&next.x) / part;
             let gap = row.gap(&next.x, h).max(0.0);
             if row.total * row.weight <= rounding && (speed + gap / part).abs() <= rounding {
-                self.undecided.velocity = self.undecided.velocity.max((row.seed + speed).abs());
+                self.ties.velocity = self.ties.velocity.max((row.seed + speed).abs());
             }
             if row.total <= 0.0 {
                 continue;

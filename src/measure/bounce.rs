@@ -42,7 +42,10 @@ impl Bounce {
                 t,
                 ..State::new(x.to_vec(), v.to_vec())
             };
-            let [before, after] = [state(run.time(k), run.x(k), run.v(k)), state(run.time(k), x, v)];
+            let [before, after] = [
+                state(run.time(k), run.x(k), run.v(k)),
+                state(run.time(k), x, v),
+            ];
             pairs.iter().find_map(|&(particle, obstacle)| {
                 let old = obstacles.beside(particle, obstacle, &before);
                 let (speed, restitution) = (-old.parting(), obstacles.restitution(obstacle));

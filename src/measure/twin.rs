@@ -71,7 +71,11 @@ impl Pair {
         if system.effects().iter().all(|(row, _)| row.constant) {
             proofs.push(pair.prove(FALL, Pair::fall));
         }
-        if pair.touching.iter().any(|scene| !scene.colliders.is_empty()) {
+        if pair
+            .touching
+            .iter()
+            .any(|scene| !scene.colliders.is_empty())
+        {
             proofs.push(pair.prove(CONTACT, Pair::contact));
         }
         proofs

@@ -268,10 +268,10 @@ impl std::fmt::Debug for Solver {
 
 /// What [`RapierContact`](crate::integrators::RapierContact) is not the law of.
 fn lone_contact(scene: &Scene, system: &ParticleSystem) -> Result<(), Unsupported> {
-    let reason = if scene.colliders.is_empty() {
-        "there are no obstacles: without contact it is linearized_implicit_material in 4 substeps"
-    } else if system.strain_limiter().is_some() {
+    let reason = if system.strain_limiter().is_some() {
         "rapier has no strain limit"
+    } else if scene.colliders.is_empty() {
+        "there are no obstacles: without contact it is linearized_implicit_material in 4 substeps"
     } else if scene.colliders.iter().any(|one| one.mesh.is_some()) {
         "rapier takes the edges out of a mesh, which is not written here: planes, balls, boxes and capsules are"
     } else {
@@ -307,7 +307,7 @@ fn worlds() -> [Solver; 5] {
     };
     let contact = Solver {
         id: rapier::IDS[4].into(),
-        summary: "rapier's soft contact as a step of this program: what bounces, slides and rests in `rapier`",
+        summary: "rapier's soft contact as a step of this program: bounces, slides and rests as in `rapier`",
         source: Source::Contact(rapier::RapierSettings::DEFAULT),
         ..joints(rapier::RapierSettings::DEFAULT)
     };

@@ -75,23 +75,26 @@ impl Pair {
         }
     }
 
+    /// The next step of ours begins where rapier is.
+    fn follow(&mut self) {
+        self.ours.clone_from(self.theirs.state());
+        self.contact.resume(&self.ours);
+    }
+
     /// A step of both; how far they are apart then, m and m/s.
     fn step(&mut self) -> [f64; 2] {
         self.steps += 1;
         let end = f64::from(self.steps) * self.h;
         self.theirs.step().expect("a step");
         advance(&mut self.contact, &self.system, self.h, end, &mut self.ours).expect("a step");
-        self.moved += self.contact.undecided().position;
-        self.parted |= self.contact.undecided().velocity > 0.0;
+        self.moved += self.contact.ties().position;
+        self.parted |= self.contact.ties().velocity > 0.0;
         let off = |a: &[f64], b: &[f64]| {
             let each = a.iter().zip(b).map(|(a, b)| (a - b).abs());
             each.fold(0.0, f64::max)
         };
         let theirs = self.theirs.state();
-        [
-            off(&theirs.x, &self.ours.x),
-            off(&theirs.v, &self.ours.v),
-        ]
+        [off(&theirs.x, &self.ours.x), off(&theirs.v, &self.ours.v)]
     }
 }
 
@@ -134,6 +137,8 @@ fn three_bounces_are_rapiers() {
                     let steps = (2.5 / h) as u32;
                     for _ in 0..steps {
                         let [far, _] = pair.step();
+                        // An impact that begins at a gap of 0 is another matter.
+                        pair.parted |= pair.contact.ties().position > 1.01 * tie;
                         // What does not bounce has no apex: its whole way.
                         if restitution == 0.0 {
                             assert!(far <= tie + ROUNDING, "{far:e} at {h}, {n}, {gap}");
@@ -157,7 +162,7 @@ fn three_bounces_are_rapiers() {
         }
     }
     println!("{judged} apexes, {parted} trajectories that rounding parts");
-    assert!(judged > 700 && parted < 30, "{judged}, {parted}");
+    assert!(judged > 590 && parted < 20, "{judged}, {parted}");
 }
 
 /// The same with something else on one side.
@@ -235,7 +240,10 @@ fn what_slides_stops_half_a_substep_early() {
         let beyond = pair.theirs.state().x[0] - (2.0 / a - part);
         let most = a * part * part / 8.0;
         println!("{h} {n}: {beyond:e} of {most:e}");
-        assert!((-ROUNDING..=most + ROUNDING).contains(&beyond), "{beyond:e}");
+        assert!(
+            (-ROUNDING..=most + ROUNDING).contains(&beyond),
+            "{beyond:e}"
+        );
         assert_eq!(pair.theirs.state().v[0], 0.0);
     }
 }
@@ -295,8 +303,12 @@ fn what_rests_is_inside_by_its_weight_over_its_stiffness() {
             }
             for z in [pair.theirs.state().x[2], pair.ours.x[2]] {
                 let depth = 0.1 - z;
-                // The right values have eleven digits, z a last bit of 1e-17.
-                assert!((depth - right).abs() <= 1e-14, "{h}, {n}: {depth:e}");
+                // The right values have eleven digits. Half a last bit of 0.1 m a substep adds up for a time constant.
+                let rounding = 7e-18 * until / 30.0 / part;
+                assert!(
+                    (depth - right).abs() <= 5e-15 + rounding,
+                    "{h}, {n}: {depth:e}"
+                );
             }
         }
     }
@@ -306,7 +318,12 @@ fn what_rests_is_inside_by_its_weight_over_its_stiffness() {
 #[test]
 fn a_particle_on_a_spring_bounces_as_in_rapier() {
     let mut judged = 0;
-    for (stiffness, damping, side) in [(50.0, 0.0, 0.0), (1e4, 0.0, 0.0), (50.0, 5.0, 0.3), (1e4, 5.0, 0.3)] {
+    for (stiffness, damping, side) in [
+        (50.0, 0.0, 0.0),
+        (1e4, 0.0, 0.0),
+        (50.0, 5.0, 0.3),
+        (1e4, 5.0, 0.3),
+    ] {
         for restitution in [0.0, 0.5] {
             for (h, n) in [(1.0 / 240.0, 4), (1e-3, 4), (1e-3, 1)] {
                 let scene = parsed(&format!(
@@ -317,25 +334,29 @@ fn a_particle_on_a_spring_bounces_as_in_rapier() {
                      colliders: [{{plane: {{normal: [0, 0, 1]}}, restitution: {restitution}, friction: 0.2}}]\n"
                 ));
                 let mut pair = Pair::new(&scene, settings(n), h);
-                let mut pressed = 0;
+                let (mut pressed, mut largest) = (0, [0.0_f64; 2]);
                 for _ in 0..(1.0 / h) as u32 {
-                    let [far, _] = pair.step();
-                    if pair.moved > 0.0 || pair.parted {
-                        break;
-                    }
+                    // Where rounding decides, a spring would pull otherwise for ever.
+                    pair.follow();
+                    let off = pair.step();
+                    let ties = pair.contact.ties();
                     pressed += u32::from(pair.contact.pressing() > 0);
                     assert!(
-                        far <= ROUNDING,
-                        "{stiffness} {damping} {restitution} {h} {n}: {far:e} at {}",
+                        off[0] <= ROUNDING + ties.position,
+                        "{stiffness} {damping} {restitution} {h} {n}: {off:?} at {}",
                         pair.steps
                     );
+                    if ties == Default::default() {
+                        assert!(off[1] <= 10.0 * ROUNDING, "{:e}", off[1]);
+                        largest = [largest[0].max(off[0]), largest[1].max(off[1])];
+                    }
                 }
-                println!("{stiffness} {damping} {restitution} {h} {n}: {pressed} of {}", pair.steps);
+                println!("{stiffness} {damping} {restitution} {h} {n}: {pressed}, {largest:?}");
                 judged += u32::from(pressed > 0);
             }
         }
     }
-    assert!(judged >= 12, "{judged}");
+    assert!(judged >= 20, "{judged}");
 }
 
 /// Anything from nothing to µ V by the phase, never µ (1 + e) V.
@@ -409,7 +430,10 @@ fn a_bounce_loses_what_the_discrete_law_says() {
                 let e2 = restitution * restitution;
                 let right = e2 * gap - bounce.lost();
                 // A hundred steps of coordinates near 1 m.
-                assert!((after - right).abs() <= 2e-14 * steps as f64, "{after} not {right}");
+                assert!(
+                    (after - right).abs() <= 2e-14 * steps as f64,
+                    "{after} not {right}"
+                );
                 // V h and the way of that step, for e = 1; without V h it is another number.
                 let way = e2 * bounce.gaps[0] - bounce.gaps[1];
                 assert!((after - (e2 * gap - way)).abs() > 0.1 * bounce.speed * part);
@@ -419,22 +443,39 @@ fn a_bounce_loses_what_the_discrete_law_says() {
 }
 
 fn contact_proof(checks: Vec<Check>) -> Check {
-    let mut own = checks.into_iter().filter(|check| check.id == "twin-contact");
+    let mut own = checks
+        .into_iter()
+        .filter(|check| check.id == "twin-contact");
     own.next().expect("a proof of contact")
 }
 
 #[test]
-fn the_proof_of_contact_decides_on_scenes_of_planes() {
-    for name in ["bouncing", "incline", "coulomb", "belt", "drag", "corner", "curtain", "off_a_ball"] {
+fn the_proof_of_contact_decides_on_every_scene_of_contact() {
+    for name in [
+        "bouncing",
+        "incline",
+        "coulomb",
+        "belt",
+        "drag",
+        "corner",
+        "curtain",
+        "off_a_ball",
+    ] {
         let scene = shipped(&format!("contact/{name}.yml"));
         let proof = contact_proof(prove(&scene, scene.solver.timestep));
-        println!("{name}: {proof:?}");
-        assert_ne!(proof.status, CheckStatus::Fail, "{name}: {}", proof.message);
-        if ["bouncing", "belt"].contains(&name) {
-            assert_eq!(proof.status, CheckStatus::Pass, "{name}: {}", proof.message);
-        }
+        // rapier has no quadratic drag.
+        let right = if name == "drag" {
+            CheckStatus::Skip
+        } else {
+            CheckStatus::Pass
+        };
+        assert_eq!(proof.status, right, "{name}: {}", proof.message);
     }
-    assert!(prove(&shipped("pa1/scene01.yml"), 0.01).iter().all(|check| check.id != "twin-contact"));
+    assert!(
+        prove(&shipped("pa1/scene01.yml"), 0.01)
+            .iter()
+            .all(|check| check.id != "twin-contact")
+    );
 }
 
 #[test]

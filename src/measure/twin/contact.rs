@@ -13,13 +13,16 @@ use crate::solvers::{Engine, Setting, Solver, Unsupported, advance, find};
 const STEPS: u64 = 4096;
 const ENOUGH: u32 = 64;
 
+/// rapier's balls are of this radius or so, m, and its gaps as precise.
+const USUAL: f64 = 0.1;
+
 /// What the steps of a proof have shown.
 #[derive(Default)]
 struct Shown {
     steps: u32,
     /// With contact, and among them those where rounding decides.
     pressing: u32,
-    undecided: u32,
+    ties: u32,
     /// The largest distance, as in the other proofs, beyond what rounding decides.
     apart: f64,
     /// The largest coordinate, m, and speed, m/s.
@@ -47,7 +50,9 @@ impl Pair {
             &ParticleSystem::new(theirs),
             &Setting::step(h),
         )?;
-        let shown = match Shown::of(&mut *world, &system, &settings, h, steps) {
+        let radii = ours.particles.iter().map(|particle| particle.radius);
+        let size = radii.fold(USUAL, f64::max);
+        let shown = match Shown::of(size, &mut *world, &system, &settings, h, steps) {
             Ok(shown) => shown,
             Err(reason) => {
                 let (status, none) = (CheckStatus::Inconclusive, String::new());
@@ -87,6 +92,7 @@ impl Shown {
     /// # Errors
     /// Says why a step of ours could not be taken.
     fn of(
+        size: f64,
         world: &mut dyn Engine,
         system: &ParticleSystem,
         settings: &RapierSettings,
@@ -94,7 +100,10 @@ impl Shown {
         steps: u64,
     ) -> Result<Self, String> {
         let mut contact = settings.contact();
-        let mut shown = Self::default();
+        let mut shown = Self {
+            size,
+            ..Self::default()
+        };
         for step in 0..steps {
             let mut own = world.state().clone();
             contact.resume(&own);
@@ -102,16 +111,18 @@ impl Shown {
             advance(&mut contact, system, h, end, &mut own)
                 .map_err(|error| format!("rapier_contact could not take these steps: {error}"))?;
             world.step().map_err(|error| error.to_string())?;
-            let undecided = contact.undecided();
+            let ties = contact.ties();
             shown.steps += 1;
             shown.pressing += u32::from(contact.pressing() > 0);
-            shown.undecided += u32::from(undecided != Default::default());
+            shown.ties += u32::from(ties != Default::default());
             // A spring pulls otherwise where its end is elsewhere.
-            let pulled = undecided.position / settings.substep(h);
-            shown.compare(system, &own, world.state(), [
-                undecided.position,
-                undecided.velocity + pulled * shown.pull(system),
-            ]);
+            let pulled = ties.position / settings.substep(h);
+            shown.compare(
+                system,
+                &own,
+                world.state(),
+                [ties.position, ties.velocity + pulled * shown.pull(system)],
+            );
             if shown.pressing >= ENOUGH || !shown.apart.is_finite() {
                 break;
             }
@@ -138,7 +149,9 @@ impl Shown {
         }
         let units = [self.size, self.speed];
         let parts = [(&ours.x, &theirs.x), (&ours.v, &theirs.v)];
-        for ((ours, theirs), (unit, allowed)) in parts.into_iter().zip(units.into_iter().zip(allowed)) {
+        for ((ours, theirs), (unit, allowed)) in
+            parts.into_iter().zip(units.into_iter().zip(allowed))
+        {
             for i in (0..ours.len()).filter(|i| system.inverse_mass()[*i] > 0.0) {
                 let beyond = (ours[i] - theirs[i]).abs() - allowed;
                 if beyond.is_nan() {
@@ -157,15 +170,17 @@ impl Shown {
         } = self;
         let apart = self.apart;
         if *pressing == 0 && apart <= bound {
-            let message = format!("nothing touches in {steps} steps: they prove nothing of contact");
+            let message =
+                format!("nothing touches in {steps} steps: they prove nothing of contact");
             return (CheckStatus::Inconclusive, message);
         }
         if bound.is_nan() || bound > BLUNT {
-            let message =
-                format!("rounding alone may move a step of this scene by {bound:.0e}: it proves nothing");
+            let message = format!(
+                "rounding alone may move a step of this scene by {bound:.0e}: it proves nothing"
+            );
             return (CheckStatus::Inconclusive, message);
         }
-        let decided = match self.undecided {
+        let decided = match self.ties {
             0 => String::new(),
             1 => "; in one of them rounding decides whether a gap is closed".to_owned(),
             many => format!("; in {many} of them rounding decides whether a gap is closed"),
@@ -177,7 +192,8 @@ impl Shown {
             );
             return (CheckStatus::Pass, message);
         }
-        let away = format!("{subject} is {apart:.0e} away from {method}; rounding explains {bound:.0e}");
+        let away =
+            format!("{subject} is {apart:.0e} away from {method}; rounding explains {bound:.0e}");
         match excuse(scene) {
             Some(why) => (CheckStatus::Inconclusive, format!("{away}: {why}")),
             None => (CheckStatus::Fail, away),
@@ -204,6 +220,17 @@ fn excuse(scene: &Scene) -> Option<String> {
         ));
     }
     let flat = scene.colliders.iter().all(|one| one.plane.is_some());
+    if !flat
+        && scene
+            .particles
+            .iter()
+            .any(|one| !one.fixed && one.radius == 0.0)
+    {
+        return Some(
+            "rapier has no normal for a particle without extent that is exactly on a surface"
+                .to_owned(),
+        );
+    }
     if !flat {
         return Some("rapier stops what is fast at obstacles that are not planes".to_owned());
     }

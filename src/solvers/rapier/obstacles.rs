@@ -16,6 +16,22 @@ use rapier3d::pipeline::PhysicsWorld;
 const PARTICLES: Group = Group::GROUP_1;
 const OBSTACLES: Group = Group::GROUP_2;
 
+/// What balls and planes are made larger by where a particle has no extent, m.
+const EXTENT: f64 = 0.1;
+
+/// rapier takes any normal for a centre that is exactly on a surface, as one without extent is that touches it. Such balls
+/// get an extent, and planes are moved back by as much, which leaves all gaps as they are.
+fn extent(scene: &Scene) -> f64 {
+    let mut free = scene.particles.iter().filter(|particle| !particle.fixed);
+    let none = free.any(|particle| particle.radius == 0.0);
+    if none && solid(scene) { EXTENT } else { 0.0 }
+}
+
+/// A half space is solid: nothing passes it.
+fn solid(scene: &Scene) -> bool {
+    scene.colliders.iter().all(|one| one.plane.is_some())
+}
+
 /// Whether rapier's contact has a counterpart of all obstacles of a scene.
 ///
 /// # Errors
@@ -48,11 +64,11 @@ pub(super) fn add(
     // Without sweeps after the drift there is hardly any friction.
     let sweeps = parameters.num_internal_stabilization_iterations.max(1);
     parameters.num_internal_stabilization_iterations = sweeps;
-    // A half space is solid: nothing passes it. Continuous detection keeps what is fast from passing other shapes.
-    let solid = scene.colliders.iter().all(|one| one.plane.is_some());
+    // Continuous detection keeps what is fast from passing shapes.
+    let (solid, extent) = (solid(scene), extent(scene));
     parameters.max_ccd_substeps = usize::from(!solid);
     for (at, collider) in scene.colliders.iter().enumerate() {
-        let Some((shape, place)) = shape(collider) else {
+        let Some((shape, place)) = shape(collider, extent) else {
             return Err(Unsupported {
                 reason: format!("colliders[{at}] has no shape that rapier takes"),
             });
@@ -81,7 +97,7 @@ pub(super) fn add(
     }
     let free = scene.particles.iter().zip(bodies);
     for (particle, body) in free.filter(|(particle, _)| !particle.fixed) {
-        let ball = ColliderBuilder::new(SharedShape::ball(particle.radius));
+        let ball = ColliderBuilder::new(SharedShape::ball(particle.radius + extent));
         let ball = between(ball, PARTICLES, OBSTACLES)
             .density(0.0)
             .friction(0.0);
@@ -100,12 +116,15 @@ fn between(builder: ColliderBuilder, own: Group, other: Group) -> ColliderBuilde
         .restitution_combine_rule(CoefficientCombineRule::Max)
 }
 
-/// A shape, and where it is before it moves.
-fn shape(collider: &Collider) -> Option<(SharedShape, Vector)> {
+/// A shape, and where it is before it moves; planes are moved back.
+fn shape(collider: &Collider, back: f64) -> Option<(SharedShape, Vector)> {
     let vector = Vector::from_array;
     if let Some(plane) = &collider.plane {
         let normal = vector(plane.normal);
-        return Some((SharedShape::halfspace(normal), normal * plane.offset));
+        return Some((
+            SharedShape::halfspace(normal),
+            normal * (plane.offset - back),
+        ));
     }
     if let Some(ball) = &collider.ball {
         return Some((SharedShape::ball(ball.radius), vector(ball.center)));

@@ -9,12 +9,7 @@ use crate::scene::{Collider, Scene};
 use crate::trajectory::Trajectory;
 
 /// What differs in a run of a rapier world with substeps of `h` seconds.
-pub fn differs(
-    scene: &Scene,
-    system: &ParticleSystem,
-    run: &Trajectory,
-    h: f64,
-) -> Vec<String> {
+pub fn differs(scene: &Scene, system: &ParticleSystem, run: &Trajectory, h: f64) -> Vec<String> {
     let Some(obstacles) = system.obstacles() else {
         return Vec::new();
     };
@@ -29,7 +24,11 @@ pub fn differs(
             short(one.friction / (1.0 + one.restitution))
         ));
     }
-    differs.extend([false, true].into_iter().filter_map(|moves| depth(scene, moves, h)));
+    differs.extend(
+        [false, true]
+            .into_iter()
+            .filter_map(|moves| depth(scene, moves, h)),
+    );
     differs
 }
 
@@ -77,7 +76,11 @@ fn depth(scene: &Scene, moves: bool, h: f64) -> Option<String> {
     let g = pressing.fold(0.0, f64::max);
     let soft = Softness::new(moves, h);
     let w = soft.angular_frequency;
-    let (hertz, what) = if moves { (30, "moves") } else { (60, "is fixed") };
+    let (hertz, what) = if moves {
+        (30, "moves")
+    } else {
+        (60, "is fixed")
+    };
     (g > 0.0).then(|| {
         format!(
             "Contact with what {what} is a spring of w = 2 π {hertz} Hz: what rests is N/(m w²) inside, {} m under this \

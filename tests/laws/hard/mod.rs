@@ -166,7 +166,9 @@ fn every_scene_speaks_of_every_engine() {
             .map(|id| (id, true));
         // Without obstacles rapier's contact is unsupported.
         let touches = !scene.colliders.is_empty();
-        let engines = rapier::IDS.into_iter().filter(|id| touches || *id != "rapier_contact");
+        let engines = rapier::IDS
+            .into_iter()
+            .filter(|id| touches || *id != "rapier_contact");
         let engines = engines.map(|id| (id, false));
         let silent = methods
             .chain(engines)

@@ -50,7 +50,12 @@ pub fn table(report: &Report) -> String {
     if let Some((outcome, contact)) = differing(&rows) {
         let engine = super::engine(outcome);
         text += &format!("\n\nWhere the contact of {engine} differs from these laws:\n");
-        text.extend(contact.differs.iter().map(|differs| format!("\n- {differs}")));
+        text.extend(
+            contact
+                .differs
+                .iter()
+                .map(|differs| format!("\n- {differs}")),
+        );
     }
     text
 }
@@ -104,7 +109,8 @@ pub fn own(report: &Report) -> Vec<(&'static str, String)> {
     let mut said = vec![("contact", text)];
     if let Some((outcome, contact)) = differing(&rows(report)) {
         let engine = words::one_line(&outcome.engine);
-        said.push(("", format!("{engine}: {}", contact.differs.join(" "))));
+        let first = contact.differs.first().map_or("", String::as_str);
+        said.push(("", format!("{engine}: {first}")));
     }
     said
 }
