@@ -152,7 +152,7 @@ pub struct RapierContact {
     sweeps: u32,
     relaxing: u32,
     newton: Newton,
-    /// The rows of the last step, and where it ended.
+    /// The rows of the last step, by obstacle and particle, and where it ended.
     kept: Vec<Row>,
     ended: Option<(Vec<f64>, Vec<f64>)>,
     ties: Ties,
@@ -222,8 +222,9 @@ impl RapierContact {
             if beside.gap >= PREDICTION {
                 return None;
             }
-            let same = |old: &&Row| old.particle == particle && old.obstacle == obstacle;
-            let old = self.kept.iter().find(same);
+            let key = (obstacle, particle);
+            let found = (self.kept).binary_search_by_key(&key, |old| (old.obstacle, old.particle));
+            let old = found.ok().map(|at| &self.kept[at]);
             let restitution = obstacles.restitution(obstacle);
             // What bore a load in the last step rests, unless it bounces for ever.
             let new = old.is_none_or(|old| old.total == 0.0);

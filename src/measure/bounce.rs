@@ -54,7 +54,7 @@ impl Bounce {
                 }
                 let new = obstacles.beside(particle, obstacle, &after);
                 let turned = (new.parting() - restitution * speed).abs() <= TURNED * speed;
-                (restitution > 0.0 && turned).then(|| Self {
+                (restitution > 0.0 && turned).then_some(Self {
                     particle,
                     restitution,
                     t: before.t,

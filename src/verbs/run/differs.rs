@@ -39,7 +39,7 @@ fn bounces(
     run: &Trajectory,
     h: f64,
 ) -> String {
-    let once = "It bounces once a step, with e times the velocity at the start of the step";
+    let once = "Restitution acts once a step, with the velocity at its start";
     let constant = system.effects().iter().all(|(row, _)| row.constant);
     let flat = scene.colliders.iter().all(|one| one.plane.is_some());
     let bounce = Bounce::first(obstacles, run, h).filter(|_| constant && flat);
@@ -49,10 +49,10 @@ fn bounces(
     let e = bounce.restitution;
     let [before, after] = bounce.gaps;
     format!(
-        "{once}. At {} s particle {} so comes {} m less high than e² of the height before: e (1 + e)/2 V h = {} m with V = {} \
-         m/s and h = {} s, and e² d0 - d1 = {} m, from the gap d0 before that step and d1 after it.",
-        short(bounce.t),
+        "{once}: the bounce of particle {} at {} s rises {} m less than e² of the height before. That is e (1 + e)/2 V h = {} \
+         m, with V = {} m/s and h = {} s, and e² d0 - d1 = {} m, from the gaps d0 before that step and d1 after it.",
         bounce.particle,
+        short(bounce.t),
         short(bounce.lost()),
         short(0.5 * e * (1.0 + e) * bounce.speed * h),
         short(bounce.speed),
@@ -83,8 +83,8 @@ fn depth(scene: &Scene, moves: bool, h: f64) -> Option<String> {
     };
     (g > 0.0).then(|| {
         format!(
-            "Contact with what {what} is a spring of w = 2 π {hertz} Hz: what rests is N/(m w²) inside, {} m under this \
-             gravity, and comes there in {} s.",
+            "It is soft: against what {what} a spring of w = 2 π {hertz} Hz, so that what rests is N/(m w²) inside, {} m under \
+             this gravity, to where it sinks with a time constant of {} s.",
             short(g / (w * w)),
             short(soft.settles_in(h)),
         )

@@ -49,13 +49,9 @@ pub fn table(report: &Report) -> String {
     let mut text = format!("{INTRO}\n\n{}", table.in_markdown());
     if let Some((outcome, contact)) = differing(&rows) {
         let engine = super::engine(outcome);
-        text += &format!("\n\nWhere the contact of {engine} differs from these laws:\n");
-        text.extend(
-            contact
-                .differs
-                .iter()
-                .map(|differs| format!("\n- {differs}")),
-        );
+        text += &format!("\nWhere the contact of {engine} differs from these laws:\n\n");
+        let differs = contact.differs.iter();
+        text.extend(differs.map(|differs| format!("- {differs}\n")));
     }
     text
 }
