@@ -7,6 +7,7 @@ mod facts;
 mod implicit;
 mod newton;
 pub(crate) mod nystrom;
+mod rapier_contact;
 mod rattle;
 mod runge_kutta;
 mod splitting;
@@ -17,6 +18,7 @@ pub(crate) use amplification::{bisect, map};
 pub use facts::MethodRow;
 pub(crate) use facts::is_exact;
 pub use implicit::{Implicit, ImplicitScheme};
+pub use rapier_contact::{RapierContact, Softness, Ties};
 pub use rattle::{Rattle, Velocities};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
@@ -53,6 +55,11 @@ pub trait Integrator: Send {
 
     /// Whether its steps end on the rods of a system, so that nothing has to be done about them.
     fn keeps_rods(&self) -> bool {
+        false
+    }
+
+    /// Whether its steps deal with the obstacles of a system themselves, so that no event is located.
+    fn keeps_contact(&self) -> bool {
         false
     }
 

@@ -23,6 +23,9 @@ pub struct Contact {
     pub touching: u64,
     /// Impacts, each time counted; null where nobody counts them.
     pub impacts: Option<u64>,
+    /// Where the contact of a rapier world differs from the laws, in words, with this run's numbers; empty for others.
+    #[serde(default)]
+    pub differs: Vec<String>,
 }
 
 /// A gap is closed where it is less than this part of the scene's size.
@@ -45,6 +48,7 @@ impl Contact {
             t_s: 0.0,
             touching: 0,
             impacts: done.map(|done| done.impacts),
+            differs: Vec::new(),
         };
         for k in 0..=last {
             let (t, x) = (run.time(k), run.x(k));

@@ -1,5 +1,6 @@
 //! The numbers a trajectory shows: pure functions of recorded states.
 
+mod bounce;
 mod check;
 mod constrained;
 mod contact;
@@ -16,6 +17,7 @@ mod strain;
 mod trend;
 pub mod twin;
 
+pub use bounce::Bounce;
 pub use check::{Check, CheckStatus};
 pub use constrained::{Constrained, Growth, RodTension, constrained};
 pub use contact::Contact;

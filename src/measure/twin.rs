@@ -4,6 +4,7 @@
 //! Two programs that agree to rounding on a scene agree on its masses, springs, dampers, gravity
 //! and units. What is compared is rapier with the method of ours that it *is*, not with the truth.
 
+mod contact;
 mod lockstep;
 mod start;
 
@@ -31,8 +32,8 @@ const ROW: u64 = 3;
 /// A proof that could not tell a relative error of this size is none.
 const BLUNT: f64 = 1e-6;
 
-/// All proofs a scene calls for, at a timestep in seconds: `twin-forces`, `twin-joints` and, without
-/// springs, `twin-fall`.
+/// All proofs a scene calls for, at a timestep in seconds: `twin-forces`, `twin-joints`, without springs `twin-fall`, and
+/// with obstacles `twin-contact`. The others leave obstacles out.
 ///
 /// `measured` is the largest distance over the steps taken: of positions in units of the largest
 /// coordinate, of velocities in units of the largest speed, whichever is larger. The `bound` is what
@@ -69,6 +70,13 @@ impl Pair {
         let system = ParticleSystem::new(&pair.ours);
         if system.effects().iter().all(|(row, _)| row.constant) {
             proofs.push(pair.prove(FALL, Pair::fall));
+        }
+        if pair
+            .touching
+            .iter()
+            .any(|scene| !scene.colliders.is_empty())
+        {
+            proofs.push(pair.prove(CONTACT, Pair::contact));
         }
         proofs
     }
@@ -111,6 +119,13 @@ const FALL: Claim = Claim {
     id: "twin-fall",
     subject: "rapier",
     method: "symplectic_euler",
+};
+
+/// rapier's contact, swept until it converges, is the step written here.
+const CONTACT: Claim = Claim {
+    id: "twin-contact",
+    subject: "rapier-converged",
+    method: "rapier_contact",
 };
 
 impl Claim {
@@ -178,6 +193,8 @@ impl Claim {
 struct Pair {
     ours: Scene,
     theirs: Scene,
+    /// Both with their obstacles, as their files have them.
+    touching: [Scene; 2],
     timestep: f64,
     /// The most that a proof may take, in steps of one particle under explicit forces.
     effort: u64,
@@ -188,7 +205,7 @@ impl Pair {
     fn new(ours: &Scene, theirs: &Scene, timestep: f64) -> Self {
         // In rapier's world stiff springs stand for rods, so that is what it has to be.
         let mut stiff = ours.clone();
-        // Its contact has a law of its own: the proof is of all the rest.
+        // Contact has a proof of its own, from where the scene starts.
         stiff.colliders.clear();
         stiff.contact = None;
         stiff.springs.extend(stand_ins(ours));
@@ -206,6 +223,7 @@ impl Pair {
         Self {
             ours: start,
             theirs: other,
+            touching: [ours.clone(), theirs.clone()],
             timestep,
             effort: u64::MAX,
         }

@@ -123,10 +123,15 @@ impl Engine for IntegratorEngine {
     }
 
     fn counts(&self) -> Counts {
+        let counted = evaluated(&self.system, &self.corrected);
         Counts {
+            // Who deals with obstacles by himself does not count impacts.
+            corrections: counted
+                .corrections
+                .filter(|_| !self.integrator.keeps_contact()),
             linear_solves: Some(self.integrator.linear_solves()),
             newton_iterations: Some(self.integrator.newton_iterations()),
-            ..evaluated(&self.system, &self.corrected)
+            ..counted
         }
     }
 }

@@ -7,7 +7,8 @@ use super::run::Run;
 use super::setting::Setting;
 use super::{Engine, Unsupported, memory};
 use crate::integrators::{self, Coefficients, Integrator, Method, Settings};
-use crate::physics::ParticleSystem;
+use crate::physics::constraints::contact::Obstacles;
+use crate::physics::{ParticleSystem, System};
 use crate::scene::Scene;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -55,6 +56,8 @@ enum Source {
     Joints(rapier::RapierSettings),
     /// rapier's bodies under forces computed here.
     Forces(rapier::RapierSettings),
+    /// rapier's contact, written here.
+    Contact(rapier::RapierSettings),
     Program(Arc<dyn Program>),
 }
 
@@ -141,7 +144,7 @@ impl Solver {
             Source::Method(method) if method.pair().is_none() => Some((method.id, 1)),
             // Its contact has a law of its own.
             Source::Forces(_) | Source::Joints(_) if scene.collides() => None,
-            Source::Method(_) | Source::Own(_) | Source::Program(_) => None,
+            Source::Method(_) | Source::Own(_) | Source::Contact(_) | Source::Program(_) => None,
             // Forces are set once a step and held over its substeps.
             Source::Forces(_) if self.substeps > 1 => {
                 Some(("forces_held(symplectic_euler)", self.substeps))
@@ -237,6 +240,14 @@ impl Solver {
                 };
                 Box::new(RapierEngine::new(scene, system, timestep, settings)?)
             }
+            Source::Contact(settings) => {
+                let integrator = settings.contact();
+                system.admits(&self.id, integrator.takes())?;
+                lone_contact(scene, &system)?;
+                memory::fits_factor(scene)?;
+                let integrator = Box::new(integrator);
+                Box::new(IntegratorEngine::with(scene, system, integrator, timestep))
+            }
             Source::Forces(settings) => {
                 memory::fits_rapier(scene, 0)?;
                 Box::new(RapierForces::new(scene, system, timestep, settings)?)
@@ -256,8 +267,26 @@ impl std::fmt::Debug for Solver {
     }
 }
 
-/// rapier's worlds at fixed settings.
-fn worlds() -> [Solver; 4] {
+/// What [`RapierContact`](crate::integrators::RapierContact) is not the law of.
+fn lone_contact(scene: &Scene, system: &ParticleSystem) -> Result<(), Unsupported> {
+    let reason = if system.strain_limiter().is_some() {
+        "rapier has no strain limit"
+    } else if scene.colliders.is_empty() {
+        "there are no obstacles: without contact it is linearized_implicit_material in 4 substeps"
+    } else if scene.colliders.iter().any(|one| one.mesh.is_some()) {
+        "rapier takes the edges out of a mesh, which is not written here: planes, balls, boxes and capsules are"
+    } else if system.obstacles().is_some_and(Obstacles::among_particles) {
+        "contact of particles with each other is not written here: rapier has it"
+    } else {
+        return rapier::takes_obstacles(scene);
+    };
+    Err(Unsupported {
+        reason: reason.to_owned(),
+    })
+}
+
+/// rapier's worlds at fixed settings, and its contact.
+fn worlds() -> [Solver; 5] {
     let converged = Solver {
         id: rapier::IDS[2].into(),
         summary: "rapier's spring joints swept until they converge: linearly implicit Euler",
@@ -279,8 +308,14 @@ fn worlds() -> [Solver; 4] {
         ),
         ..forces(rapier::RapierSettings::DEFAULT)
     };
+    let contact = Solver {
+        id: rapier::IDS[4].into(),
+        summary: "rapier's soft contact as a step of this program: bounces, slides and rests as in `rapier`",
+        source: Source::Contact(rapier::RapierSettings::DEFAULT),
+        ..joints(rapier::RapierSettings::DEFAULT)
+    };
     let defaults = joints(rapier::RapierSettings::DEFAULT);
-    [defaults, own_forces, converged, user_forces]
+    [defaults, own_forces, converged, user_forces, contact]
 }
 
 /// rapier's bodies under forces computed here.

@@ -66,8 +66,10 @@ pub fn through(
     state: &mut State,
 ) -> Result<u64, StepError> {
     match system.obstacles() {
-        Some(obstacles) => step(integrator, system, obstacles, h, state),
-        None => integrator.step(system, h, state).map(|()| 0),
+        Some(obstacles) if !integrator.keeps_contact() => {
+            step(integrator, system, obstacles, h, state)
+        }
+        _ => integrator.step(system, h, state).map(|()| 0),
     }
 }
 

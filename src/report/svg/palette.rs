@@ -19,7 +19,13 @@ pub const SHAPES: [SymbolShape; 4] = [
 ];
 /// The dashes and widths of rapier's lines. The second mostly lies on the scene's own integrator, so it is
 /// thin enough to leave that in sight.
-const RAPIER: [(&str, f64); 4] = [("7 4", 1.6), ("2 4", 1.0), ("9 3 2 3", 1.6), ("2 2", 1.6)];
+const RAPIER: [(&str, f64); 5] = [
+    ("7 4", 1.6),
+    ("2 4", 1.0),
+    ("9 3 2 3", 1.6),
+    ("2 2", 1.6),
+    ("12 3", 1.0),
+];
 const BLACK: &str = "#000000";
 
 /// The truth as a pale band, below every other line.

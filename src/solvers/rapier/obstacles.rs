@@ -18,6 +18,47 @@ const OBSTACLES: Group = Group::GROUP_2;
 /// Particles as they collide with each other.
 const AMONG: Group = Group::GROUP_3;
 
+/// What balls and planes are made larger by where a particle has no extent, m.
+const EXTENT: f64 = 0.1;
+
+/// rapier takes any normal for a centre that is exactly on a surface, as one without extent is that touches it. Such balls
+/// get an extent, and planes are moved back by as much, which leaves all gaps as they are.
+fn extent(scene: &Scene) -> f64 {
+    let mut free = scene.particles.iter().filter(|particle| !particle.fixed);
+    let none = free.any(|particle| particle.radius == 0.0);
+    if none && solid(scene) { EXTENT } else { 0.0 }
+}
+
+/// A half space is solid: nothing passes it.
+fn solid(scene: &Scene) -> bool {
+    scene.colliders.iter().all(|one| one.plane.is_some())
+}
+
+/// Whether rapier's contact has a counterpart of all obstacles of a scene.
+///
+/// # Errors
+/// [`Unsupported`] where it has none.
+pub fn takes(scene: &Scene) -> Result<(), Unsupported> {
+    let own = |[slides, sticks]: [f64; 2]| sticks > slides;
+    let mut each = scene.colliders.iter();
+    let reason = if let Some(at) = each.position(|one| own([one.friction, one.static_friction])) {
+        format!("colliders[{at}] has a static friction of its own: rapier has one coefficient")
+    } else if let Some(contact) = &scene.contact
+        && own([contact.friction, contact.static_friction])
+    {
+        "contact has a static friction of its own: rapier has one coefficient".to_owned()
+    } else if scene
+        .contact
+        .as_ref()
+        .is_some_and(|one| one.penalty.is_some())
+    {
+        "contact has a penalty: rapier's contact has a law of its own".to_owned()
+    } else {
+        return Ok(());
+    };
+    Err(Unsupported { reason })
+}
+
 /// Adds the colliders of a scene; returns the bodies of obstacles that move.
 pub(super) fn add(
     scene: &Scene,
@@ -25,38 +66,21 @@ pub(super) fn add(
     world: &mut PhysicsWorld,
 ) -> Result<Vec<(RigidBodyHandle, Drive)>, Unsupported> {
     let mut moved = Vec::new();
-    let contact = scene.contact.as_ref();
-    let among = contact.filter(|contact| contact.particles);
+    let among = scene.contact.as_ref().filter(|contact| contact.particles);
     if scene.colliders.is_empty() && among.is_none() {
         return Ok(moved);
     }
-    if among.is_some_and(|one| one.static_friction > one.friction) {
-        return Err(Unsupported {
-            reason: "contact has a static friction of its own: rapier has one coefficient".into(),
-        });
-    }
-    if contact.is_some_and(|contact| contact.penalty.is_some()) {
-        return Err(Unsupported {
-            reason: "contact has a penalty: rapier's contacts are its own".into(),
-        });
-    }
+    takes(scene)?;
     let parameters = &mut world.integration_parameters;
     parameters.contact_recycling = false;
     // Without sweeps after the drift there is hardly any friction.
     let sweeps = parameters.num_internal_stabilization_iterations.max(1);
     parameters.num_internal_stabilization_iterations = sweeps;
-    // A half space is solid: nothing passes it. Continuous detection keeps what is fast from passing other shapes.
-    let solid = among.is_none() && scene.colliders.iter().all(|one| one.plane.is_some());
+    // Continuous detection keeps what is fast from passing shapes, and each other.
+    let (solid, extent) = (among.is_none() && solid(scene), extent(scene));
     parameters.max_ccd_substeps = usize::from(!solid);
     for (at, collider) in scene.colliders.iter().enumerate() {
-        if collider.static_friction > collider.friction {
-            return Err(Unsupported {
-                reason: format!(
-                    "colliders[{at}] has a static friction of its own: rapier has one coefficient"
-                ),
-            });
-        }
-        let Some((shape, place)) = shape(collider) else {
+        let Some((shape, place)) = shape(collider, extent) else {
             return Err(Unsupported {
                 reason: format!("colliders[{at}] has no shape that rapier takes"),
             });
@@ -85,7 +109,7 @@ pub(super) fn add(
     }
     let free = scene.particles.iter().zip(bodies);
     for (particle, body) in free.filter(|(particle, _)| !particle.fixed) {
-        let ball = ColliderBuilder::new(SharedShape::ball(particle.radius));
+        let ball = ColliderBuilder::new(SharedShape::ball(particle.radius + extent));
         let ball = between(ball, PARTICLES, OBSTACLES)
             .density(0.0)
             .friction(0.0);
@@ -113,12 +137,15 @@ fn between(builder: ColliderBuilder, own: Group, other: Group) -> ColliderBuilde
         .restitution_combine_rule(CoefficientCombineRule::Max)
 }
 
-/// A shape, and where it is before it moves.
-fn shape(collider: &Collider) -> Option<(SharedShape, Vector)> {
+/// A shape, and where it is before it moves; planes are moved back.
+fn shape(collider: &Collider, back: f64) -> Option<(SharedShape, Vector)> {
     let vector = Vector::from_array;
     if let Some(plane) = &collider.plane {
         let normal = vector(plane.normal);
-        return Some((SharedShape::halfspace(normal), normal * plane.offset));
+        return Some((
+            SharedShape::halfspace(normal),
+            normal * (plane.offset - back),
+        ));
     }
     if let Some(ball) = &collider.ball {
         return Some((SharedShape::ball(ball.radius), vector(ball.center)));

@@ -1,8 +1,10 @@
 //! The settings of rapier's solver that change the result.
 
+use crate::integrators::RapierContact;
+
 /// The settings of rapier's solver, besides the timestep.
 ///
-/// Where a scene has obstacles, its world changes what contact needs.
+/// Where a scene has obstacles, its world changes what contact needs: there is at least one sweep after the drift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RapierSettings {
     /// `num_solver_iterations`, n: *substeps* of h = dt / n, each with a solve of its own. Not to
@@ -35,8 +37,8 @@ impl RapierSettings {
         ..Self::DEFAULT
     };
 
-    /// Enough sweeps for the joint solve of a soft network to converge to rounding, and none after the drift.
-    /// The method is then linearly implicit Euler at dt / 4.
+    /// Enough sweeps for the joint solve of a soft network to converge to rounding, and none after the drift, but one where
+    /// there are obstacles, whose friction acts there. The method is then linearly implicit Euler at dt / 4.
     pub const CONVERGED: Self = Self {
         iterations: 4,
         pgs: 64,
@@ -71,6 +73,11 @@ impl RapierSettings {
         } else {
             changes.join(",")
         }
+    }
+
+    /// The step of rapier's contact at these settings, written here; it sweeps at least once after the drift.
+    pub fn contact(&self) -> RapierContact {
+        RapierContact::new(self.iterations, self.pgs, self.stabilization)
     }
 
     /// The length of a substep, s, of a step of `timestep` seconds.

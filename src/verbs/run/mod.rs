@@ -9,6 +9,7 @@ mod beside;
 mod budget;
 mod checks;
 mod curves;
+mod differs;
 mod execute;
 pub mod expect;
 mod figures;

@@ -3,10 +3,10 @@
 use super::plan::Plan;
 use super::record::Record;
 use super::truths::Truths;
-use super::{budget, identity, remarks};
+use super::{budget, differs, identity, remarks};
 use crate::measure::{self, Contact, Deviation, Energy, EnergySeries, Statics, Strain, TOLERANCE};
 use crate::physics::System;
-use crate::solvers::Status;
+use crate::solvers::{SolverKind, Status};
 use crate::trajectory::Trajectory;
 use crate::verbs::run::{Outcome, WorkSummary};
 use rayon::prelude::*;
@@ -62,7 +62,16 @@ pub fn all(
             contact: trajectory
                 .zip(plan.system.obstacles())
                 .and_then(|(run, obstacles)| {
-                    Contact::of(obstacles, plan.scene.size(), run, record.counts.corrections)
+                    let corrected = record.counts.corrections;
+                    let contact = Contact::of(obstacles, plan.scene.size(), run, corrected)?;
+                    let rapier = case.solver.kind == SolverKind::Rapier;
+                    let substep = timestep / f64::from(case.solver.substeps);
+                    let own =
+                        rapier.then(|| differs::differs(plan.scene, &plan.system, run, substep));
+                    Some(Contact {
+                        differs: own.unwrap_or_default(),
+                        ..contact
+                    })
                 }),
             strain: trajectory
                 .and_then(|run| Strain::of(plan.scene, run, record.counts.corrections)),

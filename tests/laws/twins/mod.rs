@@ -1,6 +1,7 @@
 //! rapier's worlds are the scenes they claim to be: each engine equals the method of ours that it
 //! is. Every law is a number that is small for the right pair and large for a mutant.
 
+mod contact;
 mod forces;
 mod joints;
 mod proofs;

@@ -91,7 +91,8 @@ fn the_registry_is_consistent() {
             "rapier",
             "rapier-forces",
             "rapier-converged",
-            "rapier-user-forces"
+            "rapier-user-forces",
+            "rapier_contact"
         ]
     );
     assert_eq!(ids, IDS);

@@ -34,6 +34,7 @@ const LEFT_OUT: &[&str] = &[
     "rods.tension_max.t_s",
     "rods.tension_min.rod",
     "rods.tension_min.t_s",
+    "contact.differs",
     "strain.ratio",
     "strain.impulse_n_s",
     "identified.equivalent",
@@ -80,7 +81,8 @@ fn everything() -> BTreeMap<String, Value> {
     let drifting = shipped("rods/unstabilised.yml");
     let rods = Choice::default_for(&drifting);
     let bouncing = shipped("contact/bouncing.yml");
-    let contact = Choice::default_for(&bouncing);
+    let mut contact = Choice::default_for(&bouncing);
+    contact.solvers.extend(solvers::find("rapier_contact"));
     let mut found = BTreeMap::new();
     for report in [
         run(&scene, &choice),

@@ -67,11 +67,11 @@ struct Obstacle {
 
 /// The coefficients of a contact.
 #[derive(Debug, Clone, Copy)]
-struct Surface {
+pub struct Surface {
     /// e.
-    restitution: f64,
+    pub restitution: f64,
     /// µ of what slides, and of what sticks.
-    friction: [f64; 2],
+    pub friction: [f64; 2],
 }
 
 /// Contact of particles with each other.
@@ -286,6 +286,25 @@ impl Obstacles {
         !self.obstacles.iter().all(flat)
     }
 
+    /// Every particle that collides, with every obstacle.
+    pub fn pairs(&self) -> impl Iterator<Item = (usize, Against)> + '_ {
+        let each = |obstacle| {
+            let particles = self.particles();
+            particles.map(move |particle| (particle, Against::Obstacle(obstacle)))
+        };
+        (0..self.obstacles.len()).flat_map(each)
+    }
+
+    /// Whether an obstacle moves; false of particles.
+    pub fn moves(&self, against: Against) -> bool {
+        matches!(against, Against::Obstacle(at) if self.obstacles[at].motion.is_some())
+    }
+
+    /// 1/m of a particle, 1/kg; 0 where it is fixed, and does not collide.
+    pub fn weight(&self, particle: usize) -> f64 {
+        self.weights[particle]
+    }
+
     /// Which of the scene's colliders an obstacle is, or is part of.
     pub fn collider(&self, against: Against) -> Option<usize> {
         match against {
@@ -307,15 +326,16 @@ impl Obstacles {
         }
     }
 
-    /// The motion of an obstacle as such, as [`Obstacle::moved`]; none of particles.
-    fn moved(&self, against: Against, t: f64) -> [[f64; 3]; 3] {
+    /// How far an obstacle has moved at a time, m, its velocity, m/s, and its acceleration, m/s²; 0 of particles.
+    pub fn moved(&self, against: Against, t: f64) -> [[f64; 3]; 3] {
         match against {
             Against::Obstacle(at) => self.obstacles[at].moved(t),
             Against::Particle(_) => [[0.0; 3]; 3],
         }
     }
 
-    fn surface(&self, against: Against) -> Surface {
+    /// The coefficients of a contact.
+    pub fn surface(&self, against: Against) -> Surface {
         match (against, &self.among) {
             (Against::Obstacle(at), _) => self.obstacles[at].surface,
             (Against::Particle(_), Some(among)) => among.surface,

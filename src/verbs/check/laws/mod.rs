@@ -89,6 +89,14 @@ pub static CHECKS: &[Row] = &[
         judge: None,
     },
     Row {
+        id: "twin-contact",
+        requires: "rapier's contact, swept until it converges, is the step of `rapier_contact`, to rounding",
+        derivation: "each step of the scene from its start until 64 had contact, from the state that rapier had, against what \
+                     rounding explains",
+        remedy: "the obstacles differ from the scene's: compare places, normals, restitution, friction, radii and masses",
+        judge: None,
+    },
+    Row {
         id: "twin-user-forces",
         requires: "rapier's bodies hold the forces of a step's start over their substeps, to rounding",
         derivation: "16 steps of the scene against what rounding explains",

@@ -46,7 +46,20 @@ pub fn table(report: &Report) -> String {
     table.markdown("touching at the end", |(_, contact)| {
         words::count(contact.touching)
     });
-    format!("{INTRO}\n\n{}", table.in_markdown())
+    let mut text = format!("{INTRO}\n\n{}", table.in_markdown());
+    if let Some((outcome, contact)) = differing(&rows) {
+        let engine = super::engine(outcome);
+        text += &format!("\nWhere the contact of {engine} differs from these laws:\n\n");
+        let differs = contact.differs.iter();
+        text.extend(differs.map(|differs| format!("- {differs}\n")));
+    }
+    text
+}
+
+/// The first row that says where its contact differs from the laws.
+fn differing<'a>(rows: &[(&'a Outcome, &'a Contact)]) -> Option<(&'a Outcome, &'a Contact)> {
+    let differs = |(_, contact): &&(&Outcome, &Contact)| !contact.differs.is_empty();
+    rows.iter().find(differs).copied()
 }
 
 fn taken(outcome: &Outcome, which: fn(&crate::measure::Energy) -> Option<f64>) -> Option<String> {
@@ -89,5 +102,11 @@ pub fn own(report: &Report) -> Vec<(&'static str, String)> {
     };
     parts.push(touching);
     let text = format!("{}: {}", words::one_line(&outcome.engine), parts.join(", "));
-    vec![("contact", text)]
+    let mut said = vec![("contact", text)];
+    if let Some((outcome, contact)) = differing(&rows(report)) {
+        let engine = words::one_line(&outcome.engine);
+        let first = contact.differs.first().map_or("", String::as_str);
+        said.push(("", format!("{engine}: {first}")));
+    }
+    said
 }
