@@ -3,6 +3,70 @@
 use super::{Beside, Obstacles, dot, norm};
 use crate::physics::State;
 
+/// What an impact starts from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// The speed at which the two approach, along the normal, m/s.
+    pub approach: f64,
+    /// The speed along the surface, m/s.
+    pub sliding: f64,
+    /// e.
+    pub restitution: f64,
+    /// µ.
+    pub friction: f64,
+    /// The step at whose end it is taken, s; 0 at the instant of an impact.
+    pub h: f64,
+}
+
+/// What an impact does to velocities.
+#[derive(Debug, Clone, Copy)]
+pub struct ImpactLaw {
+    /// What the normal velocity gains away from the obstacle, m/s.
+    pub restitution: fn(&Hit) -> f64,
+    /// What the sliding speed loses, m/s, where the normal velocity gains so much.
+    pub friction: fn(&Hit, f64) -> f64,
+}
+
+impl ImpactLaw {
+    /// v_n' = -e v_n (Newton).
+    pub fn newton(hit: &Hit) -> f64 {
+        (1.0 + hit.restitution) * hit.approach
+    }
+
+    /// Coulomb's law for the impulses.
+    pub fn coulomb(hit: &Hit, gained: f64) -> f64 {
+        (hit.friction * gained).min(hit.sliding)
+    }
+
+    /// The right one.
+    pub const RIGHT: Self = Self {
+        restitution: Self::newton,
+        friction: Self::coulomb,
+    };
+
+    /// The change of velocity, m/s, of a particle beside an obstacle.
+    pub fn change(&self, beside: &Beside, [restitution, friction]: [f64; 2], h: f64) -> [f64; 3] {
+        let sliding = beside.sliding();
+        let fast = norm(sliding);
+        let hit = Hit {
+            approach: -beside.parting(),
+            sliding: fast,
+            restitution,
+            friction,
+            h,
+        };
+        let gained = (self.restitution)(&hit);
+        let slowed = (self.friction)(&hit, gained);
+        let mut change = beside.normal.map(|n| gained * n);
+        if slowed != 0.0 && fast > 0.0 {
+            for (change, along) in change.iter_mut().zip(sliding) {
+                *change -= slowed / fast * along;
+            }
+        }
+        change
+    }
+}
+
 /// The most impulses of one particle that is pressed into several obstacles at once.
 const SWEEPS: usize = 1000;
 
@@ -35,17 +99,9 @@ impl Obstacles {
         if speed <= beside.slow {
             return;
         }
-        let obstacle = &self.obstacles[beside.obstacle];
-        let e = obstacle.restitution;
-        let sliding = beside.sliding();
-        let fast = norm(sliding);
-        let slowed = (obstacle.friction[0] * (1.0 + e) * speed).min(fast);
-        let mut change = [0, 1, 2].map(|axis| (1.0 + e) * speed * beside.normal[axis]);
-        if slowed > 0.0 {
-            for (change, along) in change.iter_mut().zip(sliding) {
-                *change -= slowed / fast * along;
-            }
-        }
+        let change = self
+            .law
+            .change(&beside, self.coefficients(beside.obstacle), 0.0);
         self.kick(beside.particle, beside.obstacle, change, state);
     }
 

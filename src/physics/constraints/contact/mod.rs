@@ -6,6 +6,7 @@ mod impact;
 mod member;
 
 pub use held::{Change, Held};
+pub use impact::{Hit, ImpactLaw};
 
 use super::ConstraintRow;
 use crate::physics::State;
@@ -29,9 +30,10 @@ const SLOW: f64 = 1e-10;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The obstacles of a scene, and what collides with them.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Obstacles {
     obstacles: Vec<Obstacle>,
+    law: ImpactLaw,
     /// Of each particle, m.
     radii: Vec<f64>,
     /// Of each particle, 1/kg; 0 where it is fixed, and does not collide.
@@ -43,7 +45,7 @@ pub struct Obstacles {
 }
 
 /// One obstacle.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Obstacle {
     /// Its index among the scene's colliders; a mesh is as many obstacles as it has triangles.
     collider: usize,
@@ -137,6 +139,7 @@ impl Obstacles {
         }
         let mut all = Self {
             obstacles,
+            law: ImpactLaw::RIGHT,
             radii: scene.particles.iter().map(|p| p.radius).collect(),
             weights: scene.particles.iter().map(weight).collect(),
             close: 0.0,
@@ -158,6 +161,20 @@ impl Obstacles {
         let fastest = scene.particles.iter().map(|p| norm(p.velocity));
         let h = scene.solver.timestep;
         size.max(h * (fastest.fold(0.0, f64::max) + h * norm(scene.gravity())))
+    }
+
+    /// The same with another law of impacts.
+    pub fn struck_by(&self, law: ImpactLaw) -> Self {
+        Self {
+            law,
+            ..self.clone()
+        }
+    }
+
+    /// The restitution e and the friction µ of an obstacle.
+    pub fn coefficients(&self, obstacle: usize) -> [f64; 2] {
+        let one = &self.obstacles[obstacle];
+        [one.restitution, one.friction[0]]
     }
 
     /// Every particle that collides, with every obstacle.
