@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Roots are located to this part of a step.
-const LOCATED: f64 = 1e-12;
+pub const LOCATED: f64 = 1e-12;
 /// Halvings after which an event is not located but counts as one of the end.
 const HALVES: u32 = 40;
 /// Cuts of no length after which no further event of a step is located.

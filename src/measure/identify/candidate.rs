@@ -2,14 +2,16 @@
 //! way than to all particles at once.
 
 use super::altered::{Altered, Altering, Around};
+use super::bounce::{Bounce, Way, pressed};
 use super::keeping::{Keeping, Kept, keep};
 use super::step::Step;
 use crate::integrators::{
     Coefficients, Integrator, Method, PerStep, Settings, StepError, Velocities, events, fixed,
 };
+use crate::physics::constraints::contact::Obstacles;
 use crate::physics::constraints::limit;
 use crate::physics::{ParticleSystem, State, System};
-use crate::scene::Stabilisation;
+use crate::scene::{Scene, Stabilisation};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -43,6 +45,8 @@ pub struct Candidate {
     scaling: Option<Scaling>,
     /// How it keeps rods, where not as the scene says.
     keeping: Option<Keeping>,
+    /// What it does about obstacles, where that is beside its step.
+    bounce: Option<Box<Bounce>>,
 }
 
 /// A factor on velocities, from a rate in 1/s and the length of a step in s.
@@ -94,6 +98,7 @@ impl Candidate {
             first: None,
             scaling: None,
             keeping: None,
+            bounce: None,
         }
     }
 
@@ -151,6 +156,39 @@ impl Candidate {
     pub(super) fn keeping(self, system: &ParticleSystem, keeping: &Keeping) -> Self {
         let keeping = Some(keeping.clone());
         Self { keeping, ..self }.under(system)
+    }
+
+    /// The same scheme with contact treated so; None where its forces are not the scene's and would have to be.
+    pub(super) fn bouncing(
+        &self,
+        scene: &Scene,
+        system: &ParticleSystem,
+        bounce: &Bounce,
+    ) -> Option<Self> {
+        let own = !self.mistake && self.scaling.is_none();
+        let right = ["newton", "coulomb"] == [bounce.restitution.id, bounce.friction.id];
+        let mut same = match bounce.way.does {
+            Way::Event if right => self.clone(),
+            Way::Event => {
+                let law = bounce.law();
+                let struck = system
+                    .clone()
+                    .with_obstacles(|all| Some(all.struck_by(law)));
+                self.under(&struck)
+            }
+            Way::Force { .. } => self.under(&pressed(scene, system, bounce)?),
+            Way::Once(_) | Way::Never => Self {
+                bounce: Some(Box::new(*bounce)),
+                ..self.clone()
+            },
+        };
+        if bounce.mistakes().next().is_some() {
+            let says = same.says.iter().map(|says| format!("{says}; "));
+            let says = says.collect::<String>();
+            same.says = Some(format!("{says}at contact it {}", bounce.says()).into());
+            same.mistake = true;
+        }
+        (own || right || same.bounce.is_some()).then_some(same)
     }
 
     /// The same scheme under another candidate's forces, in its steps, with rods kept as that does.
@@ -262,6 +300,31 @@ impl Candidate {
         }
     }
 
+    /// What it does beside its step, and about which obstacles of these forces.
+    fn beside<'a>(&'a self, system: &'a dyn System) -> Option<(&'a Bounce, &'a Obstacles)> {
+        self.bounce.as_deref().zip(system.obstacles())
+    }
+
+    /// The obstacles that it locates impacts with, to a part of a step.
+    pub(super) fn locates(&self) -> Option<&Obstacles> {
+        self.forces.obstacles().filter(|_| self.bounce.is_none())
+    }
+
+    /// Multiplies the velocities, if this is when. `x` is where the step began.
+    fn scale(&self, at: ScaledAt, h: f64, x: &[f64], state: &mut State) {
+        let Some(scaling) = self.scaling.as_ref().filter(|s| s.at == at) else {
+            return;
+        };
+        for (i, rate) in scaling.rates.iter().enumerate() {
+            let factor = (scaling.factor)(*rate, h);
+            state.v[i] *= factor;
+            if at == ScaledAt::Kick {
+                // The drift was h v.
+                state.x[i] = x[i] + factor * (state.x[i] - x[i]);
+            }
+        }
+    }
+
     /// What a step costs besides its forces, in evaluations of them.
     pub(super) fn keeping_effort(&self) -> u64 {
         self.keeping.as_ref().map_or(0, Keeping::effort)
@@ -361,27 +424,37 @@ impl<'a> Replayer<'a> {
             let system = rounded
                 .as_ref()
                 .map_or(forces as &dyn System, |rounded| rounded);
-            self.scale(ScaledAt::Start, inner, &start.x, state);
+            candidate.scale(ScaledAt::Start, inner, &start.x, state);
             let first = candidate.first.as_deref().filter(|_| previous.is_none());
             let step = first.unwrap_or(&candidate.step);
             let before = previous.as_ref();
             let fresh = |before| step.build(&self.settings, before);
-            match (candidate.around, &mut self.kept) {
-                (Some(around), _) => {
-                    let one = |f: &dyn System, h, s: &mut State| {
-                        events::through(fresh(None).as_mut(), f, h, s).map(|_| ())
-                    };
-                    around(&one, system, inner, candidate.substeps, state)?;
+            let beside = candidate.beside(system);
+            let taken = |by: &mut dyn Integrator, f: &dyn System, h, s: &mut State| match beside {
+                Some(_) => by.step(f, h, s),
+                None => events::through(by, f, h, s).map(|_| ()),
+            };
+            let mut free = |state: &mut State| {
+                let x = candidate.scaling.is_some().then(|| state.x.clone());
+                match (candidate.around, &mut self.kept) {
+                    (Some(around), _) => {
+                        let one =
+                            |f: &dyn System, h, s: &mut State| taken(fresh(None).as_mut(), f, h, s);
+                        around(&one, system, inner, candidate.substeps, state)?;
+                    }
+                    (None, Some(kept)) => taken(kept.as_mut(), system, inner, state)?,
+                    (None, None) => taken(fresh(before).as_mut(), system, inner, state)?,
                 }
-                (None, Some(kept)) => {
-                    events::through(kept.as_mut(), system, inner, state)?;
+                if let Some(x) = x {
+                    candidate.scale(ScaledAt::Kick, inner, &x, state);
+                    candidate.scale(ScaledAt::End, inner, &x, state);
                 }
-                (None, None) => {
-                    events::through(fresh(before).as_mut(), system, inner, state)?;
-                }
+                Ok(())
+            };
+            match beside {
+                Some((bounce, obstacles)) => bounce.step(obstacles, inner, state, &mut free)?,
+                None => free(state)?,
             }
-            self.scale(ScaledAt::Kick, inner, &start.x, state);
-            self.scale(ScaledAt::End, inner, &start.x, state);
             state.t = (part + 1) as f64 * part_of_h;
             system.place(state.t, &mut state.x, &mut state.v);
             self.keep(inner, part, &start, state)?;
@@ -419,20 +492,5 @@ impl<'a> Replayer<'a> {
             _ => return Ok(()),
         };
         Ok(rods.still(&state.x, &mut state.v)?)
-    }
-
-    /// Multiplies the velocities, if this is when. `x` is where the step began.
-    fn scale(&self, at: ScaledAt, h: f64, x: &[f64], state: &mut State) {
-        let Some(scaling) = self.candidate.scaling.as_ref().filter(|s| s.at == at) else {
-            return;
-        };
-        for (i, rate) in scaling.rates.iter().enumerate() {
-            let factor = (scaling.factor)(*rate, h);
-            state.v[i] *= factor;
-            if at == ScaledAt::Kick {
-                // The drift was h v.
-                state.x[i] = x[i] + factor * (state.x[i] - x[i]);
-            }
-        }
     }
 }

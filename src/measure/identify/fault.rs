@@ -14,7 +14,7 @@ pub use anchor::moved_anchor;
 use super::candidate::{Candidate, Replayer};
 use super::replay::{FIT, Replay};
 use super::transition::{Transition, is_finite, neighbours};
-use super::{HALF_SAMPLE, Identity, Question, Undecided, candidates, rods, transition};
+use super::{HALF_SAMPLE, Identity, Question, Undecided, candidates, contact, rods, transition};
 use crate::integrators;
 use crate::measure::identify::Fault;
 use crate::trajectory::Rows;
@@ -43,10 +43,25 @@ pub fn first_fault(question: &Question, identity: &Identity) -> Option<Fault> {
             == (&identity.method, identity.substeps, &identity.says)
     };
     let mut all = candidates(question.scene, question.system);
+    let treated = identity.contact.as_ref();
+    let bounce = treated.and_then(|treated| treated.bounce.as_ref());
+    let damped = || contact::damped(question, bounce?).into_iter().find(named);
     let candidate = all
         .find(named)
-        .or_else(|| fitted(question).into_iter().find(named));
-    first_departure(question, &candidate?)
+        .or_else(damped)
+        .or_else(|| fitted(question).into_iter().find(named))?;
+    let Some(bounce) = bounce else {
+        let unknown = |fault: Fault| match treated {
+            Some(treated) => Fault {
+                explanation: format!("{} what it does at contact", treated.says),
+                ..fault
+            },
+            None => fault,
+        };
+        return first_departure(question, &candidate).map(unknown);
+    };
+    let candidate = candidate.bouncing(question.scene, question.system, bounce)?;
+    first_departure(question, &candidate)
 }
 
 /// The candidates with a number that the rows tell.

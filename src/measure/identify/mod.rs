@@ -10,9 +10,11 @@
 //! Not to be confused with comparing trajectories: a replay never sees an accumulated error.
 
 mod altered;
+mod bounce;
 mod candidate;
 mod channels;
 mod compose;
+mod contact;
 mod explain;
 mod fault;
 mod fit;
@@ -32,6 +34,10 @@ mod velocity;
 mod words;
 
 pub use altered::{Around, OneStep};
+pub use bounce::{
+    Bounce, FRICTIONS, Friction, Lift, PLACES, RESTITUTIONS, Restitution, Row, WAYS, Way,
+    treatments,
+};
 pub use candidate::{Candidate, Factor, Forces, Replayer, ScaledAt, Scaling};
 pub use compose::{composed, composed_schemes};
 
@@ -40,7 +46,7 @@ pub use fault::{first_departure, first_fault, moved_anchor};
 pub use keeping::{Kept, Moved};
 pub use mistakes::{MISTAKES, Mistake, Wrong, mistakes};
 pub use replay::{Defect, FIT, Replay, solve_effort};
-pub use result::{Deviation, Explained, Fault, Identity, Quantity, Undecided};
+pub use result::{Deviation, Explained, Fault, Identity, Quantity, Treated, Undecided};
 pub use step::{Formula, Place, Step};
 pub use transition::Transition;
 
@@ -110,10 +116,11 @@ fn found(question: &Question) -> Option<Found> {
         ..
     } = *question;
     let replay = Replay::new(scene, system, rows, question.settings)?;
-    let used = transition::choose(rows, system, question.transitions);
-    let sample = transition::sample(&used, HALF_SAMPLE);
+    let apart = contact::apart(question);
+    let used = &apart.away;
+    let sample = transition::sample(used, HALF_SAMPLE);
     let probes = transition::probes(&sample);
-    let (all, sample) = (bare(&used), bare(&sample));
+    let (all, sample) = (bare(used), bare(&sample));
     probes.first()?;
     let mut race = Race {
         replay: &replay,
@@ -163,11 +170,18 @@ fn found(question: &Question) -> Option<Found> {
         if race.exact(ranking.winner) && Some(ranking.winner) != first {
             return Some(explain::of_truth(&identity));
         }
+        let identity = contact::told(question, &race, &apart, identity);
         let identity = compose::staggered(system, scene, rows, identity);
         let explained = explain::of_mistake(scene, &identity);
         return Some(Found {
+            explained: explained.or_else(|| contact::explained(&identity)),
             identity: Some(identity),
-            explained,
+        });
+    }
+    if let Some(identity) = contact::together(question, &race, &apart) {
+        return Some(Found {
+            explained: contact::explained(&identity),
+            identity: Some(identity),
         });
     }
     Some(explain::of_none(question, &race, &all))
@@ -263,6 +277,17 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 
 fn bare(weighed: &[Weighed]) -> Vec<Transition> {
     weighed.iter().map(|w| w.transition).collect()
+}
+
+/// A method of the registry with contact treated so; None of another id.
+pub fn treated_so(
+    scene: &Scene,
+    system: &ParticleSystem,
+    method: &str,
+    bounce: &Bounce,
+) -> Option<Candidate> {
+    let method = crate::integrators::find(method)?;
+    Candidate::method(system, method, 1).bouncing(scene, system, bounce)
 }
 
 /// Every scheme that has a name here, the simplest first: methods whole and in substeps, composed schemes,

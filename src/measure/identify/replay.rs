@@ -3,8 +3,9 @@
 
 use super::altered::sign;
 use super::candidate::{Candidate, Replayer};
-use super::transition::Transition;
+use super::transition::{Transition, beside};
 use super::velocity;
+use crate::integrators::events::LOCATED;
 use crate::integrators::{Settings, StepError};
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{Drive, Scene};
@@ -312,12 +313,14 @@ impl<'a> Replay<'a> {
         } else {
             0.0
         };
+        let late = self.late(replayer, transition);
         let substeps = f64::from(replayer.candidate().substeps.max(1));
         let differences = replayer.candidate().differences();
         let from = self.from(transition);
         let own = self.recorded(transition).zip(from).enumerate();
         let own = own.map(|(i, (value, from))| {
             let solve = if i < dim { seconds * solve } else { solve };
+            let located = if i < dim { late.0 } else { late.1 };
             // A number that ends near 0 was larger in between.
             let bit = f64::EPSILON * from.abs();
             let bit = match i.checked_sub(dim).filter(|_| differences) {
@@ -327,9 +330,25 @@ impl<'a> Replay<'a> {
                 }
                 None => bit,
             };
-            self.half_unit(transition.to, i, value) + bit + solve
+            self.half_unit(transition.to, i, value) + bit + solve + located
         });
         grown.iter().zip(own).map(|(g, own)| g + own).collect()
+    }
+
+    /// What an impact that is located a little off does to positions, m, and to velocities, m/s.
+    fn late(&self, replayer: &Replayer, transition: &Transition) -> (f64, f64) {
+        let rows = self.rows;
+        let [Some(from), Some(to)] = [transition.from, transition.to].map(|k| rows.v(k)) else {
+            return (0.0, 0.0);
+        };
+        let obstacles = replayer.candidate().locates();
+        if obstacles.is_none_or(|all| beside(all, rows, transition).is_none()) {
+            return (0.0, 0.0);
+        }
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let fastest = largest(&mut from.iter().chain(to).map(|v| v.abs()));
+        let turned = largest(&mut from.iter().zip(to).map(|(a, b)| (b - a).abs()));
+        (LOCATED * rows.timestep * 2.0 * fastest, LOCATED * turned)
     }
 
     /// What is recorded at the end: positions, then velocities where there are any.

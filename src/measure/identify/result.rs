@@ -1,5 +1,6 @@
 //! The result of an identification, as data.
 
+use super::bounce::Bounce;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -34,6 +35,10 @@ pub struct Identity {
     /// Candidates that were not tried, for want of time.
     #[serde(default)]
     pub left_out: Vec<String>,
+    /// What it does at contact with obstacles; absent where nothing was touched in the replayed steps, without velocities,
+    /// and for springcheck's own engines, whose contact is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Treated>,
     /// Whether it is a known mistake.
     #[serde(skip)]
     pub mistake: bool,
@@ -57,6 +62,32 @@ impl Identity {
         let listed = self.equivalent.iter().any(|id| id == label);
         (named || listed) && self.undecided != Some(Undecided::Near)
     }
+}
+
+/// How a trajectory's program treats contact with obstacles, by replay of steps beside them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Treated {
+    /// `impulse` at the impact, `flip_at_end`, `flip_at_start`, `flip_after_kick`, `flip_before_kick`, `penalty`, or
+    /// another id, and after each + what else is not as usual: `flip_at_end+clamped`; null where no known treatment
+    /// explains the steps.
+    pub treatment: Option<String>,
+    /// What it does, after "at contact it"; empty for the impulse at the impact.
+    pub says: String,
+    /// The ids of what is wrong about it.
+    pub mistakes: Vec<String>,
+    /// How deep a particle is inside an obstacle in the recorded instants, m.
+    pub deepest_m: f64,
+    /// Of a penalty, found from the steps, N/m; else null.
+    pub stiffness_n_m: Option<f64>,
+    /// Of a penalty, found from the steps, N s/m; else null.
+    pub damping_n_s_m: Option<f64>,
+    /// Steps beside obstacles that were replayed.
+    pub steps: usize,
+    /// Treatments that these steps cannot tell from it.
+    pub equivalent: Vec<String>,
+    /// Its rows.
+    #[serde(skip)]
+    pub bounce: Option<Bounce>,
 }
 
 /// The reason why a trajectory's scheme is not decided.
@@ -94,7 +125,8 @@ pub struct Explained {
 pub struct Deviation {
     /// `gravity`, `springs.stiffness`, `springs.damping`, `springs.rest_length`, `springs.cubic`, `bending.stiffness`,
     /// `bending.rest_angle`, `bending.damping`, `drag`, `quadratic_drag`, `air_drag`, `air.velocity`, `charge`, `wind`,
-    /// `gravitational`, `driven.sine.amplitude`, `driven.sine.omega`, `driven.sine.phase`, `driven.velocity`, `mass`, `velocity`, `timestep`, `axis`, or what a known mistake changes.
+    /// `gravitational`, `driven.sine.amplitude`, `driven.sine.omega`, `driven.sine.phase`, `driven.velocity`, `mass`, `velocity`, `timestep`, `axis`, `contact`,
+    /// or what a known mistake changes.
     pub what: String,
     /// How many times the scene's; of a velocity, the factor of each step.
     pub factor: f64,

@@ -1,5 +1,6 @@
 //! The pairs of rows that are replayed.
 
+use crate::physics::constraints::contact::Obstacles;
 use crate::physics::{ParticleSystem, System};
 use crate::trajectory::Rows;
 
@@ -125,6 +126,32 @@ fn motion(rows: &Rows, system: &ParticleSystem, t: &Transition) -> f64 {
     }
     // A force that is not finite here is for the replay to find.
     if most.is_finite() { most } else { f64::MAX }
+}
+
+/// The depth of the deepest particle, m, where one is so near an obstacle that it may meet it within these rows.
+pub(super) fn beside(obstacles: &Obstacles, rows: &Rows, t: &Transition) -> Option<f64> {
+    let times = [rows.time(t.from), rows.time(t.to)];
+    let seconds = times[1] - times[0];
+    let mut found: Option<f64> = None;
+    for (particle, obstacle) in obstacles.pairs() {
+        let three = |all: &[f64]| [0, 1, 2].map(|axis| all[3 * particle + axis]);
+        let x = [t.from, t.to].map(|k| three(rows.x(k)));
+        let speeds = [t.from, t.to].map(|k| rows.v(k).map_or(0.0, |v| length(three(v), [0.0; 3])));
+        // The way in between is no longer, unless forces are large.
+        let way = length(x[1], x[0]) + seconds * (speeds[0] + speeds[1]);
+        let gaps = [0, 1].map(|end| obstacles.gap(particle, obstacle, times[end], |_| x[end]));
+        let reach = way + obstacles.reach(obstacle, times[0], times[1]) + obstacles.close(x[0]);
+        if gaps[0] <= reach || gaps[1] <= reach {
+            let depth = -gaps[0].min(gaps[1]);
+            found = Some(found.unwrap_or(0.0).max(depth));
+        }
+    }
+    found
+}
+
+fn length(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
+    squares.sum::<f64>().sqrt()
 }
 
 /// At most `limit` of them, evenly spread, both ends included.

@@ -1,9 +1,9 @@
 //! `springcheck explain ID` says what an id means: a check, an integrator, an engine, an effect, a constraint, a mistake, a
-//! scheme, a word of the energy column.
+//! scheme, a treatment of contact, a word of the energy column.
 
 use crate::integrators::{self, Method, Stable};
 use crate::measure::Behaviour;
-use crate::measure::identify::MISTAKES;
+use crate::measure::identify::{MISTAKES, treatments};
 use crate::physics::{ForceKinds, constraints, effects};
 use crate::report::terminal::wrap;
 use crate::scene::words::nearest;
@@ -105,6 +105,14 @@ fn facts(id: &str) -> Option<(&'static str, Facts)> {
             owned(&[("what it means", behaviour.says())]),
         ));
     }
+    if let Some((_, says, mistake)) = treatments().find(|row| row.0 == id) {
+        let kind = if mistake {
+            "a known mistake at contact"
+        } else {
+            "a treatment of contact"
+        };
+        return Some((kind, owned(&[("at contact it", says)])));
+    }
     let mistake = MISTAKES.iter().find(|mistake| mistake.id == id)?;
     Some(("a known mistake", owned(&[("what is wrong", mistake.says)])))
 }
@@ -160,5 +168,6 @@ fn known() -> Vec<&'static str> {
         .chain(effects)
         .chain(constraints)
         .chain(mistakes)
+        .chain(treatments().map(|row| row.0))
         .collect()
 }

@@ -2,7 +2,7 @@
 
 use crate::integrators::adaptive::ErrorEstimate;
 use crate::integrators::{self, EnergyLaw, Method, PerStep, Stable};
-use crate::measure::identify::{MISTAKES, Mistake, Wrong};
+use crate::measure::identify::{MISTAKES, Mistake, Wrong, treatments};
 use crate::physics::{constraints, effects};
 use crate::solvers::SolverKind;
 use crate::solvers::catalogue;
@@ -70,10 +70,15 @@ pub fn list(args: &Args) -> anyhow::Result<ExitCode> {
             .to_string()
         }
         What::Mistakes => {
-            let rows = MISTAKES.iter();
+            let rows = MISTAKES
+                .iter()
+                .map(|row| (row.id, meant(row), row.says.to_owned()));
+            let contact = treatments().filter(|(.., mistake)| *mistake);
+            let contact = contact.map(|(id, says, _)| (id, "any", format!("at contact it {says}")));
             table(
                 &["mistake", "meant to be", "what is wrong"],
-                rows.map(|row| vec![row.id.into(), meant(row).into(), row.says.into()]),
+                rows.chain(contact)
+                    .map(|(id, meant, says)| vec![id.into(), meant.into(), says]),
             )
             .to_string()
         }

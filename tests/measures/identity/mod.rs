@@ -2,6 +2,7 @@
 //! roundings, and for schemes that are in no list.
 
 mod coarse;
+mod contact;
 mod deviations;
 mod edges;
 mod methods;

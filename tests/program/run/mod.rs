@@ -1,5 +1,6 @@
 //! The program as its users run it.
 
+mod bounces;
 mod compare;
 mod constraints;
 mod contract;

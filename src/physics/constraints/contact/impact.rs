@@ -1,10 +1,74 @@
 //! Impacts: Newton's restitution along the normal, Coulomb's friction across it.
 
-use super::{Against, Beside, Near, Obstacles, dot, minus, norm};
+use super::{Against, Beside, Near, Obstacles, Surface, dot, minus, norm};
 use crate::physics::State;
 use crate::physics::constraints::{RodError, Rods};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeSet;
+
+/// What an impact starts from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// The speed at which the two approach, along the normal, m/s.
+    pub approach: f64,
+    /// The speed along the surface, m/s.
+    pub sliding: f64,
+    /// e.
+    pub restitution: f64,
+    /// µ.
+    pub friction: f64,
+    /// The step at whose end it is taken, s; 0 at the instant of an impact.
+    pub h: f64,
+}
+
+/// What an impact does to velocities.
+#[derive(Debug, Clone, Copy)]
+pub struct ImpactLaw {
+    /// What the normal velocity gains away from the obstacle, m/s.
+    pub restitution: fn(&Hit) -> f64,
+    /// What the sliding speed loses, m/s, where the normal velocity gains so much.
+    pub friction: fn(&Hit, f64) -> f64,
+}
+
+impl ImpactLaw {
+    /// v_n' = -e v_n (Newton).
+    pub fn newton(hit: &Hit) -> f64 {
+        (1.0 + hit.restitution) * hit.approach
+    }
+
+    /// Coulomb's law for the impulses.
+    pub fn coulomb(hit: &Hit, gained: f64) -> f64 {
+        (hit.friction * gained).min(hit.sliding)
+    }
+
+    /// The right one.
+    pub const RIGHT: Self = Self {
+        restitution: Self::newton,
+        friction: Self::coulomb,
+    };
+
+    /// The change of velocity, m/s, of a particle beside an obstacle.
+    pub fn change(&self, beside: &Beside, surface: Surface, h: f64) -> [f64; 3] {
+        let sliding = beside.sliding();
+        let fast = norm(sliding);
+        let hit = Hit {
+            approach: -beside.parting(),
+            sliding: fast,
+            restitution: surface.restitution,
+            friction: surface.friction[0],
+            h,
+        };
+        let gained = (self.restitution)(&hit);
+        let slowed = (self.friction)(&hit, gained);
+        let mut change = beside.normal.map(|n| gained * n);
+        if slowed != 0.0 && fast > 0.0 {
+            for (change, along) in change.iter_mut().zip(sliding) {
+                *change -= slowed / fast * along;
+            }
+        }
+        change
+    }
+}
 
 /// The most passes over particles that press each other, or that several obstacles press.
 const PASSES: usize = 1000;
@@ -89,20 +153,11 @@ impl Obstacles {
             return Ok(false);
         }
         let surface = self.surface(beside.against);
-        let (e, friction) = (surface.restitution, surface.friction[0]);
-        let away = (1.0 + e) * speed;
         if let Some(rods) = rods {
-            return self.apply_on_rods(rods, &beside, [away, friction], state);
+            let away = (1.0 + surface.restitution) * speed;
+            return self.apply_on_rods(rods, &beside, [away, surface.friction[0]], state);
         }
-        let sliding = beside.sliding();
-        let fast = norm(sliding);
-        let slowed = (friction * away).min(fast);
-        let mut change = beside.normal.map(|n| away * n);
-        if slowed > 0.0 {
-            for (change, along) in change.iter_mut().zip(sliding) {
-                *change -= slowed / fast * along;
-            }
-        }
+        let change = self.law.change(&beside, surface, 0.0);
         let before = beside.velocity;
         self.push(&beside, change, &mut state.v);
         let impulse = change.map(|c| c / self.lightness(&beside));

@@ -9,6 +9,7 @@ mod member;
 mod near;
 
 pub use held::{Change, Held, MOST, TooManyTouch};
+pub use impact::{Hit, ImpactLaw};
 pub use near::Near;
 
 use super::ConstraintRow;
@@ -39,6 +40,7 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 #[derive(Debug)]
 pub struct Obstacles {
     obstacles: Vec<Obstacle>,
+    law: ImpactLaw,
     /// How particles collide with each other; None where they do not.
     among: Option<Among>,
     /// Of each particle, m.
@@ -56,7 +58,7 @@ pub struct Obstacles {
 }
 
 /// One obstacle.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Obstacle {
     /// Its index among the scene's colliders; a mesh is as many obstacles as it has triangles.
     collider: usize,
@@ -75,7 +77,7 @@ pub struct Surface {
 }
 
 /// Contact of particles with each other.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Among {
     surface: Surface,
     /// Pairs that springs or rods join, the smaller first, which do not collide.
@@ -206,6 +208,7 @@ impl Obstacles {
         }
         let mut all = Self {
             obstacles,
+            law: ImpactLaw::RIGHT,
             among,
             radii: scene.particles.iter().map(|p| p.radius).collect(),
             weights: scene.particles.iter().map(weight).collect(),
@@ -233,6 +236,26 @@ impl Obstacles {
         let fastest = scene.particles.iter().map(|p| norm(p.velocity));
         let h = scene.solver.timestep;
         size.max(h * (fastest.fold(0.0, f64::max) + h * norm(scene.gravity())))
+    }
+
+    /// The same with another law of impacts.
+    pub fn struck_by(&self, law: ImpactLaw) -> Self {
+        Self {
+            law,
+            ..self.copied()
+        }
+    }
+
+    /// The same, which remembers nothing of what was near.
+    pub fn copied(&self) -> Self {
+        Self {
+            obstacles: self.obstacles.clone(),
+            among: self.among.clone(),
+            radii: self.radii.clone(),
+            weights: self.weights.clone(),
+            broad: Mutex::default(),
+            ..*self
+        }
     }
 
     /// What may touch while each particle keeps within a ball, given by its centre and its radius, m, between two times: in
@@ -293,6 +316,11 @@ impl Obstacles {
             particles.map(move |particle| (particle, Against::Obstacle(obstacle)))
         };
         (0..self.obstacles.len()).flat_map(each)
+    }
+
+    /// The coefficients of all obstacles.
+    pub fn surfaces(&self) -> impl Iterator<Item = Surface> + '_ {
+        self.obstacles.iter().map(|one| one.surface)
     }
 
     /// Whether an obstacle moves; false of particles.

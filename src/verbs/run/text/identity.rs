@@ -46,7 +46,42 @@ pub fn sentence(outcome: &Outcome) -> Option<String> {
             )
         }
     };
+    let text = format!("{text}{}", at_contact(found));
     (!itself).then_some(text)
+}
+
+/// What it does at contact, as a clause; empty where that is an impulse at the impact.
+fn at_contact(found: &Identity) -> String {
+    let Some(contact) = &found.contact else {
+        return String::new();
+    };
+    if contact.treatment.is_none() {
+        return "; what it does at contact is no known treatment".to_owned();
+    }
+    if contact.says.is_empty() {
+        return String::new();
+    }
+    let mut numbers = Vec::new();
+    if let (Some(stiffness), Some(damping)) = (contact.stiffness_n_m, contact.damping_n_s_m) {
+        numbers.push(format!("{} N/m", words::short(stiffness)));
+        numbers.push(format!("{} N s/m", words::short(damping)));
+    }
+    if contact.deepest_m > 0.0 {
+        numbers.push(format!("{} m deep", words::short(contact.deepest_m)));
+    }
+    let numbers = match numbers.is_empty() {
+        true => String::new(),
+        false => format!(": {}", numbers.join(", ")),
+    };
+    let others = match contact.equivalent.as_slice() {
+        [] => String::new(),
+        others => format!(
+            " (these steps do not tell it from {})",
+            listed_names(others)
+        ),
+    };
+    let says = words::one_line(&contact.says);
+    format!("; at contact it {says}{numbers}{others}")
 }
 
 /// `0.3 % of what a step moves`.
@@ -186,7 +221,8 @@ pub fn verdict(report: &Report) -> Option<String> {
             .says
             .as_ref()
             .map_or(String::new(), |says| format!(": {says}"));
-        return Some(match found.undecided {
+        let contact = at_contact(found);
+        let text = match found.undecided {
             None => format!("{name} follows {scheme} throughout{says}"),
             Some(Undecided::SameMap) => {
                 let same = listed_names(&found.equivalent);
@@ -197,9 +233,16 @@ pub fn verdict(report: &Report) -> Option<String> {
                 format!("{name} follows {scheme}{says}; the data cannot tell it from {others}")
             }
             Some(Undecided::Near) => format!("{name} is nearly {scheme}: off by {}", share(found)),
-        });
+        };
+        return Some(format!("{text}{contact}"));
     };
     let (step, says) = (fault.step, words::one_line(&fault.explanation));
+    let contact = found.contact.as_ref();
+    if contact.is_some_and(|contact| !contact.mistakes.is_empty()) {
+        return Some(format!(
+            "{name} is {scheme}, but {says}, first in step {step}"
+        ));
+    }
     Some(match found.undecided {
         Some(Undecided::Near) => format!("{name}, step {step}: {says}"),
         _ if !mistake => format!("{name} is {scheme} but for step {step}: {says}"),

@@ -1,0 +1,249 @@
+//! The tables of what programs do at contact. The first row of each is right.
+
+use super::{Bounce, Free, Friction, Lift, Restitution, Row, Stepped, Way};
+use crate::physics::State;
+use crate::physics::constraints::contact::{Hit, ImpactLaw, Obstacles};
+use crate::vector::axpy;
+
+const fn row<T>(id: &'static str, does: T, says: &'static str) -> Row<T> {
+    Row {
+        id,
+        says,
+        mistake: false,
+        does,
+    }
+}
+
+const fn mistake<T>(id: &'static str, does: T, says: &'static str) -> Row<T> {
+    Row {
+        id,
+        says,
+        mistake: true,
+        does,
+    }
+}
+
+/// When, and by what.
+pub static WAYS: &[Row<Way>] = &[
+    row("impulse", Way::Event, ""),
+    row(
+        "flip_at_end",
+        Way::Once(at_end),
+        "reverses the velocity at the end of the step, instead of by an impulse at the impact",
+    ),
+    row(
+        "flip_at_start",
+        Way::Once(at_start),
+        "reverses the velocity at the start of the next step, instead of by an impulse at the impact",
+    ),
+    row(
+        "flip_after_kick",
+        Way::Once(after_kick),
+        "reverses the velocity of the next step between its kick and its drift, instead of by an impulse at the impact",
+    ),
+    row(
+        "flip_before_kick",
+        Way::Once(before_kick),
+        "reverses the velocity in place of the kick of the next step, whose force it leaves out, instead of by an impulse \
+         at the impact",
+    ),
+    row(
+        "penalty",
+        Way::Force { pulls: true },
+        "pushes out what is inside by a spring and a damper, which may pull, instead of an impulse at the impact",
+    ),
+    row(
+        "penalty_without_pull",
+        Way::Force { pulls: false },
+        "pushes out what is inside by a spring and a damper, which never pull, instead of an impulse at the impact",
+    ),
+    mistake(
+        "obstacles_forgotten",
+        Way::Never,
+        "does nothing: test every particle against every obstacle in each step",
+    ),
+];
+
+/// Where what is inside is put.
+pub static PLACES: &[Row<Lift>] = &[
+    row("left", |_, _| 0.0, ""),
+    row(
+        "clamped",
+        |gap, _| -gap,
+        "puts what is inside on the surface",
+    ),
+    row(
+        "mirrored",
+        |gap, _| -2.0 * gap,
+        "puts what is inside as far outside",
+    ),
+    row(
+        "mirrored_by_e",
+        |gap, e| -(1.0 + e) * gap,
+        "puts what is inside e times as far outside",
+    ),
+];
+
+const fn rebound(gains: fn(&Hit) -> f64) -> Restitution {
+    Restitution {
+        gains,
+        leaving: false,
+    }
+}
+
+/// What the normal velocity becomes.
+pub static RESTITUTIONS: &[Row<Restitution>] = &[
+    row("newton", rebound(ImpactLaw::newton), ""),
+    mistake(
+        "restitution_as_one",
+        rebound(|hit| 2.0 * hit.approach),
+        "leaves restitution out, as if e were 1: the normal velocity becomes -e times what it was",
+    ),
+    mistake(
+        "restitution_as_zero",
+        rebound(|hit| hit.approach),
+        "leaves restitution out, as if e were 0: the normal velocity becomes -e times what it was",
+    ),
+    mistake(
+        "velocity_kept",
+        rebound(|_| 0.0),
+        "leaves the velocity as it is: turn its normal part round as well, or it grows without end",
+    ),
+    mistake(
+        "normal_reversed",
+        rebound(|hit| -ImpactLaw::newton(hit)),
+        "has the impulse with the wrong sign: it acts along the normal from the obstacle to the particle",
+    ),
+    mistake(
+        "leaving_reversed",
+        Restitution {
+            gains: ImpactLaw::newton,
+            leaving: true,
+        },
+        "reverses the velocity of what already leaves, too: reverse it only where it leads into the obstacle",
+    ),
+];
+
+/// What the sliding velocity loses.
+pub static FRICTIONS: &[Row<Friction>] = &[
+    row("coulomb", ImpactLaw::coulomb, ""),
+    row(
+        "friction_of_compression",
+        |hit, _| (hit.friction * hit.approach.max(0.0)).min(hit.sliding),
+        "takes µ V off the sliding speed, V the normal speed, and not µ (1 + e) V",
+    ),
+    mistake(
+        "friction_forgotten",
+        |_, _| 0.0,
+        "has no friction: take min(µ (1 + e) V, v_t) off the sliding speed, V the normal speed",
+    ),
+    mistake(
+        "friction_unbounded",
+        |hit, gained| hit.friction * gained,
+        "lets friction turn the sliding round: it takes no more than the sliding speed",
+    ),
+    mistake(
+        "friction_as_factor",
+        |hit, _| hit.friction.min(1.0) * hit.sliding,
+        "multiplies the sliding velocity by 1 - µ: friction is µ times the normal impulse, however fast it slides",
+    ),
+    mistake(
+        "friction_as_factor_of_step",
+        |hit, _| (hit.friction * hit.h).min(1.0) * hit.sliding,
+        "multiplies the sliding velocity by 1 - µ h: friction is µ times the normal impulse, however fast it slides",
+    ),
+    mistake(
+        "restitution_of_whole_velocity",
+        |hit, _| (1.0 - hit.restitution) * hit.sliding,
+        "applies restitution to the whole velocity: e belongs to the normal part alone",
+    ),
+    mistake(
+        "whole_velocity_reversed",
+        |hit, _| (1.0 + hit.restitution) * hit.sliding,
+        "reverses the whole velocity: reverse its normal part alone",
+    ),
+];
+
+/// Every row that is not right in all respects: id, what it does after "at contact it", and whether it is a mistake.
+pub fn treatments() -> impl Iterator<Item = (&'static str, &'static str, bool)> {
+    fn of<T>(table: &'static [Row<T>]) -> impl Iterator<Item = (&'static str, &'static str, bool)> {
+        let said = table.iter().filter(|row| !row.says.is_empty());
+        said.map(|row| (row.id, row.says, row.mistake))
+    }
+    of(WAYS)
+        .chain(of(PLACES))
+        .chain(of(RESTITUTIONS))
+        .chain(of(FRICTIONS))
+}
+
+/// Inside and approaching at the end.
+fn at_end(
+    bounce: &Bounce,
+    obstacles: &Obstacles,
+    h: f64,
+    state: &mut State,
+    free: &mut Free,
+) -> Stepped {
+    let end = state.t + h;
+    free(state)?;
+    state.t = end;
+    bounce.meet(obstacles, h, state);
+    Ok(())
+}
+
+/// Inside and approaching at the start.
+fn at_start(
+    bounce: &Bounce,
+    obstacles: &Obstacles,
+    h: f64,
+    state: &mut State,
+    free: &mut Free,
+) -> Stepped {
+    bounce.meet(obstacles, h, state);
+    free(state)
+}
+
+/// Inside at the start and approaching after the kick: v1 = v0 + h a, turned, x1 = x0 + h v1.
+fn after_kick(
+    bounce: &Bounce,
+    obstacles: &Obstacles,
+    h: f64,
+    state: &mut State,
+    free: &mut Free,
+) -> Stepped {
+    let start = state.clone();
+    free(state)?;
+    let mut kicked = State {
+        v: state.v.clone(),
+        ..start.clone()
+    };
+    bounce.meet(obstacles, h, &mut kicked);
+    for at in 0..state.x.len() {
+        let moved = kicked.x[at] - start.x[at];
+        let turned = kicked.v[at] - state.v[at];
+        state.x[at] += moved + h * turned;
+        state.v[at] = kicked.v[at];
+    }
+    Ok(())
+}
+
+/// Inside and approaching at the start: turned, and no force, x1 = x0 + h v1; else the free step (SimBenchmark's ODE).
+fn before_kick(
+    bounce: &Bounce,
+    obstacles: &Obstacles,
+    h: f64,
+    state: &mut State,
+    free: &mut Free,
+) -> Stepped {
+    let mut turned = state.clone();
+    let met = bounce.meet(obstacles, h, &mut turned);
+    free(state)?;
+    for particle in met {
+        let own = 3 * particle..3 * particle + 3;
+        let v = &turned.v[own.clone()];
+        state.v[own.clone()].copy_from_slice(v);
+        state.x[own.clone()].copy_from_slice(&turned.x[own.clone()]);
+        axpy(&mut state.x[own], h, v);
+    }
+    Ok(())
+}
