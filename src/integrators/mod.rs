@@ -220,21 +220,25 @@ impl Method {
     /// An explicit kick's errors in the forces of rods lie across them, where a projection takes them away: with it a
     /// composition keeps its order, without it has that of dampers.
     ///
-    /// On obstacles that bend, methods that take no rods slide on the plane that touches them, which is of order 1.
+    /// On obstacles that bend, methods that take no rods slide on the plane that touches them, and are moved back as by
+    /// RATTLE, which is of order 2.
     pub fn order_on<S: System + ?Sized>(&self, system: &S) -> u32 {
         let bends = system.obstacles().is_some_and(Obstacles::bend);
-        if bends && !self.takes().has(ForceKinds::CONSTRAINED) {
-            return 1;
-        }
+        let most = if bends && !self.takes().has(ForceKinds::CONSTRAINED) {
+            2
+        } else {
+            u32::MAX
+        };
         let (kinds, rods) = (system.kinds(), system.rods());
         let of = self.under(kinds);
         let kicks = matches!(self.coefficients, Coefficients::Composition(..));
         let projected = rods.is_none_or(|rods| rods.stabilisation() == Stabilisation::Project);
-        if kinds.depends_on_velocity() || (kicks && !projected) {
+        let own = if kinds.depends_on_velocity() || (kicks && !projected) {
             of.order_damped
         } else {
             of.order
-        }
+        };
+        own.min(most)
     }
 
     /// The adaptive pair; None for a method of fixed steps.

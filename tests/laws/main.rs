@@ -6,6 +6,7 @@
 mod adaptive;
 mod bending;
 mod coincidence;
+mod collisions;
 mod conformance;
 mod contact;
 mod damping_flow;

@@ -171,7 +171,7 @@ impl Walk<'_> {
                 // It would rise by less than is seen.
                 let down = -obstacles.opening(&beside, state.t, &a);
                 let high = parting * parting / (2.0 * down);
-                if parting < beside.slow || (down > 0.0 && high < obstacles.lowest()) {
+                if parting < beside.slow || (down > 0.0 && high < obstacles.lowest(&beside)) {
                     obstacles.rest(rods, &beside, state)?;
                     changed |= parting > beside.slow && obstacles.among_particles();
                 }

@@ -14,6 +14,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// Rows that depend on others to this part add no direction.
 const DEPENDENT: f64 = 1e-9;
+/// Forces below this part of the largest are none.
+const NONE: f64 = 1e-12;
 /// Newton's steps onto surfaces and rods.
 const ITERATIONS: usize = 50;
 
@@ -498,8 +500,15 @@ impl Group {
     }
 
     /// Moves a state back onto surfaces and rods along the directions from before, `h` seconds ago, and its velocities
-    /// along them.
-    pub fn project(&self, obstacles: &Obstacles, rods: Option<&Rods>, h: f64, state: &mut State) {
+    /// along them. `begins` are the accelerations then without contacts and rods, m/s²: half a step of what these held back
+    /// belongs to the directions of now, as in RATTLE.
+    pub fn project(
+        &self,
+        obstacles: &Obstacles,
+        rods: Option<&Rods>,
+        (h, begins): (f64, &[f64]),
+        state: &mut State,
+    ) {
         let normals: Vec<usize> = (0..self.rows.of.len())
             .filter(|row| self.rows.of[*row].1 == self.links[self.rows.of[*row].0].normal)
             .collect();
@@ -525,6 +534,9 @@ impl Group {
         }
         if h > 0.0 {
             self.add(&moved, 1.0 / h, &mut state.v);
+            let given = self.axes.rows(0, self.given);
+            let held = given.tr_mul(&(given * self.gather(begins)));
+            self.add(&held, 0.5 * h, &mut state.v);
         }
         let links = self.now(obstacles, rods, state);
         let rows = Rows::new(&plain(&links), &self.scales);
@@ -647,7 +659,7 @@ fn pressing(
         let contacts = || (0..now.len()).filter(contact);
         let pulls = contacts()
             .map(|at| (pressed(&rows, &multipliers, at).0, at))
-            .filter(|(pressed, _)| *pressed <= 0.0)
+            .filter(|(pressed, _)| *pressed <= NONE * a.amax())
             .fold(None, least);
         if let Some((_, at)) = pulls {
             taken[set[at]] = false;
@@ -693,7 +705,7 @@ fn pressing(
                 let opening = (&one.kept * &moved)[0] - right[0];
                 (opening, at)
             })
-            .filter(|(opening, _)| *opening < -1e-12 * a.amax())
+            .filter(|(opening, _)| *opening < -NONE * a.amax())
             .fold(None, least);
         let Some((_, at)) = into else { break };
         taken[at] = true;

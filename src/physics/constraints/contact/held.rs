@@ -22,6 +22,8 @@ use crate::physics::{
     Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, State, System, Triplets,
 };
 
+use std::collections::BTreeMap;
+
 /// Particles that stay in contact from one instant on, and the system they are part of.
 pub struct Held<'s> {
     system: &'s dyn System,
@@ -136,12 +138,13 @@ impl<'s> Held<'s> {
         let mut state = own.clone();
         self.turn_back(&mut state.x);
         self.turn_back(&mut state.v);
-        for member in &self.members {
-            member.project(self.obstacles, &mut state);
-        }
         let (rods, h) = (self.system.rods(), state.t - self.since);
+        for member in &self.members {
+            let begins = three(&self.begins, member.particle);
+            member.project(self.obstacles, (h, begins), &mut state);
+        }
         for group in &self.groups {
-            group.project(self.obstacles, rods, h, &mut state);
+            group.project(self.obstacles, rods, (h, &self.begins), &mut state);
         }
         state
     }
@@ -393,24 +396,41 @@ impl<'s> Held<'s> {
         self.groups.iter().find(has)
     }
 
-    /// The entries of a Jacobian in the particles' own axes.
+    /// The entries of a Jacobian in the particles' own axes: those between two particles are summed before they are turned.
     fn turned(&self, entries: &Triplets, exact: bool, out: &mut Triplets) {
+        let mut blocks: BTreeMap<[usize; 2], [[f64; 3]; 3]> = BTreeMap::new();
         for &(row, column, value) in entries {
-            let rows = match (self.member(row / 3), self.group(row / 3)) {
+            blocks.entry([row / 3, column / 3]).or_default()[row % 3][column % 3] += value;
+        }
+        let three = |particle: usize, own: &dyn Fn(usize) -> Vec<(usize, f64)>| {
+            [0, 1, 2].map(|axis| own(3 * particle + axis))
+        };
+        for ([from, to], block) in blocks {
+            let rows = three(from, &|row| match (self.member(from), self.group(from)) {
                 (Some(member), _) => member.rows(row, exact && self.friction),
                 (_, Some(group)) => group.rows(row, exact),
                 _ => vec![(row, 1.0)],
-            };
-            let columns = match (self.member(column / 3), self.group(column / 3)) {
+            });
+            let columns = three(to, &|column| match (self.member(to), self.group(to)) {
                 (Some(member), _) => member.columns(column),
                 (_, Some(group)) => group.columns(column),
                 _ => vec![(column, 1.0)],
-            };
-            for (row, by) in &rows {
-                for (column, along) in &columns {
-                    out.push((*row, *column, by * along * value));
+            });
+            // A row of its own is reached from all three axes of space.
+            let mut sums: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+            for (rows, block) in rows.iter().zip(block) {
+                for (columns, value) in columns.iter().zip(block) {
+                    for (row, by) in rows {
+                        for (column, along) in columns {
+                            *sums.entry((*row, *column)).or_default() += by * along * value;
+                        }
+                    }
                 }
             }
+            out.extend(
+                sums.into_iter()
+                    .map(|((row, column), value)| (row, column, value)),
+            );
         }
     }
 }
@@ -473,7 +493,7 @@ fn sets(count: usize, pairs: &[[usize; 2]], alone: impl Iterator<Item = usize>) 
         let (i, j) = (find(&mut root, *i), find(&mut root, *j));
         root[i.max(j)] = i.min(j);
     }
-    let mut sets: std::collections::BTreeMap<usize, Vec<usize>> = Default::default();
+    let mut sets: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for at in (0..count).filter(|at| within[*at]) {
         sets.entry(find(&mut root, at)).or_default().push(at);
     }

@@ -51,8 +51,8 @@ pub struct Obstacles {
     close: f64,
     /// What would rise by less, m, stays.
     lowest: f64,
-    /// Normal velocities within this are none, m/s: in a step they open no gap that is seen.
-    slow: f64,
+    /// The scene's step, s: normal velocities that open no gap that is seen in it are none.
+    step: f64,
     /// What is near what. It changes no number.
     broad: Mutex<Broad>,
 }
@@ -214,12 +214,11 @@ impl Obstacles {
             weights: scene.particles.iter().map(weight).collect(),
             close: 0.0,
             lowest: 0.0,
-            slow: 0.0,
+            step: scene.solver.timestep,
             broad: Mutex::default(),
         };
         let size = all.size(scene);
         (all.close, all.lowest) = (TOUCHING * size, LOWEST * size);
-        all.slow = all.close / scene.solver.timestep;
         Some(all)
     }
 
@@ -298,9 +297,9 @@ impl Obstacles {
         }
     }
 
-    /// What would rise by less than this, m, stays.
-    pub fn lowest(&self) -> f64 {
-        self.lowest
+    /// What would rise by less than this, m, stays: less than is seen.
+    pub fn lowest(&self, beside: &Beside) -> f64 {
+        self.lowest.max(2.0 * beside.close)
     }
 
     /// Whether surfaces of obstacles bend on which a particle may slide.
@@ -392,6 +391,7 @@ impl Obstacles {
         } else {
             [0.0, 0.0, 1.0]
         };
+        let close = self.close(place).max(self.close(there));
         Beside {
             particle,
             against,
@@ -399,8 +399,8 @@ impl Obstacles {
             normal,
             bend: Bend::Point(apart),
             velocity: minus(velocity, along),
-            close: self.close(place).max(self.close(there)),
-            slow: self.slow + SLOW * norm(velocity).max(norm(along)),
+            close,
+            slow: close / self.step + SLOW * norm(velocity).max(norm(along)),
         }
     }
 
@@ -417,6 +417,7 @@ impl Obstacles {
         let [moved, along, _] = one.moved(t);
         let near = one.shape.nearest(minus(place, moved));
         let speed = norm(velocity).max(norm(along));
+        let close = self.close(place);
         Beside {
             particle,
             against: Against::Obstacle(obstacle),
@@ -424,8 +425,8 @@ impl Obstacles {
             normal: near.normal,
             bend: near.bend,
             velocity: minus(velocity, along),
-            close: self.close(place),
-            slow: self.slow + SLOW * speed,
+            close,
+            slow: close / self.step + SLOW * speed,
         }
     }
 
