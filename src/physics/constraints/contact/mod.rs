@@ -29,6 +29,8 @@ pub(super) const ROW: ConstraintRow = ConstraintRow {
 
 /// Gaps within this part of the scene's size are contact: the end of a step that was cut is no nearer.
 const TOUCHING: f64 = 1e-13;
+/// A gap that a report calls closed is within this part.
+const CLOSED: f64 = 1e-9;
 /// A bounce of less than this part of the scene's size is the last of a row.
 const LOWEST: f64 = 1e-11;
 /// Normal velocities within this part of the speed are none.
@@ -295,6 +297,23 @@ impl Obstacles {
             Against::Particle(other) => {
                 norm(minus(at(particle), at(other))) - (own + self.radii[other])
             }
+        }
+    }
+
+    /// What a report calls touching, m: a billionth of the scene's size. Not to be confused with [`close`](Self::close), at
+    /// which there are impacts.
+    pub fn closed(&self) -> f64 {
+        self.close / TOUCHING * CLOSED
+    }
+
+    /// In words: `collider 0 (plane)` or `particle 1`.
+    pub fn name(&self, against: Against) -> String {
+        match against {
+            Against::Obstacle(at) => {
+                let one = &self.obstacles[at];
+                format!("collider {} ({})", one.collider, one.shape.name())
+            }
+            Against::Particle(other) => format!("particle {other}"),
         }
     }
 
