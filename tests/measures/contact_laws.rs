@@ -5,7 +5,7 @@ use springcheck::integrators;
 use springcheck::measure::{Contact, Laws, Residual};
 use springcheck::physics::{ParticleSystem, Work};
 use springcheck::scene::Scene;
-use springcheck::solvers::{self, SolverKind};
+use springcheck::solvers;
 use springcheck::trajectory::{Precision, Rows, Trajectory};
 use springcheck::verbs::run::{Choice, Plan};
 use springcheck::verbs::session::Quiet;
@@ -245,10 +245,10 @@ fn what_is_inside_what_is_said() {
     assert_eq!(real.inside.as_deref(), Some("collider 0 (plane)"));
 }
 
-/// Every method, rapier and its twin keep the laws as far as forces between two rows let tell; and where these are constant,
-/// to rounding: sliding and friction all of them, bounces those of order 2 (8 roundings of 1 m a step over 0.01 s and 2 m/s).
-/// Those of order 1 see an impact from θ a h/2 beside its place, 2 (1 + e) (a h/V)²/4 (measured: a third of that). rapier's
-/// friction is within the cone, and it adds no energy. Mutant: µ of the cone times 1 + e less (`corner`).
+/// Every method, rapier and its twin keep the laws as far as forces between two rows let tell. Sliding under constant forces
+/// is right to rounding (measured: 3e-14). A bounce is found to 1e-12 of h: (1 + e) a h 1e-12/V = 6e-14, V = 2.8 m/s at the
+/// third. Methods of order 1 have it up to a h²/2V apart: (1 + e) (a h/V)²/2 = 1.1e-3. rapier takes the velocity at the start
+/// of a step: a h/V = 0.036.
 #[test]
 fn every_method_keeps_the_laws() {
     let scenes = [
@@ -286,9 +286,7 @@ fn every_method_keeps_the_laws() {
                 laws.energy_gain,
             ];
             let broken = all.iter().flatten().any(Residual::broken);
-            // Where the surface bends, what keeps to its plane adds a little.
-            let known = name == "off_a_ball" && outcome.kind == SolverKind::Integrator;
-            assert!(!broken || known, "{name} {}: {all:#?}", outcome.engine);
+            assert!(!broken, "{name} {}: {all:#?}", outcome.engine);
             if matches!(name, "belt" | "incline") {
                 assert!(
                     judged(laws.sliding_friction).off < 1e-13,
@@ -299,7 +297,7 @@ fn every_method_keeps_the_laws() {
             if name == "bouncing" {
                 let order = integrators::find(&outcome.engine).map(|method| method.order);
                 let bound = match order {
-                    Some(1) => 1.5e-3,
+                    Some(1) => 1.2e-3,
                     Some(_) => 1e-13,
                     None => 0.04,
                 };
