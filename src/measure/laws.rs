@@ -170,11 +170,9 @@ impl Laws {
         let told = (!inside(first) || k > 0 && pair.free(seen, k - 1))
             && (!inside(second) || pair.free(seen, k + 1));
         let elsewhere = others.iter().any(|other| pair.touches(*other, theta));
-        if !(speed > 0.0 && disturbed <= UNDISTURBED * speed && parts >= -(a * h + pair.off_v))
-            || !free
-            || !told
-            || elsewhere
-        {
+        let turns = speed > 0.0 && parts >= -(a * h + pair.off_v);
+        let clear = disturbed <= UNDISTURBED * speed;
+        if !turns || !clear || !free || !told || elsewhere {
             return false;
         }
         let normal = parts + speed;

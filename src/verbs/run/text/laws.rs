@@ -85,7 +85,8 @@ pub fn summary(contact: &Contact) -> Vec<String> {
     let mut all = sentences(contact);
     let broken = laws.iter().flatten().map(Residual::broken);
     let missed: Vec<String> = (all.iter().zip(broken))
-        .filter_map(|(text, broken)| broken.then(|| text.clone()))
+        .filter(|(_, broken)| *broken)
+        .map(|(text, _)| text.clone())
         .collect();
     if missed.is_empty() {
         all.truncate(1);
