@@ -70,6 +70,19 @@ impl Bend {
 }
 
 impl Shape {
+    /// The word for it in a scene.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Plane { .. } => "plane",
+            Self::Round { core, .. } => match core {
+                Core::Point(_) => "ball",
+                Core::Segment(_) => "capsule",
+            },
+            Self::Block { .. } => "box",
+            Self::Triangle(_) => "mesh",
+        }
+    }
+
     /// A box of these half extents about a centre, m, turned by a rotation vector, rad.
     pub fn block(center: [f64; 3], half: [f64; 3], rotation: [f64; 3]) -> Self {
         let rotation = Rotation::from_scaled_axis(Vector::from(rotation));

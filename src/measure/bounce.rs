@@ -17,6 +17,8 @@ pub struct Bounce {
     pub particle: usize,
     /// e of the obstacle.
     pub restitution: f64,
+    /// Of the obstacle.
+    pub normal: [f64; 3],
     /// The start of the step, s.
     pub t: f64,
     /// V, the speed towards the obstacle there, m/s.
@@ -58,6 +60,7 @@ impl Bounce {
                 (restitution > 0.0 && turned).then_some(Self {
                     particle,
                     restitution,
+                    normal: old.normal,
                     t: before.t,
                     speed,
                     gaps: [old.gap, new.gap],

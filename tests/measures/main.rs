@@ -3,6 +3,7 @@
 //!
 //! A new measure, explanation or expectation belongs here, as long as it is asked through the library.
 
+mod contact_laws;
 mod cost;
 mod definitions;
 mod distances;

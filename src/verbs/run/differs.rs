@@ -4,7 +4,7 @@ use crate::integrators::Softness;
 use crate::measure::Bounce;
 use crate::physics::constraints::contact::Obstacles;
 use crate::physics::{ParticleSystem, System};
-use crate::report::words::short;
+use crate::report::words::{quantity, short};
 use crate::scene::{Collider, Scene};
 use crate::trajectory::Trajectory;
 
@@ -20,7 +20,9 @@ pub fn differs(scene: &Scene, system: &ParticleSystem, run: &Trajectory, h: f64)
     let rubs = |one: &&Collider| one.friction > 0.0 && one.restitution > 0.0;
     if let Some(one) = scene.colliders.iter().find(rubs) {
         differs.push(format!(
-            "Friction of an impact sees its compression alone: at most µ V, as if µ were µ/(1 + e) = {}.",
+            "An impact has only {:.0} % of the friction it should have, at most. It takes µ V off the sliding speed and not \
+             µ (1 + e) V, as if µ were µ/(1 + e) = {}.",
+            100.0 / (1.0 + one.restitution),
             short(one.friction / (1.0 + one.restitution))
         ));
     }
@@ -39,21 +41,37 @@ fn bounces(
     run: &Trajectory,
     h: f64,
 ) -> String {
-    let once = "Restitution acts once a step, with the velocity at its start";
     let constant = system.effects().iter().all(|(row, _)| row.constant);
     let flat = scene.colliders.iter().all(|one| one.plane.is_some());
     let bounce = Bounce::first(obstacles, run, h).filter(|_| constant && flat);
     let Some(bounce) = bounce else {
-        return format!("{once}.");
+        return "A bounce may be lower or higher than e² of the height before. Restitution acts once a step, with the \
+                velocity at its start."
+            .to_owned();
     };
     let e = bounce.restitution;
     let [before, after] = bounce.gaps;
+    let gravity = scene.gravity();
+    let g = -(0..3).map(|c| bounce.normal[c] * gravity[c]).sum::<f64>();
+    // Of the height that it should rise to, e² V²/2g.
+    let share = 200.0 * bounce.lost() * g / (e * bounce.speed).powi(2);
+    let share = if g > 0.0 && share.is_finite() {
+        format!(" ({} %)", quantity(share.abs()))
+    } else {
+        String::new()
+    };
+    let way = if bounce.lost() < 0.0 {
+        "higher"
+    } else {
+        "lower"
+    };
     format!(
-        "{once}: the bounce of particle {} at {} s rises {} m less than e² of the height before. That is e (1 + e)/2 V h = {} \
-         m, with V = {} m/s and h = {} s, and e² d0 - d1 = {} m, from the gaps d0 before that step and d1 after it.",
+        "The bounce of particle {} at {} s is {} mm{share} {way} than e² of the height before, since restitution acts once a \
+         step, with the velocity at its start. That is e (1 + e)/2 V h = {} m, with V = {} m/s and h = {} s, and \
+         e² d0 - d1 = {} m, from the gaps d0 before that step and d1 after it.",
         bounce.particle,
         short(bounce.t),
-        short(bounce.lost()),
+        quantity(1e3 * bounce.lost().abs()),
         short(0.5 * e * (1.0 + e) * bounce.speed * h),
         short(bounce.speed),
         short(h),
@@ -83,9 +101,9 @@ fn depth(scene: &Scene, moves: bool, h: f64) -> Option<String> {
     };
     (g > 0.0).then(|| {
         format!(
-            "It is soft: against what {what} a spring of w = 2 π {hertz} Hz, so that what rests is N/(m w²) inside, {} m under \
-             this gravity, to where it sinks with a time constant of {} s.",
-            short(g / (w * w)),
+            "What rests on what {what} is {} mm inside; it sinks there in about {} s. Contact is a spring of w = 2 π {hertz} Hz: \
+             N/(m w²) under this gravity.",
+            quantity(1e3 * g / (w * w)),
             short(soft.settles_in(h)),
         )
     })

@@ -5,7 +5,6 @@ use super::record::Record;
 use super::truths::Truths;
 use super::{budget, differs, identity, remarks};
 use crate::measure::{self, Contact, Deviation, Energy, EnergySeries, Statics, Strain, TOLERANCE};
-use crate::physics::System;
 use crate::solvers::{SolverKind, Status};
 use crate::trajectory::Trajectory;
 use crate::verbs::run::{Outcome, WorkSummary};
@@ -59,20 +58,17 @@ pub fn all(
             energy: series.as_ref().map(judged),
             rods: trajectory.and_then(|run| measure::constrained(&plan.system, run)),
             momentum: trajectory.and_then(|run| measure::momentum(plan.scene, &plan.system, run)),
-            contact: trajectory
-                .zip(plan.system.obstacles())
-                .and_then(|(run, obstacles)| {
-                    let corrected = record.counts.corrections;
-                    let contact = Contact::of(obstacles, plan.scene.size(), run, corrected)?;
-                    let rapier = case.solver.kind == SolverKind::Rapier;
-                    let substep = timestep / f64::from(case.solver.substeps);
-                    let own =
-                        rapier.then(|| differs::differs(plan.scene, &plan.system, run, substep));
-                    Some(Contact {
-                        differs: own.unwrap_or_default(),
-                        ..contact
-                    })
-                }),
+            contact: trajectory.and_then(|run| {
+                let corrected = record.counts.corrections;
+                let contact = Contact::of(&plan.system, run, corrected)?;
+                let rapier = case.solver.kind == SolverKind::Rapier;
+                let substep = timestep / f64::from(case.solver.substeps);
+                let own = rapier.then(|| differs::differs(plan.scene, &plan.system, run, substep));
+                Some(Contact {
+                    differs: own.unwrap_or_default(),
+                    ..contact
+                })
+            }),
             strain: trajectory
                 .and_then(|run| Strain::of(plan.scene, run, record.counts.corrections)),
             loads: statics

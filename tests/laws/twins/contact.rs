@@ -113,7 +113,7 @@ fn a_report_says_where_rapiers_contact_differs() {
     };
     assert!(once.contains("e (1 + e)/2 V h = "), "{once}");
     assert!(
-        soft.contains("60 Hz") && soft.contains("6.9e-5 m"),
+        soft.contains("60 Hz") && soft.contains(" 0.069 mm inside"),
         "{soft}"
     );
     let belt = differs("belt", |_| ());
@@ -121,7 +121,7 @@ fn a_report_says_where_rapiers_contact_differs() {
         panic!("{belt:?}")
     };
     assert!(
-        soft.contains("30 Hz") && soft.contains("2.76e-4 m"),
+        soft.contains("30 Hz") && soft.contains(" 0.276 mm inside"),
         "{soft}"
     );
     let rough = differs("bouncing", |scene| {

@@ -67,7 +67,7 @@ fn leaves(path: &str, value: &Value, found: &mut BTreeMap<String, Value>) {
 }
 
 /// Momentum is kept, everybody is a reference, and there is a truth; once more with a strain limit, a pendulum whose rod
-/// drifts, and a ball that bounces.
+/// drifts, a ball that bounces, and a block on a belt.
 fn everything() -> BTreeMap<String, Value> {
     let mut scene = free_triangle(0.0, DampingModel::Axial);
     scene.duration = 1.0;
@@ -83,12 +83,15 @@ fn everything() -> BTreeMap<String, Value> {
     let bouncing = shipped("contact/bouncing.yml");
     let mut contact = Choice::default_for(&bouncing);
     contact.solvers.extend(solvers::find("rapier_contact"));
+    let belt = shipped("contact/belt.yml");
+    let sliding = Choice::default_for(&belt);
     let mut found = BTreeMap::new();
     for report in [
         run(&scene, &choice),
         run(&limited, &choice),
         run(&drifting, &rods),
         run(&bouncing, &contact),
+        run(&belt, &sliding),
     ] {
         for outcome in report.outcomes() {
             let value = serde_json::to_value(outcome).expect("JSON");

@@ -17,7 +17,6 @@ use crate::physics::State;
 use crate::scene::{Collider, Drive, Scene};
 use crate::shape::{Bend, Shape};
 use near::Broad;
-use std::collections::HashSet;
 use std::sync::{Arc, Mutex, PoisonError};
 
 pub(super) const ROW: ConstraintRow = ConstraintRow {
@@ -29,6 +28,8 @@ pub(super) const ROW: ConstraintRow = ConstraintRow {
 
 /// Gaps within this part of the scene's size are contact: the end of a step that was cut is no nearer.
 const TOUCHING: f64 = 1e-13;
+/// A gap that a report calls closed is within this part.
+const CLOSED: f64 = 1e-9;
 /// A bounce of less than this part of the scene's size is the last of a row.
 const LOWEST: f64 = 1e-11;
 /// Normal velocities within this part of the speed are none.
@@ -42,7 +43,9 @@ pub struct Obstacles {
     obstacles: Vec<Obstacle>,
     law: ImpactLaw,
     /// How particles collide with each other; None where they do not.
-    among: Option<Among>,
+    among: Option<Surface>,
+    /// Of each particle, those that springs or rods join to it, ascending: they do not collide.
+    joined: Vec<Vec<usize>>,
     /// Of each particle, m.
     radii: Vec<f64>,
     /// Of each particle, 1/kg; 0 where it is fixed, and does not collide.
@@ -74,14 +77,6 @@ pub struct Surface {
     pub restitution: f64,
     /// µ of what slides, and of what sticks.
     pub friction: [f64; 2],
-}
-
-/// Contact of particles with each other.
-#[derive(Debug, Clone)]
-struct Among {
-    surface: Surface,
-    /// Pairs that springs or rods join, the smaller first, which do not collide.
-    joined: HashSet<[usize; 2]>,
 }
 
 /// What a particle collides with.
@@ -182,34 +177,34 @@ impl Obstacle {
     }
 }
 
-impl Among {
-    /// None where particles do not collide with each other.
-    fn new(scene: &Scene) -> Option<Self> {
-        let contact = scene.contact.as_ref().filter(|contact| contact.particles)?;
-        Some(Self {
-            surface: Surface {
-                restitution: contact.restitution,
-                friction: [contact.friction, contact.static_friction],
-            },
-            joined: scene.joined().collect(),
-        })
-    }
-}
-
 impl Obstacles {
     /// None where nothing collides.
     pub fn new(scene: &Scene) -> Option<Self> {
         let obstacles = scene.colliders.iter().enumerate();
         let obstacles: Vec<_> = obstacles.flat_map(Obstacle::new).collect();
-        let among = Among::new(scene);
+        let contact = scene.contact.as_ref().filter(|contact| contact.particles);
+        let among = contact.map(|contact| Surface {
+            restitution: contact.restitution,
+            friction: [contact.friction, contact.static_friction],
+        });
         let weight = |p: &crate::scene::Particle| if p.fixed { 0.0 } else { 1.0 / p.mass };
         if obstacles.is_empty() && among.is_none() {
             return None;
+        }
+        let mut joined = vec![Vec::new(); scene.particles.len()];
+        for [i, j] in scene.joined() {
+            joined[i].push(j);
+            joined[j].push(i);
+        }
+        for own in &mut joined {
+            own.sort_unstable();
+            own.dedup();
         }
         let mut all = Self {
             obstacles,
             law: ImpactLaw::RIGHT,
             among,
+            joined,
             radii: scene.particles.iter().map(|p| p.radius).collect(),
             weights: scene.particles.iter().map(weight).collect(),
             close: 0.0,
@@ -249,7 +244,7 @@ impl Obstacles {
     pub fn copied(&self) -> Self {
         Self {
             obstacles: self.obstacles.clone(),
-            among: self.among.clone(),
+            joined: self.joined.clone(),
             radii: self.radii.clone(),
             weights: self.weights.clone(),
             broad: Mutex::default(),
@@ -268,6 +263,11 @@ impl Obstacles {
     /// Whether one of them moves.
     pub fn any_moves(&self) -> bool {
         self.obstacles.iter().any(|one| one.motion.is_some())
+    }
+
+    /// The particles that springs or rods join to one, ascending.
+    pub fn joined_to(&self, particle: usize) -> &[usize] {
+        &self.joined[particle]
     }
 
     /// Whether particles collide with each other.
@@ -294,6 +294,23 @@ impl Obstacles {
             Against::Particle(other) => {
                 norm(minus(at(particle), at(other))) - (own + self.radii[other])
             }
+        }
+    }
+
+    /// What a report calls touching, m: a billionth of the scene's size. Not to be confused with [`close`](Self::close), at
+    /// which there are impacts.
+    pub fn closed(&self) -> f64 {
+        self.close / TOUCHING * CLOSED
+    }
+
+    /// In words: `collider 0 (plane)` or `particle 1`.
+    pub fn name(&self, against: Against) -> String {
+        match against {
+            Against::Obstacle(at) => {
+                let one = &self.obstacles[at];
+                format!("collider {} ({})", one.collider, one.shape.name())
+            }
+            Against::Particle(other) => format!("particle {other}"),
         }
     }
 
@@ -365,7 +382,7 @@ impl Obstacles {
     pub fn surface(&self, against: Against) -> Surface {
         match (against, &self.among) {
             (Against::Obstacle(at), _) => self.obstacles[at].surface,
-            (Against::Particle(_), Some(among)) => among.surface,
+            (Against::Particle(_), Some(surface)) => *surface,
             (Against::Particle(_), None) => Surface {
                 restitution: 0.0,
                 friction: [0.0; 2],

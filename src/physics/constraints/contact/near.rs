@@ -114,7 +114,7 @@ fn found(
             own.extend(leaves.map(|leaf| Against::Obstacle(leaf as usize)));
         }
     }
-    if let Some(among) = &obstacles.among {
+    if obstacles.among_particles() {
         let leaves: Vec<Aabb> = (0..boxes.len()).map(wide).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
         for particle in obstacles.particles() {
@@ -122,10 +122,9 @@ fn found(
                 .intersect_aabb(&leaves[particle])
                 .map(|leaf| leaf as usize);
             all[particle].extend(others.filter_map(|other| {
-                let pair = [particle.min(other), particle.max(other)];
                 let collide = other != particle
                     && obstacles.weights[other] > 0.0
-                    && !among.joined.contains(&pair);
+                    && obstacles.joined_to(particle).binary_search(&other).is_err();
                 collide.then_some(Against::Particle(other))
             }));
         }

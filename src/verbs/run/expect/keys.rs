@@ -69,6 +69,8 @@ fn keys() -> Vec<OutcomeKey> {
         ("contact.deepest_m", KeyKind::Number),
         ("contact.particle", KeyKind::Number),
         ("contact.collider", KeyKind::Number),
+        ("contact.other", KeyKind::Number),
+        ("contact.inside", KeyKind::Text),
         ("contact.t_s", KeyKind::Number),
         ("contact.touching", KeyKind::Number),
         ("contact.impacts", KeyKind::Number),
@@ -110,5 +112,20 @@ fn keys() -> Vec<OutcomeKey> {
             kind: kind.clone(),
         }));
     }
+    let laws = [
+        "separation",
+        "impact_friction",
+        "sliding_friction",
+        "energy_gain",
+    ];
+    let parts = [
+        "off", "bound", "found", "asked", "judged", "particle", "t_s",
+    ];
+    keys.extend(laws.iter().flat_map(|law| {
+        parts.iter().map(move |part| OutcomeKey {
+            path: format!("contact.{law}.{part}"),
+            kind: KeyKind::Number,
+        })
+    }));
     keys
 }

@@ -1,5 +1,6 @@
 //! Contact in words: impacts, what they and friction took, and how far particles are inside obstacles.
 
+use super::laws;
 use crate::measure::Contact;
 use crate::report::table::Table;
 use crate::report::words;
@@ -11,7 +12,12 @@ A step is cut where a particle meets an obstacle, and goes on with the velocity 
 along the normal, Coulomb's friction across it. What stays in contact is held by normal forces that only push. *Deepest* is
 how far a particle was inside an obstacle, at the recorded instants. What impacts and friction take is part of the balance:
 B = E + dissipated - injected + impacts + friction. rapier's contact has a law of its own: it acts once a step, and rests a
-little inside.";
+little inside.
+
+The last columns tell how far each is off the laws, from the rows alone; 0 is right. *Off e*: the speed after an impact, in parts
+of the speed before it. *Off the cone*: friction of an impact above µ times its normal impulse, in parts of that. *Off µ N*:
+friction of what slides or sticks, in parts of N. *Put in*: energy that an impact or friction adds. What forces do between two
+rows, and a run's step, may explain some of it: the sentences below the table say how much.";
 
 fn rows(report: &Report) -> Vec<(&Outcome, &Contact)> {
     let outcomes = report.outcomes().iter();
@@ -37,16 +43,34 @@ pub fn table(report: &Report) -> String {
     table.markdown("deepest (m)", |(_, contact)| {
         words::short(contact.deepest_m)
     });
-    table.markdown("particle", |(_, contact)| {
-        contact.particle.map(|particle| particle.to_string())
-    });
+    table.markdown("where", |(_, contact)| inside(contact));
     table.markdown("at (s)", |(_, contact)| {
         contact.particle.map(|_| words::short(contact.t_s))
     });
     table.markdown("touching at the end", |(_, contact)| {
         words::count(contact.touching)
     });
+    table.markdown("off e", |(_, contact)| laws::cell(contact.laws.separation));
+    table.markdown("off the cone", |(_, contact)| {
+        laws::cell(contact.laws.impact_friction)
+    });
+    table.markdown("off µ N", |(_, contact)| {
+        laws::cell(contact.laws.sliding_friction)
+    });
+    table.markdown("put in (J)", |(_, contact)| {
+        laws::cell(contact.laws.energy_gain)
+    });
     let mut text = format!("{INTRO}\n\n{}", table.in_markdown());
+    let said: Vec<(String, Vec<String>)> = rows
+        .iter()
+        .map(|(outcome, contact)| (super::engine(outcome), laws::sentences(contact)))
+        .filter(|(_, said)| !said.is_empty())
+        .collect();
+    if !said.is_empty() {
+        text += "\nHow far each is off the laws:\n\n";
+        let said = said.iter();
+        text.extend(said.map(|(engine, said)| format!("- {engine}: {}.\n", said.join("; "))));
+    }
     if let Some((outcome, contact)) = differing(&rows) {
         let engine = super::engine(outcome);
         text += &format!("\nWhere the contact of {engine} differs from these laws:\n\n");
@@ -60,6 +84,12 @@ pub fn table(report: &Report) -> String {
 fn differing<'a>(rows: &[(&'a Outcome, &'a Contact)]) -> Option<(&'a Outcome, &'a Contact)> {
     let differs = |(_, contact): &&(&Outcome, &Contact)| !contact.differs.is_empty();
     rows.iter().find(differs).copied()
+}
+
+/// `particle 2 inside collider 0 (plane)`; None where none is inside.
+fn inside(contact: &Contact) -> Option<String> {
+    let (particle, inside) = contact.particle.zip(contact.inside.as_ref())?;
+    Some(format!("particle {particle} inside {inside}"))
 }
 
 fn taken(outcome: &Outcome, which: fn(&crate::measure::Energy) -> Option<f64>) -> Option<String> {
@@ -89,11 +119,9 @@ pub fn own(report: &Report) -> Vec<(&'static str, String)> {
     };
     lost(energy.and_then(|energy| energy.impacts_j), "in impacts");
     lost(energy.and_then(|energy| energy.friction_j), "to friction");
-    if contact.deepest_m > 0.0 {
-        parts.push(format!(
-            "at most {} m inside",
-            words::short(contact.deepest_m)
-        ));
+    if let Some(inside) = inside(contact) {
+        let deepest = words::short(contact.deepest_m);
+        parts.push(format!("at most {deepest} m deep: {inside}"));
     }
     let touching = match contact.touching {
         0 => "nothing touches at the end".to_owned(),
@@ -103,6 +131,7 @@ pub fn own(report: &Report) -> Vec<(&'static str, String)> {
     parts.push(touching);
     let text = format!("{}: {}", words::one_line(&outcome.engine), parts.join(", "));
     let mut said = vec![("contact", text)];
+    said.extend(laws::summary(contact).into_iter().map(|law| ("", law)));
     if let Some((outcome, contact)) = differing(&rows(report)) {
         let engine = words::one_line(&outcome.engine);
         let first = contact.differs.first().map_or("", String::as_str);

@@ -3,6 +3,7 @@
 
 mod contact;
 mod identity;
+mod laws;
 mod ledger;
 mod rods;
 mod strain;

@@ -1,0 +1,117 @@
+//! The laws of contact in words: how far an engine is off each.
+
+use crate::measure::{Contact, Laws, Residual};
+use crate::report::words::{self, short};
+
+/// What is off by less is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A cell of the table.
+pub fn cell(law: Option<Residual>) -> Option<String> {
+    law.map(|law| short(law.off))
+}
+
+/// A sentence for each law that was judged.
+pub fn sentences(contact: &Contact) -> Vec<String> {
+    let Laws {
+        separation,
+        impact_friction,
+        sliding_friction,
+        energy_gain,
+    } = contact.laws;
+    let mut all = Vec::new();
+    all.extend(separation.map(|law| {
+        let text = format!(
+            "after {} it separates at {} of the speed it came with",
+            words::plural(law.judged, "impact"),
+            ratio(law.found)
+        );
+        if law.off <= ROUNDING {
+            format!(
+                "{text}, as e = {} asks, to {}",
+                short(law.asked),
+                words::sci(law.off)
+            )
+        } else {
+            format!(
+                "{text}, where e = {} asks {}: {}",
+                short(law.asked),
+                short(law.asked),
+                verdict(&law)
+            )
+        }
+    }));
+    all.extend(impact_friction.map(|law| {
+        let cone = format!("µ = {} times the normal impulse", short(law.asked));
+        if law.off <= ROUNDING {
+            format!("friction of impacts is at most {cone}, as Coulomb's law asks")
+        } else {
+            let found = ratio(law.found);
+            format!(
+                "friction of an impact is {found} of the normal impulse, more than {cone}: {}",
+                verdict(&law)
+            )
+        }
+    }));
+    all.extend(sliding_friction.map(|law| {
+        if law.off <= ROUNDING {
+            return "friction of what slides is µ N against the sliding, and of what sticks no more than it may be".to_owned();
+        }
+        let found = ratio(law.found);
+        format!("friction on a surface is {found} N, where µ = {} asks that much against the sliding: {}", short(law.asked), verdict(&law))
+    }));
+    all.extend(energy_gain.map(|law| {
+        if !law.broken() {
+            return "impacts and friction put no energy in".to_owned();
+        }
+        format!(
+            "an impact or friction puts {} J in, of particle {} at {} s, where none may",
+            short(law.off),
+            law.particle,
+            short(law.t_s)
+        )
+    }));
+    all
+}
+
+/// For the terminal: the laws that are missed, or else one that is kept.
+pub fn summary(contact: &Contact) -> Vec<String> {
+    let laws = [
+        contact.laws.separation,
+        contact.laws.impact_friction,
+        contact.laws.sliding_friction,
+        contact.laws.energy_gain,
+    ];
+    let mut all = sentences(contact);
+    let broken = laws.iter().flatten().map(Residual::broken);
+    let missed: Vec<String> = (all.iter().zip(broken))
+        .filter(|(_, broken)| *broken)
+        .map(|(text, _)| text.clone())
+        .collect();
+    if missed.is_empty() {
+        all.truncate(1);
+        return all;
+    }
+    missed
+}
+
+/// `off by 0.1 (particle 0 at 0.4 s), more than the forces between its rows explain (0.02)`
+fn verdict(law: &Residual) -> String {
+    let explain = if law.broken() {
+        "more than the forces between its rows explain"
+    } else {
+        "no more than the forces between its rows may explain"
+    };
+    format!(
+        "off by {} (particle {} at {} s), {explain} ({})",
+        short(law.off),
+        law.particle,
+        short(law.t_s),
+        short(law.bound)
+    )
+}
+
+/// Without its rounding.
+fn ratio(value: f64) -> String {
+    short((value * 1e6).round() / 1e6)
+}
