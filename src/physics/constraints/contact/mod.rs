@@ -43,6 +43,8 @@ pub struct Obstacles {
     law: ImpactLaw,
     /// How particles collide with each other; None where they do not.
     among: Option<Among>,
+    /// k, N/m, and c, N s/m, where springs and dampers take the place of impulses.
+    penalty: Option<[f64; 2]>,
     /// Of each particle, m.
     radii: Vec<f64>,
     /// Of each particle, 1/kg; 0 where it is fixed, and does not collide.
@@ -206,10 +208,13 @@ impl Obstacles {
         if obstacles.is_empty() && among.is_none() {
             return None;
         }
+        let contact = scene.contact.as_ref();
+        let penalty = contact.and_then(|contact| contact.penalty.as_ref());
         let mut all = Self {
             obstacles,
             law: ImpactLaw::RIGHT,
             among,
+            penalty: penalty.map(|penalty| [penalty.stiffness, penalty.damping]),
             radii: scene.particles.iter().map(|p| p.radius).collect(),
             weights: scene.particles.iter().map(weight).collect(),
             close: 0.0,
@@ -269,6 +274,23 @@ impl Obstacles {
     /// Whether one of them moves.
     pub fn any_moves(&self) -> bool {
         self.obstacles.iter().any(|one| one.motion.is_some())
+    }
+
+    /// k, N/m, and c, N s/m, where springs and dampers take the place of impulses: they are part of the forces then.
+    pub fn penalty(&self) -> Option<[f64; 2]> {
+        self.penalty
+    }
+
+    /// Every contact in which something is inside, in ascending order.
+    pub fn inside(&self, state: &State) -> Vec<Beside> {
+        let at = |particle| three(&state.x, particle);
+        let near = self.near([state.t; 2], |particle| (at(particle), 0.0));
+        let inside = near
+            .pairs()
+            .filter(|(particle, against)| self.gap(*particle, *against, state.t, at) < 0.0);
+        inside
+            .map(|(particle, against)| self.beside(particle, against, state))
+            .collect()
     }
 
     /// Whether particles collide with each other.

@@ -13,6 +13,11 @@ how far a particle was inside an obstacle, at the recorded instants. What impact
 B = E + dissipated - injected + impacts + friction. rapier's contact has a law of its own: it acts once a step, and rests a
 little inside.";
 
+const PENALTY: &str = "\
+A spring and a damper press while a particle is inside; a step is cut where one enters and where it leaves. *Impacts* are the
+contacts that began. *Deepest* is how far a particle was inside, at the recorded instants. What the damper takes is part of what
+is dissipated.";
+
 fn rows(report: &Report) -> Vec<(&Outcome, &Contact)> {
     let outcomes = report.outcomes().iter();
     outcomes
@@ -46,7 +51,12 @@ pub fn table(report: &Report) -> String {
     table.markdown("touching at the end", |(_, contact)| {
         words::count(contact.touching)
     });
-    let mut text = format!("{INTRO}\n\n{}", table.in_markdown());
+    let pressed = rows.iter().any(|(outcome, _)| {
+        let energy = outcome.energy.as_ref();
+        energy.is_some_and(|energy| energy.potential_final_j.contains_key("penalty"))
+    });
+    let intro = if pressed { PENALTY } else { INTRO };
+    let mut text = format!("{intro}\n\n{}", table.in_markdown());
     if let Some((outcome, contact)) = differing(&rows) {
         let engine = super::engine(outcome);
         text += &format!("\nWhere the contact of {engine} differs from these laws:\n\n");
