@@ -34,7 +34,7 @@ pub const REFUSED: &[Row] = &[
     ("static friction beside a penalty", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  static_friction: »0.5\ncontact: {penalty: {stiffness: 1}}", &["colliders[0].static_friction", "expected 0 beside `contact.penalty`, found 0.5"]),
     ("restitution of particles beside their penalty", "contact: {particles: true, restitution: »0.5, penalty: {stiffness: 1}}", &["contact.restitution", "expected 0 beside `contact.penalty`, found 0.5"]),
     ("friction of particles beside their penalty", "contact: {particles: true, friction: »0.5, penalty: {stiffness: 1}}", &["contact.friction", "expected 0 beside `contact.penalty`, found 0.5"]),
-    ("penalty without stiffness", "contact: {particles: true, penalty: »{damping: 1}}", &["contact.penalty.stiffness", "missing"]),
+    ("penalty without stiffness", "contact: {particles: true, penalty: »{damping: 1}}", &["penalty.stiffness", "missing"]),
     ("colliders beside rods", "rods: [{particle_ids: [0, 1]}]\ncolliders: »[{plane: {normal: [0, 0, 1], offset: -9}}]", &["colliders", "not supported yet beside `rods`"]),
 ];
 
