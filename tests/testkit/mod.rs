@@ -143,7 +143,7 @@ pub fn everything(model: DampingModel) -> Scene {
     for (particles, rest_angle) in [([0, 1, 2], 0.0), ([1, 2, 3], 0.8)] {
         scene.bending.push(Bending {
             particles,
-            stiffness: 0.03,
+            stiffness: 0.01,
             rest_angle,
             damping: 0.02,
         });
@@ -194,7 +194,7 @@ pub fn pressed(model: DampingModel) -> Scene {
     ];
     scene.contact = Some(Contact {
         penalty: Some(Penalty {
-            stiffness: 0.03,
+            stiffness: 0.01,
             damping: 0.2,
         }),
         ..Contact::default()
