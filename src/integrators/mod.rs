@@ -223,7 +223,9 @@ impl Method {
     /// On obstacles that bend, methods that take no rods slide on the plane that touches them, and are moved back as by
     /// RATTLE, which is of order 2.
     pub fn order_on<S: System + ?Sized>(&self, system: &S) -> u32 {
-        let bends = system.obstacles().is_some_and(Obstacles::bend);
+        let by_impulses = |all: &&Obstacles| all.penalty().is_none();
+        let obstacles = system.obstacles().filter(by_impulses);
+        let bends = obstacles.is_some_and(Obstacles::bend);
         let most = if bends && !self.takes().has(ForceKinds::CONSTRAINED) {
             2
         } else {

@@ -135,7 +135,10 @@ impl Laws {
                     collider.is_some() && collider == obstacles.collider(against)
                 };
                 // What springs join feels the impacts of the other.
-                let undisturbed = obstacles.joined_to(one).iter().all(|two| !of.contains_key(two));
+                let undisturbed = obstacles
+                    .joined_to(one)
+                    .iter()
+                    .all(|two| !of.contains_key(two));
                 undisturbed && (all.len() == 1 || all.iter().all(same))
             });
             if alone {

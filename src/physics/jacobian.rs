@@ -10,7 +10,7 @@ pub type Triplets = Vec<(usize, usize, f64)>;
 ///
 /// Signs are those of the derivative: a stable spring has a *negative* definite `position` block, minus its
 /// stiffness matrix. A system emits the same places in the same order at every
-/// call, so solvers may keep the pattern.
+/// call, so solvers may keep the pattern; what presses by penalty has places only while it does.
 #[derive(Debug, Clone, Default)]
 pub struct Jacobian {
     /// ∂f/∂x, N/m.

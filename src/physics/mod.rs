@@ -107,7 +107,8 @@ pub trait System {
         None
     }
 
-    /// The obstacles, which act between and within steps and not in the acceleration; None where there are none.
+    /// The obstacles, which act between and within steps and not in the acceleration, unless by penalty; None where there are
+    /// none.
     fn obstacles(&self) -> Option<&Obstacles> {
         None
     }

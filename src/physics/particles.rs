@@ -98,14 +98,6 @@ impl ParticleSystem {
         }
     }
 
-    /// The effects of a scene and one more, without rods, strain limit and obstacles.
-    pub fn also(scene: &Scene, row: &'static EffectRow, effect: Box<dyn Effect>) -> Self {
-        let inverse_mass = Self::new(scene).inverse_mass.to_vec();
-        let effects = effects::REGISTRY.iter();
-        let effects = effects.filter_map(|row| Some((row, (row.build)(scene)?)));
-        Self::of(inverse_mass, effects.chain([(row, effect)]).collect())
-    }
-
     /// The motions of driven particles.
     pub fn drives(&self) -> &[Drive] {
         &self.drives

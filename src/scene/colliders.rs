@@ -1,4 +1,4 @@
-//! Checks of obstacles: each is one shape that has a surface, and no particle starts inside.
+//! Checks of obstacles: each is one shape that has a surface, and no particle starts inside of what gives impulses.
 
 use super::drive::{Drive, motion};
 use super::error::Refusal;
@@ -104,6 +104,8 @@ pub(super) fn complete(scene: &mut Scene) -> Result<(), Problem> {
 
 /// Checks the obstacles of a scene whose particles start at `starts`.
 pub(super) fn check(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
+    let given = scene.contact.as_ref();
+    let pressed = given.is_some_and(|contact| contact.penalty.is_some());
     for (at, collider) in scene.colliders.iter().enumerate() {
         let of = format!("colliders[{at}]");
         one_shape(&of, collider)?;
@@ -111,8 +113,12 @@ pub(super) fn check(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
             motion(&format!("{of}.driven"), given)?;
         }
         sticks(&of, [collider.friction, collider.static_friction])?;
+        if pressed {
+            let friction = [collider.friction, collider.static_friction];
+            smooth(&of, collider.restitution, friction)?;
+        }
         for shape in collider.shapes() {
-            outside(&of, collider, &shape, scene, starts)?;
+            outside(&of, collider, &shape, scene, starts, pressed)?;
         }
     }
     contact(scene, starts)?;
@@ -152,7 +158,8 @@ fn contact(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
     let Some(contact) = &scene.contact else {
         return Ok(());
     };
-    sticks("contact", [contact.friction, contact.static_friction])?;
+    let friction = [contact.friction, contact.static_friction];
+    sticks("contact", friction)?;
     if !contact.particles {
         for (key, value) in [
             ("restitution", contact.restitution),
@@ -173,23 +180,45 @@ fn contact(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
         }
         return Ok(());
     }
+    if contact.penalty.is_some() {
+        return smooth("contact", contact.restitution, friction);
+    }
     apart(scene, starts)
+}
+
+/// Checks that beside a penalty nothing is said of impulses.
+fn smooth(of: &str, restitution: f64, [sliding, sticking]: [f64; 2]) -> Result<(), Problem> {
+    for (key, value) in [
+        ("restitution", restitution),
+        ("friction", sliding),
+        ("static_friction", sticking),
+    ] {
+        if value != 0.0 {
+            let message = format!("expected 0 beside `contact.penalty`, found {value:?}");
+            let help = "a penalty is a spring and a damper along the normal: its `damping` takes the place of restitution, and it \
+                        has no friction";
+            return Problem::because(format!("{of}.{key}"), message, help);
+        }
+    }
+    Ok(())
 }
 
 /// Checks that no two free particles that collide start inside each other.
 fn apart(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
     let joined: HashSet<[usize; 2]> = scene.joined().collect();
-    let leaf = |(id, particle): (usize, &Particle)| {
+    let around = |(id, particle): (usize, &Particle)| {
         let half = Vector::splat(particle.radius);
-        (id, Aabb::from_half_extents(Vector::from(starts[id]), half))
+        Aabb::from_half_extents(Vector::from(starts[id]), half)
     };
     let free = || scene.particles.iter().enumerate().filter(|(_, p)| !p.fixed);
-    let tree = Bvh::from_iter(BvhBuildStrategy::Binned, free().map(leaf));
-    for (id, particle) in free() {
-        let (_, own) = leaf((id, particle));
+    // parry wants leaves numbered from 0.
+    let numbers: Vec<usize> = free().map(|(id, _)| id).collect();
+    let boxes: Vec<Aabb> = free().map(around).collect();
+    let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+    for ((id, particle), own) in free().zip(&boxes) {
         let mut others: Vec<usize> = tree
-            .intersect_aabb(&own)
-            .map(|leaf| leaf as usize)
+            .intersect_aabb(own)
+            .map(|leaf| numbers[leaf as usize])
             .collect();
         others.sort_unstable();
         for other in others.into_iter().filter(|other| id < *other) {
@@ -268,13 +297,14 @@ fn one_shape(of: &str, collider: &Collider) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Checks that no free particle starts inside.
+/// Checks that no free particle starts inside, unless a penalty presses it there.
 fn outside(
     of: &str,
     collider: &Collider,
     shape: &Shape,
     scene: &Scene,
     starts: &[[f64; 3]],
+    pressed: bool,
 ) -> Result<(), Problem> {
     let moved = collider
         .displacement()
@@ -291,7 +321,7 @@ fn outside(
         let at = [0, 1, 2].map(|axis| start[axis] - moved[axis]);
         let gap = shape.nearest(at).distance - particle.radius;
         let largest = at.iter().fold(particle.radius, |most, c| most.max(c.abs()));
-        if gap < -TOUCHING * largest {
+        if !pressed && gap < -TOUCHING * largest {
             let deep = -gap;
             let message = format!(
                 "expected every free particle outside, found {name} {deep:?} m inside at the start, as a ball of radius \

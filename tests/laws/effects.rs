@@ -1,7 +1,7 @@
 //! Every effect's force, potential, power and Jacobian belong together: checked by differences
 //! over the whole registry, on a scene that calls for all of them.
 
-use crate::testkit::{Random, all_effects, everything, force, sample};
+use crate::testkit::{Random, all_effects, everything, force, pressed, sample};
 use springcheck::physics::effects::{self, Effect, EffectRow};
 use springcheck::physics::{ForceKinds, Jacobian, Linearization, ParticleSystem, Power};
 use springcheck::scene::{DampingModel, Scene, Vectors};
@@ -149,7 +149,7 @@ fn effect_law(effect: &dyn Effect, x: &[f64], v: &[f64]) -> Result<(), String> {
 #[test]
 fn force_potential_power_and_jacobian_agree_for_every_effect() {
     for model in [DampingModel::Axial, DampingModel::Isotropic] {
-        let scene = all_effects(model);
+        let scene = pressed(model);
         let mut random = Random(7);
         for row in effects::REGISTRY {
             let effect = (row.build)(&scene).unwrap_or_else(|| panic!("{}: not built", row.id));
@@ -439,7 +439,7 @@ impl Effect for QuadraticDrag {
 
 #[test]
 fn only_what_the_scene_calls_for_is_built() {
-    let mut scene = all_effects(DampingModel::Axial);
+    let mut scene = pressed(DampingModel::Axial);
     let ids = |scene: &Scene| -> Vec<&str> {
         ParticleSystem::new(scene)
             .effects()
@@ -455,6 +455,7 @@ fn only_what_the_scene_calls_for_is_built() {
     scene.gravitational.clear();
     scene.driven.clear();
     scene.magnetic = None;
+    scene.contact = None;
     scene.bending.clear();
     for particle in &mut scene.particles {
         particle.drag = 0.0;

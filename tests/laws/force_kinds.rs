@@ -1,7 +1,7 @@
 //! Forces say how they depend on velocity, and a method is either right for them, to its order, or
 //! refuses them by name.
 
-use crate::testkit::{Random, all_effects, everything, force, method, sample};
+use crate::testkit::{Random, everything, force, method, pressed, sample};
 use nalgebra::{DMatrix, DVector};
 use springcheck::integrators::adaptive::Adaptive;
 use springcheck::integrators::{Method, Settings, StepError, fixed, pairs};
@@ -108,7 +108,7 @@ fn found(effect: &dyn Effect, x: &[f64], v: &[f64]) -> ForceKinds {
 
 /// An effect says of its velocity what differences say, and no more.
 fn declaration_law(effect: &dyn Effect) -> Result<(), String> {
-    let scene = all_effects(DampingModel::Axial);
+    let scene = pressed(DampingModel::Axial);
     let said = effect.kinds().without(ForceKinds::DRIVEN);
     let mut random = Random(11);
     for _ in 0..5 {
@@ -125,7 +125,7 @@ fn declaration_law(effect: &dyn Effect) -> Result<(), String> {
 fn every_effect_says_how_it_depends_on_velocity() {
     for model in [DampingModel::Axial, DampingModel::Isotropic] {
         for sign in [1.0, -1.0] {
-            let mut scene = all_effects(model);
+            let mut scene = pressed(model);
             for particle in &mut scene.particles {
                 particle.drag *= sign;
             }

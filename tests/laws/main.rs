@@ -21,6 +21,7 @@ mod momentum;
 mod objects;
 mod order;
 mod oscillator;
+mod penalty;
 mod rapier_contact;
 mod rest;
 mod rods;

@@ -13,8 +13,10 @@ pub use springcheck::conformance::systems::{Oscillator, free_triangle, swinging_
 use springcheck::integrators::{Integrator, Method, Settings, fixed};
 use springcheck::physics::effects::Effect;
 use springcheck::physics::{ForceKinds, ParticleSystem, Power, State, System};
+use springcheck::scene::model::{Ball, Plane};
 use springcheck::scene::{
-    Air, Bending, DampingModel, Driven, GravitationalPair, Magnetic, Scene, Sine, Triangle, Wind,
+    Air, Bending, Collider, Contact, DampingModel, Driven, GravitationalPair, Magnetic, Penalty,
+    Scene, Sine, Triangle, Wind,
 };
 
 /// All of these in a whole run, which `SPRINGCHECK_WHOLE=1` asks for as CI does; else one in `of`,
@@ -141,7 +143,7 @@ pub fn everything(model: DampingModel) -> Scene {
     for (particles, rest_angle) in [([0, 1, 2], 0.0), ([1, 2, 3], 0.8)] {
         scene.bending.push(Bending {
             particles,
-            stiffness: 0.3,
+            stiffness: 0.01,
             rest_angle,
             damping: 0.02,
         });
@@ -169,7 +171,38 @@ pub fn driven(mut scene: Scene) -> Scene {
     scene
 }
 
-/// A scene that calls for every effect of the registry, in moving air.
+/// The same and contact by penalty: every free particle is inside a plane and a ball.
+pub fn pressed(model: DampingModel) -> Scene {
+    let mut scene = all_effects(model);
+    let plane = Plane {
+        normal: [0.6, 0.0, 0.8],
+        offset: 9.0,
+    };
+    let ball = Ball {
+        center: [7.0, -5.0, 3.0],
+        radius: 20.0,
+    };
+    scene.colliders = vec![
+        Collider {
+            plane: Some(plane),
+            ..Collider::default()
+        },
+        Collider {
+            ball: Some(ball),
+            ..Collider::default()
+        },
+    ];
+    scene.contact = Some(Contact {
+        penalty: Some(Penalty {
+            stiffness: 0.01,
+            damping: 0.2,
+        }),
+        ..Contact::default()
+    });
+    scene
+}
+
+/// A scene that calls for every effect of the registry but that of contact, in moving air.
 pub fn all_effects(model: DampingModel) -> Scene {
     let mut scene = driven(everything(model));
     scene.air = Some(Air {

@@ -5,18 +5,19 @@
 //! of the sub-step that ends there. So every method keeps its order.
 
 mod path;
+mod pressed;
+mod root;
 
 use super::{Integrator, StepError};
 use crate::physics::constraints::contact::{Against, Beside, Change, Held, Near, Obstacles};
 use crate::physics::{State, System};
 use path::{Path, crossing};
+use root::Bracket;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Roots are located to this part of a step.
 pub const LOCATED: f64 = 1e-12;
-/// Halvings after which an event is not located but counts as one of the end.
-const HALVES: u32 = 40;
 /// Cuts of no length after which no further event of a step is located.
 const IDLE: u32 = 16;
 /// The most cuts in a step.
@@ -66,9 +67,10 @@ pub fn through(
     state: &mut State,
 ) -> Result<u64, StepError> {
     match system.obstacles() {
-        Some(obstacles) if !integrator.keeps_contact() => {
-            step(integrator, system, obstacles, h, state)
-        }
+        Some(obstacles) if !integrator.keeps_contact() => match obstacles.penalty() {
+            Some(law) => pressed::step(integrator, system, obstacles, law, h, state),
+            None => step(integrator, system, obstacles, h, state),
+        },
         _ => integrator.step(system, h, state).map(|()| 0),
     }
 }
@@ -87,11 +89,7 @@ fn step(
         obstacles,
         h,
         impacts: 0,
-        most: if obstacles.particles().count() > LARGE {
-            1
-        } else {
-            MANY
-        },
+        most: most_located(obstacles),
         involved: BTreeSet::new(),
         near: obstacles.near([state.t; 2], |particle| (three(&state.x, particle), 0.0)),
     };
@@ -112,6 +110,15 @@ fn step(
         }
     }
     Err(StepError::TooManyEvents { t: state.t })
+}
+
+/// The most particles whose events are located on sub-steps.
+fn most_located(obstacles: &Obstacles) -> usize {
+    if obstacles.particles().count() > LARGE {
+        1
+    } else {
+        MANY
+    }
 }
 
 struct Walk<'a> {
@@ -366,76 +373,15 @@ impl Walk<'_> {
         left: f64,
         start: &State,
     ) -> Result<Option<(f64, State)>, StepError> {
+        let bracket = Bracket {
+            clear: due.clear,
+            due: due.due,
+            left,
+            h: self.h,
+        };
         let obstacles = self.obstacles;
         let sign = |state: &State| sign(obstacles, held, due, state);
-        let mut high = due.due;
-        let mut below = sign(&self.sub_step(held, high, start)?);
-        // The cubic and the method's own path differ, if only by rounding: a little beyond, lest it is through.
-        let mut beyond = (1e-6 * (due.due - due.clear)).max(LOCATED * self.h);
-        while below >= 0.0 && high < left {
-            high = (due.due + beyond).min(left);
-            beyond *= 8.0;
-            below = sign(&self.sub_step(held, high, start)?);
-        }
-        if below >= 0.0 {
-            return Ok(None);
-        }
-        let mut low = due.clear;
-        let mut above = if low > 0.0 {
-            sign(&self.sub_step(held, low, start)?)
-        } else {
-            sign(start)
-        };
-        // Just after a bounce the gap is 0, and grows; so does the speed of what begins to slide.
-        for halves in 0.. {
-            if above > 0.0 {
-                break;
-            }
-            if halves > HALVES {
-                return Ok(None);
-            }
-            low = if halves == 0 { 0.5 * high } else { 0.5 * low };
-            above = sign(&self.sub_step(held, low, start)?);
-            if above < 0.0 {
-                (high, below) = (low, above);
-            }
-        }
-        let tolerance = LOCATED * self.h;
-        let mut found = None;
-        let mut side = 0;
-        for _ in 0..200 {
-            if high - low <= tolerance {
-                break;
-            }
-            // Regula falsi, which halves the value of an end that stays (Dowell, Jarratt 1971); else bisection.
-            let mut next = (low * below - high * above) / (below - above);
-            let inside = next > low && next < high;
-            if !inside || !next.is_finite() {
-                next = 0.5 * (low + high);
-            }
-            let at = self.sub_step(held, next, start)?;
-            let value = sign(&at);
-            if value == 0.0 {
-                return Ok(Some((next, at)));
-            }
-            if value < 0.0 {
-                if side == -1 {
-                    above *= 0.5;
-                }
-                (high, below, side) = (next, value, -1);
-                found = Some(at);
-            } else {
-                if side == 1 {
-                    below *= 0.5;
-                }
-                (low, above, side) = (next, value, 1);
-            }
-        }
-        let at = match found {
-            Some(at) if at.t == start.t + high => at,
-            _ => self.sub_step(held, high, start)?,
-        };
-        Ok(Some((high, at)))
+        root::locate(&bracket, start, sign, |h| self.sub_step(held, h, start))
     }
 
     /// Many events in one step: each impact at its own time on its particle's path, which the change of velocity bends from

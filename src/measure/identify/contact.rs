@@ -53,7 +53,9 @@ pub(super) fn apart(question: &Question) -> Apart {
         ..
     } = *question;
     let told = question.hint.is_none() && rows.v.is_some();
-    let Some(obstacles) = system.obstacles().filter(|_| told) else {
+    // A penalty is a force as any other.
+    let impulses = |all: &&Obstacles| told && all.penalty().is_none();
+    let Some(obstacles) = system.obstacles().filter(impulses) else {
         return Apart {
             away: choose(rows, system, transitions),
             mixed: false,

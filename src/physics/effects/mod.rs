@@ -1,9 +1,7 @@
 //! The forces on particles. Each effect has a file and a row in [`REGISTRY`].
 //!
 //! An effect is built only when the scene calls for it; an absent effect is not in the list and costs
-//! nothing. Contact, rods and strain limits act between or inside steps and are not forces: they will be a
-//! second kind of row, which [`IntegratorEngine`](crate::solvers::IntegratorEngine) calls after its
-//! integrator, and will not implement this trait.
+//! nothing. Rods, strain limits and contact by impulses act between or inside steps and are not forces.
 
 mod air_drag;
 mod bending;
@@ -12,6 +10,7 @@ mod drag;
 mod driven;
 mod gravity;
 mod magnetic;
+mod penalty;
 mod quadratic_drag;
 mod scaled;
 mod springs;
@@ -24,6 +23,7 @@ pub use drag::Drag;
 pub use driven::Driven;
 pub use gravity::Gravity;
 pub use magnetic::MagneticForce;
+pub use penalty::{Penalty, PenaltyLaw, Press};
 pub use quadratic_drag::QuadraticDrag;
 pub use scaled::Scaled;
 pub use springs::Springs;
@@ -88,7 +88,7 @@ pub trait Effect: Send + Sync {
         &[]
     }
 
-    /// *Adds* ∂f/∂x and ∂f/∂v, with the same places in the same order at every call.
+    /// *Adds* ∂f/∂x and ∂f/∂v, with the same places in the same order at every call, but for contacts that begin and end.
     fn add_jacobian(
         &self,
         _t: f64,
@@ -147,6 +147,7 @@ pub static REGISTRY: &[EffectRow] = &[
     driven::ROW,
     magnetic::ROW,
     bending::ROW,
+    penalty::ROW,
 ];
 
 /// The vector from the particle at offset `i` to the one at offset `j`.

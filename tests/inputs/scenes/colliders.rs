@@ -29,6 +29,12 @@ pub const REFUSED: &[Row] = &[
     ("collider with no motion", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  driven: »{}", &["colliders[0].driven", "expected one of `sine`, `velocity` and `table`, found none"]),
     ("particle inside a plane", "particles:\n- {pos: [0, 0, 0.05], mass: 1}\ncolliders:\n- »plane: {normal: [0, 0, 1]}", &["colliders[0]", "expected every free particle outside, found 0 0.05 m inside", "a ball of radius 0.1 m"]),
     ("particle inside a ball", "particles:\n- {pos: [0, 0, 0], mass: 1}\ncolliders:\n- »ball: {center: [0, 0, 0], radius: 1}", &["colliders[0]", "found 0 1.1 m inside"]),
+    ("restitution beside a penalty", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  restitution: »0.5\ncontact: {penalty: {stiffness: 1}}", &["colliders[0].restitution", "expected 0 beside `contact.penalty`, found 0.5", "takes the place of restitution"]),
+    ("friction beside a penalty", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  friction: »0.5\ncontact: {penalty: {stiffness: 1}}", &["colliders[0].friction", "expected 0 beside `contact.penalty`, found 0.5"]),
+    ("static friction beside a penalty", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  static_friction: »0.5\ncontact: {penalty: {stiffness: 1}}", &["colliders[0].static_friction", "expected 0 beside `contact.penalty`, found 0.5"]),
+    ("restitution of particles beside their penalty", "contact: {particles: true, restitution: »0.5, penalty: {stiffness: 1}}", &["contact.restitution", "expected 0 beside `contact.penalty`, found 0.5"]),
+    ("friction of particles beside their penalty", "contact: {particles: true, friction: »0.5, penalty: {stiffness: 1}}", &["contact.friction", "expected 0 beside `contact.penalty`, found 0.5"]),
+    ("penalty without stiffness", "contact: {particles: true, penalty: »{damping: 1}}", &["penalty.stiffness", "missing"]),
     ("colliders beside rods", "rods: [{particle_ids: [0, 1]}]\ncolliders: »[{plane: {normal: [0, 0, 1], offset: -9}}]", &["colliders", "not supported yet beside `rods`"]),
 ];
 
@@ -64,4 +70,28 @@ fn what_touches_is_not_inside() {
         );
         assert!(parse(&complete(&scene)).is_ok(), "{z}");
     }
+}
+
+/// A penalty presses what is inside, also at the start.
+#[test]
+fn with_a_penalty_particles_may_start_inside() {
+    let scene = "particles:\n- {pos: [0, 0, 0.05], mass: 1}\n- {pos: [0, 0.1, 0.05], mass: 1}\n\
+                 colliders: [{plane: {normal: [0, 0, 1]}}]\ncontact: {particles: true";
+    assert!(parse(&complete(&format!("{scene}, penalty: {{stiffness: 1}}}}"))).is_ok());
+    assert!(parse(&complete(&format!("{scene}}}"))).is_err());
+}
+
+/// Whatever is fixed, and whichever obstacle has no bounds.
+#[test]
+fn few_that_collide_may_have_any_number() {
+    let scene = "particles:\n- {pos: [9, 0, 0.5], fixed: true}\n- {pos: [0, 0, 0.5], mass: 1}\n\
+                 colliders: [{plane: {normal: [0, 0, 1]}}, {ball: {center: [0, 0, -9], radius: 1}}]\n\
+                 contact: {particles: true}";
+    let scene = parse(&complete(scene)).expect("a scene");
+    let obstacles = springcheck::physics::constraints::contact::Obstacles::new(&scene);
+    let obstacles = obstacles.expect("obstacles");
+    let near = obstacles.near([0.0; 2], |particle| {
+        (scene.particles[particle].position, 99.0)
+    });
+    assert_eq!(near.pairs().count(), 2);
 }

@@ -3,8 +3,10 @@
 use crate::testkit::cloth::cloth;
 use springcheck::physics::ParticleSystem;
 use springcheck::physics::effects::{EffectRow, REGISTRY};
+use springcheck::scene::model::Plane;
 use springcheck::scene::{
-    Air, Bending, DampingModel, Driven, GravitationalPair, Magnetic, Scene, Triangle, Wind,
+    Air, Bending, Collider, Contact, DampingModel, Driven, GravitationalPair, Magnetic, Penalty,
+    Scene, Triangle, Wind,
 };
 use springcheck::solvers::{self, Setting};
 
@@ -18,7 +20,7 @@ fn called(scene: &Scene) -> Vec<&'static str> {
 type Call = fn(&mut Scene);
 
 /// What the scene calls for one by one, each on top of gravity and springs.
-const CALLS: [(&str, Call); 9] = [
+const CALLS: [(&str, Call); 10] = [
     ("cubic_springs", |scene| scene.springs[0].cubic = 1.0),
     ("drag", |scene| scene.particles[1].drag = 0.1),
     ("quadratic_drag", |scene| {
@@ -58,6 +60,16 @@ const CALLS: [(&str, Call); 9] = [
         scene.bending.push(Bending {
             stiffness: 1.0,
             ..Bending::default()
+        });
+    }),
+    ("penalty", |scene| {
+        scene.colliders = vec![Collider {
+            plane: Some(Plane::default()),
+            ..Collider::default()
+        }];
+        scene.contact = Some(Contact {
+            penalty: Some(Penalty::default()),
+            ..Contact::default()
         });
     }),
     ("magnetic", |scene| {

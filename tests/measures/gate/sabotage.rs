@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::testkit::mutants::{self, physics};
-use crate::testkit::{all_effects, is_its_own, part};
+use crate::testkit::{is_its_own, part, pressed};
 use springcheck::integrators::{Integrator, Settings, StepError};
 use springcheck::physics::effects::{self, Effect, EffectRow};
 use springcheck::physics::{ParticleSystem, State, System};
@@ -169,7 +169,7 @@ impl Effect for TooStrong {
 
 #[test]
 fn an_effect_whose_force_is_not_its_energys_fails_by_its_name() {
-    let mut scene = all_effects(DampingModel::Axial);
+    let mut scene = pressed(DampingModel::Axial);
     scene.duration = 100.0 * scene.solver.timestep;
     // A motion that is given is no force.
     for row in effects::REGISTRY.iter().filter(|row| row.id != "driven") {

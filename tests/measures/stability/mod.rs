@@ -2,6 +2,7 @@
 
 mod admissible;
 mod measured;
+mod penalty;
 mod predict;
 mod rods;
 mod vary;

@@ -368,7 +368,9 @@ pub fn is_linear(scene: &Scene) -> bool {
     let bends = hinges
         .into_iter()
         .any(|hinge| hinge.stiffness != 0.0 || hinge.damping != 0.0);
+    let presses = scene.contact.as_ref().is_some_and(|c| c.penalty.is_some());
     !bends
+        && !presses
         && scene.rods.is_empty()
         && springs.into_iter().all(|s| {
             let pulls_linearly = s.rest_length == 0.0 || s.stiffness == 0.0;

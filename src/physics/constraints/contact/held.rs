@@ -525,14 +525,7 @@ impl System for Held<'_> {
             a[3 * member.particle..3 * member.particle + 3].fill(off);
         }
         for group in &self.groups {
-            let own = |a: &[f64]| {
-                group
-                    .particles()
-                    .iter()
-                    .map(|p| three(a, *p))
-                    .flatten()
-                    .sum()
-            };
+            let own = |a: &[f64]| group.particles().iter().flat_map(|p| three(a, *p)).sum();
             let off: f64 = own(a);
             for particle in group.particles() {
                 a[3 * particle..3 * particle + 3].fill(off);

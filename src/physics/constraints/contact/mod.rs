@@ -46,6 +46,8 @@ pub struct Obstacles {
     among: Option<Surface>,
     /// Of each particle, those that springs or rods join to it, ascending: they do not collide.
     joined: Vec<Vec<usize>>,
+    /// k, N/m, and c, N s/m, where springs and dampers take the place of impulses.
+    penalty: Option<[f64; 2]>,
     /// Of each particle, m.
     radii: Vec<f64>,
     /// Of each particle, 1/kg; 0 where it is fixed, and does not collide.
@@ -200,11 +202,14 @@ impl Obstacles {
             own.sort_unstable();
             own.dedup();
         }
+        let contact = scene.contact.as_ref();
+        let penalty = contact.and_then(|contact| contact.penalty.as_ref());
         let mut all = Self {
             obstacles,
             law: ImpactLaw::RIGHT,
             among,
             joined,
+            penalty: penalty.map(|penalty| [penalty.stiffness, penalty.damping]),
             radii: scene.particles.iter().map(|p| p.radius).collect(),
             weights: scene.particles.iter().map(weight).collect(),
             close: 0.0,
@@ -268,6 +273,23 @@ impl Obstacles {
     /// The particles that springs or rods join to one, ascending.
     pub fn joined_to(&self, particle: usize) -> &[usize] {
         &self.joined[particle]
+    }
+
+    /// k, N/m, and c, N s/m, where springs and dampers take the place of impulses: they are part of the forces then.
+    pub fn penalty(&self) -> Option<[f64; 2]> {
+        self.penalty
+    }
+
+    /// Every contact in which something is inside, in ascending order.
+    pub fn inside(&self, state: &State) -> Vec<Beside> {
+        let at = |particle| three(&state.x, particle);
+        let near = self.near([state.t; 2], |particle| (at(particle), 0.0));
+        let inside = near
+            .pairs()
+            .filter(|(particle, against)| self.gap(*particle, *against, state.t, at) < 0.0);
+        inside
+            .map(|(particle, against)| self.beside(particle, against, state))
+            .collect()
     }
 
     /// Whether particles collide with each other.

@@ -46,7 +46,8 @@ impl Near {
 #[derive(Debug, Default)]
 pub(super) struct Broad {
     last: Arc<Near>,
-    still: Option<Bvh>,
+    /// With the obstacle of each leaf: parry wants leaves numbered from 0.
+    still: Option<(Bvh, Vec<usize>)>,
 }
 
 impl Broad {
@@ -77,7 +78,9 @@ impl Broad {
         if self.still.is_none() || obstacles.any_moves() {
             let each = obstacles.obstacles.iter().enumerate();
             let leaves = each.filter_map(|(at, one)| Some((at, swept(one, ahead)?)));
-            self.still = Some(Bvh::from_iter(BvhBuildStrategy::Binned, leaves));
+            let (numbers, leaves): (Vec<usize>, Vec<Aabb>) = leaves.unzip();
+            let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
+            self.still = Some((tree, numbers));
         }
         self.last = Arc::new(Near {
             against: found(obstacles, &boxes, ahead, self.still.as_ref()),
@@ -93,7 +96,7 @@ fn found(
     obstacles: &Obstacles,
     boxes: &[Aabb],
     times: [f64; 2],
-    tree: Option<&Bvh>,
+    tree: Option<&(Bvh, Vec<usize>)>,
 ) -> Vec<Vec<Against>> {
     let wide = |particle: usize| boxes[particle].loosened(obstacles.radii[particle]);
     let mut all: Vec<Vec<Against>> = vec![Vec::new(); boxes.len()];
@@ -109,9 +112,9 @@ fn found(
             let reach = half.length() + one.reach(times[0], times[1]);
             (away <= reach).then_some(Against::Obstacle(*at))
         }));
-        if let Some(tree) = tree {
+        if let Some((tree, numbers)) = tree {
             let leaves = tree.intersect_aabb(&about);
-            own.extend(leaves.map(|leaf| Against::Obstacle(leaf as usize)));
+            own.extend(leaves.map(|leaf| Against::Obstacle(numbers[leaf as usize])));
         }
     }
     if obstacles.among_particles() {

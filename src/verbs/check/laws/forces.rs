@@ -56,7 +56,7 @@ fn instant(effect: &dyn Effect, t: f64, x: &[f64], v: &[f64]) -> super::Instant 
     let power: f64 = f.iter().zip(v).map(|(f, v)| f * v).sum();
     let moved = |dt: f64| {
         let x: Vec<f64> = x.iter().zip(v).map(|(x, v)| x + dt * v).collect();
-        effect.potential(t, &x)
+        effect.potential(t + dt, &x)
     };
     let largest = x.iter().fold(1e-3, |most: f64, x| most.max(x.abs()));
     let fastest = v.iter().fold(0.0, |most: f64, v| most.max(v.abs()));

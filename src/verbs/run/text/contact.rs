@@ -19,6 +19,11 @@ of the speed before it. *Off the cone*: friction of an impact above µ times its
 friction of what slides or sticks, in parts of N. *Put in*: energy that an impact or friction adds. What forces do between two
 rows, and a run's step, may explain some of it: the sentences below the table say how much.";
 
+const PENALTY: &str = "\
+A spring and a damper press while a particle is inside; a step is cut where one enters and where it leaves. *Impacts* are the
+contacts that began. *Deepest* is how far a particle was inside, at the recorded instants. What the damper takes is part of what
+is dissipated.";
+
 fn rows(report: &Report) -> Vec<(&Outcome, &Contact)> {
     let outcomes = report.outcomes().iter();
     outcomes
@@ -60,7 +65,12 @@ pub fn table(report: &Report) -> String {
     table.markdown("put in (J)", |(_, contact)| {
         laws::cell(contact.laws.energy_gain)
     });
-    let mut text = format!("{INTRO}\n\n{}", table.in_markdown());
+    let pressed = rows.iter().any(|(outcome, _)| {
+        let energy = outcome.energy.as_ref();
+        energy.is_some_and(|energy| energy.potential_final_j.contains_key("penalty"))
+    });
+    let intro = if pressed { PENALTY } else { INTRO };
+    let mut text = format!("{intro}\n\n{}", table.in_markdown());
     let said: Vec<(String, Vec<String>)> = rows
         .iter()
         .map(|(outcome, contact)| (super::engine(outcome), laws::sentences(contact)))
