@@ -95,8 +95,14 @@ impl Part {
     /// The path of a key, for one member or for all: `springs[3].stiffness`, `springs.stiffness`.
     pub fn path(&self, member: Option<usize>, key: &str) -> String {
         match member {
-            Some(at) if let Some((list, inner)) = self.inside() => {
-                format!("{list}[{at}].{inner}.{key}")
+            Some(at) if let Some((outer, inner)) = self.inside() => {
+                let list = PARTS.iter().any(|part| part.key == outer && part.list);
+                let at = if list {
+                    format!("[{at}]")
+                } else {
+                    String::new()
+                };
+                format!("{outer}{at}.{inner}.{key}")
             }
             Some(at) if self.list => format!("{}[{at}].{key}", self.key),
             _ if self.key == SCENE.key => key.to_owned(),

@@ -17,8 +17,6 @@ const PARTS: &[Row] = &[
     ("duplicate", "duration: 5\nname: a\n»duration: 6", &["duration", "given twice"]),
     ("duplicate inside", "springs:\n- particle_ids: [0, 1]\n  stiffness: 1\n  »stiffness: 2", &["springs[0].stiffness", "given twice"]),
     ("merge", "plot:\n  »<<: {dof: 1}\n  particle_id: 0", &["plot", "merge keys", "alias a whole value"]),
-    ("later", "springs: []\n»contact: {}", &["contact", "not supported yet"]),
-    ("later, contact", "»contact: {}", &["not supported yet"]),
     ("moving air under wind", "wind: {direction: [1, 0, 0], »density: 3}", &["wind", "unknown key `density`", "`density` stands under `air`"]),
     ("later, profile", "wind: {direction: [1, 0, 0], »profile: log}", &["wind.profile", "not supported yet"]),
     ("list as key", "»[1, 2]: 3", &["expected a key, found a list"]),

@@ -88,11 +88,11 @@ fn properties<'s>(schema: &'s Value, part: &Part) -> &'s Value {
 /// The keys of which a member has exactly one, which no schema says.
 const ONE_OF: [&str; 3] = ["driven.sine", "driven.velocity", "driven.table"];
 
-/// All parts but those of obstacles, of which each has one shape: they have cases of their own.
+/// All parts but those of obstacles, of which each has one shape, and of contact: they have cases of their own.
 fn parts() -> impl Iterator<Item = &'static Part> {
     PARTS
         .into_iter()
-        .filter(|part| !part.key.starts_with("colliders"))
+        .filter(|part| !part.key.starts_with("colliders") && !part.key.starts_with("contact"))
 }
 
 fn all_rows() -> impl Iterator<Item = (&'static Part, &'static Row)> {

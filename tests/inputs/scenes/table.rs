@@ -6,7 +6,8 @@ use crate::testkit::all_effects;
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::model::{self, Absent, PARTS, Part, Row, SCENE, ValueKind};
 use springcheck::scene::{
-    Collider, Constraints, DampingModel, Driven, Plot, Rod, Scene, Sine, StrainLimit, Table, Value,
+    Collider, Constraints, Contact, DampingModel, Driven, Plot, Rod, Scene, Sine, StrainLimit,
+    Table, Value,
 };
 use springcheck::solvers::external::{Flat, Task};
 use springcheck::truth::converged::key;
@@ -63,6 +64,10 @@ fn full() -> Scene {
         }),
         ..Collider::default()
     });
+    scene.contact = Some(Contact {
+        penalty: Some(model::Penalty::default()),
+        ..Contact::default()
+    });
     scene.rods.push(Rod::default());
     scene.strain_limit = Some(StrainLimit::default());
     scene.constraints = Some(Constraints::default());
@@ -70,6 +75,13 @@ fn full() -> Scene {
         assert!((part.count)(&scene) > 0, "{}: no member", part.key);
     }
     scene
+}
+
+/// Obstacles and contact have cases of their own.
+fn apart(part: &Part) -> bool {
+    ["colliders", "contact"]
+        .iter()
+        .any(|key| part.key.starts_with(key))
 }
 
 fn flat(scene: &Scene) -> serde_json::Value {
@@ -150,14 +162,19 @@ fn a_change_is_seen_by_whatever_depends_on_it() {
                 }
                 "driven" | "driven.sine" => format!("driven.{name}"),
                 "colliders.driven.sine" => format!("colliders.driven.{name}"),
-                key if key.starts_with("colliders") => format!("{key}.{name}"),
+                key if apart(part) => format!("{key}.{name}"),
                 _ => name.to_owned(),
             });
             // Programs get it though no truth depends on it.
             let limit = (part.key == "strain_limit").then_some(title.clone());
-            let name = name.or(limit).or(radius.then(|| "colliders.radii".into()));
-            let found = differences(&flat(&scene), &flat(&original));
-            assert_eq!(found, Vec::from_iter(name), "{title}");
+            let names: Vec<String> = if radius {
+                vec!["colliders.radii".into(), "contact.radii".into()]
+            } else {
+                Vec::from_iter(name.or(limit))
+            };
+            let mut found = differences(&flat(&scene), &flat(&original));
+            found.sort_unstable();
+            assert_eq!(found, names, "{title}");
 
             // Nothing else has changed.
             if let Some(before) = before {
@@ -192,7 +209,7 @@ fn every_number_that_moves_something_can_be_varied() {
 }
 
 /// The keys a scene has to have, with one member of every part, in the order of [`PARTS`].
-const REQUIRED: [(&str, &[(&str, &str)]); 24] = [
+const REQUIRED: [(&str, &[(&str, &str)]); 26] = [
     ("springs", &[("particle_ids", "[0, 1]"), ("stiffness", "1")]),
     ("rods", &[("particle_ids", "[0, 1]")]),
     ("constraints", &[]),
@@ -221,6 +238,9 @@ const REQUIRED: [(&str, &[(&str, &str)]); 24] = [
     ("colliders.mesh", &[]),
     ("colliders.driven", &[]),
     ("colliders.driven.sine", &[]),
+    // Nor is there contact without what collides.
+    ("contact", &[]),
+    ("contact.penalty", &[]),
     ("wind", &[("direction", "[1, 0, 0]"), ("strength", "1")]),
     ("air", &[]),
     ("magnetic", &[("field", "[0, 0, 1]")]),
@@ -255,7 +275,7 @@ fn written(changed: Option<(&Part, &Row, &str)>) -> String {
         let lines: Vec<String> = lines.collect();
         text += &match *key {
             "file" => lines.join("\n"),
-            key if key.starts_with("colliders") => String::new(),
+            _ if apart(part) => String::new(),
             "particles" => format!(
                 "particles: [{{pos: [0, 0, 1], mass: 1, fixed: true}}, {{pos: [0, 1, 0], mass: 1}}, {{{}}}]\n",
                 lines.join(", ")
@@ -299,7 +319,7 @@ fn numbers_are_read_at_their_bounds_and_refused_beyond() {
             continue;
         };
         // A rod has the length of its start, and an obstacle lets no particle start inside.
-        if part.key == "rods" || part.key.starts_with("colliders") {
+        if part.key == "rods" || apart(part) {
             continue;
         }
         let springcheck::scene::limits::Bounds { low, high, unit } = quantity;
@@ -366,7 +386,7 @@ fn a_key_left_out_means_the_default_or_is_missed() {
     for row in all.filter(|row| matches!(row.kind, ValueKind::Part(_))) {
         (row.set)(&mut defaults, 0, 0, Value::Flag(true));
     }
-    for (part, row) in rows().filter(|(part, _)| !part.key.starts_with("colliders")) {
+    for (part, row) in rows().filter(|(part, _)| !apart(part)) {
         let at = (part.count)(&scene) - 1;
         let title = part.path(Some(at), row.key);
         match row.absent {

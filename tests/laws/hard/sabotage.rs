@@ -4,6 +4,7 @@
 mod a;
 mod b;
 mod c;
+mod contact;
 mod rods;
 
 use super::{each_scene, scenes, truths::remembering};
@@ -42,6 +43,7 @@ fn rows() -> impl Iterator<Item = &'static Row> {
         .chain(b::SABOTAGES)
         .chain(c::SABOTAGES)
         .chain(rods::SABOTAGES)
+        .chain(contact::SABOTAGES)
 }
 
 /// The expectations of this engine that `step` does not meet when it runs as it.
