@@ -203,6 +203,16 @@ fn smooth(of: &str, restitution: f64, [sliding, sticking]: [f64; 2]) -> Result<(
     Ok(())
 }
 
+/// A positive number to six digits.
+fn spoken(number: f64) -> f64 {
+    let parts = 10.0_f64.powi(5 - number.log10().floor() as i32);
+    if parts > 0.0 && parts.is_finite() {
+        (number * parts).round() / parts
+    } else {
+        number
+    }
+}
+
 /// Checks that no two free particles that collide start inside each other.
 fn apart(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
     let joined: HashSet<[usize; 2]> = scene.joined().collect();
@@ -227,6 +237,7 @@ fn apart(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
             let ends = starts[id].iter().chain(&starts[other]);
             let largest = ends.fold(particle.radius, |most, c| most.max(c.abs()));
             if deep > TOUCHING * largest && !joined.contains(&[id, other]) {
+                let deep = spoken(deep);
                 let [one, two] = [id, other].map(|id| called(&scene.bodies, id));
                 let message = format!(
                     "expected free particles apart, found {one} and {two} {deep:?} m inside each other at the start"
@@ -322,7 +333,7 @@ fn outside(
         let gap = shape.nearest(at).distance - particle.radius;
         let largest = at.iter().fold(particle.radius, |most, c| most.max(c.abs()));
         if !pressed && gap < -TOUCHING * largest {
-            let deep = -gap;
+            let deep = spoken(-gap);
             let message = format!(
                 "expected every free particle outside, found {name} {deep:?} m inside at the start, as a ball of radius \
                  {:?} m",

@@ -32,18 +32,18 @@ pub const REFUSED: &[Row] = &[
     ("restitution beside a penalty", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  restitution: »0.5\ncontact: {penalty: {stiffness: 1}}", &["colliders[0].restitution", "expected 0 beside `contact.penalty`, found 0.5", "takes the place of restitution"]),
     ("friction beside a penalty", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  friction: »0.5\ncontact: {penalty: {stiffness: 1}}", &["colliders[0].friction", "expected 0 beside `contact.penalty`, found 0.5"]),
     ("static friction beside a penalty", "colliders:\n- plane: {normal: [0, 0, 1], offset: -9}\n  static_friction: »0.5\ncontact: {penalty: {stiffness: 1}}", &["colliders[0].static_friction", "expected 0 beside `contact.penalty`, found 0.5"]),
-    ("restitution of particles beside their penalty", "contact: {particles: true, restitution: »0.5, penalty: {stiffness: 1}}", &["contact.restitution", "expected 0 beside `contact.penalty`, found 0.5"]),
-    ("friction of particles beside their penalty", "contact: {particles: true, friction: »0.5, penalty: {stiffness: 1}}", &["contact.friction", "expected 0 beside `contact.penalty`, found 0.5"]),
-    ("penalty without stiffness", "contact: {particles: true, penalty: »{damping: 1}}", &["penalty.stiffness", "missing"]),
+    ("restitution of particles beside their penalty", "particles: [{pos: [0, 0, 1], mass: 1}, {pos: [0, 0, 0], mass: 1}]\ncontact: {particles: true, restitution: »0.5, penalty: {stiffness: 1}}", &["contact.restitution", "expected 0 beside `contact.penalty`, found 0.5"]),
+    ("friction of particles beside their penalty", "particles: [{pos: [0, 0, 1], mass: 1}, {pos: [0, 0, 0], mass: 1}]\ncontact: {particles: true, friction: »0.5, penalty: {stiffness: 1}}", &["contact.friction", "expected 0 beside `contact.penalty`, found 0.5"]),
+    ("penalty without stiffness", "particles: [{pos: [0, 0, 1], mass: 1}, {pos: [0, 0, 0], mass: 1}]\ncontact: {particles: true, penalty: »{damping: 1}}", &["penalty.stiffness", "missing"]),
     ("colliders beside a driven rod", "particles: [{pos: [0, 0, 1], fixed: true}, {pos: [0, 0, 0], mass: 1}]
 rods: [{particle_ids: [0, 1]}]
-driven: [{particle_id: 0, velocity: [0, 0, 1]}]
+driven: [{particle_id: 0, velocity: [1, 0, 0]}]
 colliders: »[{plane: {normal: [0, 0, 1], offset: -9}}]", &["colliders", "not supported yet beside rods with a driven end"]),
     ("contact of nothing", "contact: »{}", &["contact", "expected something to say of contact, found nothing"]),
     ("contact, no mapping", "contact: »3", &["contact", "expected a mapping such as {particles: true, restitution: 0.5}, found the number `3`"]),
     ("restitution of particles that do not collide", "contact: {restitution: »0.5}", &["contact.restitution", "expected `particles: true`"]),
-    ("restitution of particles above 1", "contact: {particles: true, restitution: »1.5}", &["contact.restitution", "at most 1"]),
-    ("static friction of particles below the other", "contact: {particles: true, friction: 0.5, static_friction: »0.4}", &["contact.static_friction", "at least the friction (0.5), found 0.4"]),
+    ("restitution of particles above 1", "particles: [{pos: [0, 0, 1], mass: 1}, {pos: [0, 0, 0], mass: 1}]\ncontact: {particles: true, restitution: »1.5}", &["contact.restitution", "at most 1"]),
+    ("static friction of particles below the other", "particles: [{pos: [0, 0, 1], mass: 1}, {pos: [0, 0, 0], mass: 1}]\ncontact: {particles: true, friction: 0.5, static_friction: »0.4}", &["contact.static_friction", "at least the friction (0.5), found 0.4"]),
     ("particles inside each other", "particles: [{pos: [0, 0, 0], mass: 1}, {pos: [0, 0.15, 0], mass: 1}]
 contact: {particles: »true}", &["contact.particles", "expected free particles apart, found 0 and 1 0.05 m inside each other"]),
 ];
