@@ -8,7 +8,8 @@ mod impact;
 mod member;
 mod near;
 
-pub use held::{Change, Held, MOST, TooManyTouch};
+pub use group::{MOST, TooManyTouch};
+pub use held::{Change, Held};
 pub use impact::{Hit, ImpactLaw};
 pub use near::Near;
 

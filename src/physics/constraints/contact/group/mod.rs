@@ -6,16 +6,21 @@
 //! directions from before, positions and velocities alike, as RATTLE does (Andersen 1983). So the motion is of second
 //! order.
 
+mod links;
+mod pressing;
+mod sets;
+
+pub(super) use sets::grouped;
+pub use sets::{MOST, TooManyTouch};
+
 use super::member::{Contact, unit};
 use super::{Against, Beside, Obstacles, dot, minus, norm, three};
 use crate::physics::State;
 use crate::physics::constraints::Rods;
+use links::{DEPENDENT, Kept, Link, Rows, Rubs, inverse, plain, pressed, rod_now};
 use nalgebra::{DMatrix, DVector};
+use pressing::pressing;
 
-/// Rows that depend on others to this part add no direction.
-const DEPENDENT: f64 = 1e-9;
-/// Forces below this part of the largest are none.
-const NONE: f64 = 1e-12;
 /// Newton's steps onto surfaces and rods.
 const ITERATIONS: usize = 50;
 
@@ -38,134 +43,6 @@ pub(super) struct Group {
     lower: DMatrix<f64>,
     /// The given coordinates at the beginning.
     start: DVector<f64>,
-}
-
-/// A contact that presses, or a rod.
-#[derive(Debug, Clone, Copy)]
-struct Link {
-    /// Places in the group; one where the other is an obstacle, or does not move.
-    ends: [Option<usize>; 2],
-    /// From the second to the first, a unit vector.
-    normal: [f64; 3],
-    /// What turning adds to the acceleration along the normal, m/s².
-    turning: f64,
-    kept: Kept,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Kept {
-    Contact(Contact, Rubs),
-    Rod(usize),
-}
-
-/// How a contact rubs.
-#[derive(Debug, Clone, Copy)]
-enum Rubs {
-    Not,
-    /// In this direction.
-    Slides([f64; 3]),
-    Sticks,
-}
-
-/// What links keep, as rows over scaled coordinates, and what that takes.
-struct Rows {
-    /// Normals, and two directions across for each that sticks.
-    kept: DMatrix<f64>,
-    /// For each row its friction, in multiples of its multiplier.
-    rubs: DMatrix<f64>,
-    /// Of the matrix of multipliers.
-    inverse: DMatrix<f64>,
-    /// The link of each row, and its direction.
-    of: Vec<(usize, [f64; 3])>,
-}
-
-impl Rows {
-    fn new(links: &[Link], scales: &[f64]) -> Self {
-        let size = 3 * scales.len();
-        let mut of = Vec::new();
-        for (at, link) in links.iter().enumerate() {
-            of.push((at, link.normal));
-            if let Kept::Contact(_, Rubs::Sticks) = link.kept {
-                let across = unit(smallest_across(link.normal)).unwrap_or([0.0; 3]);
-                of.push((at, across));
-                of.push((at, super::cross(link.normal, across)));
-            }
-        }
-        let mut kept = DMatrix::zeros(of.len(), size);
-        let mut rubs = DMatrix::zeros(of.len(), size);
-        for (row, (at, direction)) in of.iter().enumerate() {
-            put(&mut kept, row, &links[*at], *direction, scales);
-            let normal = *direction == links[*at].normal;
-            if let (Kept::Contact(contact, Rubs::Slides(forward)), true) = (links[*at].kept, normal)
-            {
-                let against = forward.map(|c| -contact.friction[0] * c);
-                put(&mut rubs, row, &links[*at], against, scales);
-            }
-        }
-        let matrix = &kept * (&kept + &rubs).transpose();
-        Self {
-            inverse: inverse(matrix),
-            kept,
-            rubs,
-            of,
-        }
-    }
-
-    /// The multipliers, m/s² of the first particle's mass, at a scaled acceleration without them.
-    fn multipliers(
-        &self,
-        obstacles: &Obstacles,
-        links: &[Link],
-        t: f64,
-        a: &DVector<f64>,
-    ) -> DVector<f64> {
-        &self.inverse * (self.right(obstacles, links, t) - &self.kept * a)
-    }
-
-    /// The accelerations along the rows that are kept.
-    fn right(&self, obstacles: &Obstacles, links: &[Link], t: f64) -> DVector<f64> {
-        let each = self.of.iter().map(|(at, direction)| {
-            let link = &links[*at];
-            let pushed = match link.kept {
-                Kept::Contact(contact, _) => obstacles.moved(contact.beside.against, t)[2],
-                Kept::Rod(_) => [0.0; 3],
-            };
-            let along = *direction == link.normal;
-            dot(*direction, pushed) + if along { link.turning } else { 0.0 }
-        });
-        DVector::from_iterator(self.of.len(), each)
-    }
-}
-
-/// The inverse of a matrix; where rows depend on each other, the smallest multipliers.
-fn inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
-    let (size, largest) = (matrix.nrows(), matrix.amax());
-    let zeros = DMatrix::zeros(size, size);
-    // An empty matrix has no singular values.
-    if largest > 0.0 {
-        matrix.pseudo_inverse(DEPENDENT * largest).unwrap_or(zeros)
-    } else {
-        zeros
-    }
-}
-
-/// A row: a direction at the first end, and against it at the second.
-fn put(rows: &mut DMatrix<f64>, row: usize, link: &Link, direction: [f64; 3], scales: &[f64]) {
-    for (end, sign) in link.ends.iter().zip([1.0, -1.0]) {
-        if let Some(end) = *end {
-            for axis in 0..3 {
-                rows[(row, 3 * end + axis)] += sign * direction[axis] / scales[end];
-            }
-        }
-    }
-}
-
-/// A vector across another.
-fn smallest_across(n: [f64; 3]) -> [f64; 3] {
-    let least = |best: usize, c: usize| if n[c].abs() < n[best].abs() { c } else { best };
-    let mut other = [0.0; 3];
-    other[(0..3).fold(0, least)] = 1.0;
-    super::cross(n, other)
 }
 
 impl Group {
@@ -577,46 +454,6 @@ impl Group {
     }
 }
 
-/// The same links without friction: normals alone.
-fn plain(links: &[Link]) -> Vec<Link> {
-    let each = links.iter().map(|link| Link {
-        kept: match link.kept {
-            Kept::Contact(contact, _) => Kept::Contact(contact, Rubs::Not),
-            rod @ Kept::Rod(_) => rod,
-        },
-        ..*link
-    });
-    each.collect()
-}
-
-/// A rod at a state; None where it has no direction.
-fn rod_now(rods: &Rods, rod: usize, ends: [Option<usize>; 2], state: &State) -> Option<Link> {
-    let [i, j] = rods.ends()[rod];
-    let away = minus(three(&state.x, i), three(&state.x, j));
-    let velocity = minus(three(&state.v, i), three(&state.v, j));
-    let normal = unit(away)?;
-    let bend = crate::shape::Bend::Point(norm(away));
-    Some(Link {
-        ends,
-        normal,
-        turning: bend.turning(normal, velocity),
-        kept: Kept::Rod(rod),
-    })
-}
-
-/// The multiplier along the normal of a link, and the size of those across.
-fn pressed(rows: &Rows, multipliers: &DVector<f64>, link: usize) -> (f64, f64) {
-    let own: Vec<f64> = rows
-        .of
-        .iter()
-        .zip(multipliers)
-        .filter(|((at, _), _)| *at == link)
-        .map(|(_, multiplier)| *multiplier)
-        .collect();
-    let across = own[1..].iter().fold(0.0_f64, |sum, c| sum.hypot(*c));
-    (own[0], across)
-}
-
 /// What is left of a vector across axes at right angles, and its parts along them.
 fn across(axes: &[DVector<f64>], own: &DVector<f64>) -> (DVector<f64>, Vec<f64>) {
     let mut left = own.clone();
@@ -630,87 +467,4 @@ fn across(axes: &[DVector<f64>], own: &DVector<f64>) -> (DVector<f64>, Vec<f64>)
         }
     }
     (left, parts)
-}
-
-/// Of these links the rods, and the contacts that press while no other is pressed into; what sticks beyond its friction
-/// slides. Contacts are taken and left one by one, the worst first.
-fn pressing(
-    obstacles: &Obstacles,
-    links: Vec<Link>,
-    scales: &[f64],
-    t: f64,
-    a: &DVector<f64>,
-) -> Vec<Link> {
-    let mut links = links;
-    let mut taken = vec![true; links.len()];
-    for _ in 0..4 * links.len() + 8 {
-        let set: Vec<usize> = (0..links.len()).filter(|at| taken[*at]).collect();
-        let now: Vec<Link> = set.iter().map(|at| links[*at]).collect();
-        if now.is_empty() {
-            break;
-        }
-        let rows = Rows::new(&now, scales);
-        let multipliers = rows.multipliers(obstacles, &now, t, a);
-        let least = |worst: Option<(f64, usize)>, (value, at): (f64, usize)| match worst {
-            Some((least, _)) if least <= value => worst,
-            _ => Some((value, at)),
-        };
-        let contact = |at: &usize| matches!(now[*at].kept, Kept::Contact(..));
-        let contacts = || (0..now.len()).filter(contact);
-        let pulls = contacts()
-            .map(|at| (pressed(&rows, &multipliers, at).0, at))
-            .filter(|(pressed, _)| *pressed <= NONE * a.amax())
-            .fold(None, least);
-        if let Some((_, at)) = pulls {
-            taken[set[at]] = false;
-            continue;
-        }
-        let slips = contacts()
-            .filter_map(|at| {
-                let Kept::Contact(contact, Rubs::Sticks) = now[at].kept else {
-                    return None;
-                };
-                let (normal, across) = pressed(&rows, &multipliers, at);
-                let over = contact.friction[1] * normal - across;
-                (over <= 0.0).then_some((over, at))
-            })
-            .fold(None, least);
-        if let Some((_, at)) = slips {
-            // Friction acts against the direction that it would slide in.
-            let force = rows
-                .of
-                .iter()
-                .zip(&multipliers)
-                .skip_while(|((of, _), _)| *of != at);
-            let mut across = [0.0; 3];
-            for ((_, direction), multiplier) in force.skip(1).take(2) {
-                for axis in 0..3 {
-                    across[axis] -= multiplier * direction[axis];
-                }
-            }
-            if let Kept::Contact(contact, rubs) = &mut links[set[at]].kept {
-                *rubs = match unit(across) {
-                    Some(forward) if contact.friction[0] > 0.0 => Rubs::Slides(forward),
-                    _ => Rubs::Not,
-                };
-            }
-            continue;
-        }
-        let moved = a + (&rows.kept + &rows.rubs).tr_mul(&multipliers);
-        let into = (0..links.len())
-            .filter(|at| !taken[*at])
-            .map(|at| {
-                let one = Rows::new(&plain(&links[at..=at]), scales);
-                let right = one.right(obstacles, &links[at..=at], t);
-                let opening = (&one.kept * &moved)[0] - right[0];
-                (opening, at)
-            })
-            .filter(|(opening, _)| *opening < -NONE * a.amax())
-            .fold(None, least);
-        let Some((_, at)) = into else { break };
-        taken[at] = true;
-    }
-    let each = links.into_iter().zip(taken);
-    each.filter_map(|(link, taken)| taken.then_some(link))
-        .collect()
 }
