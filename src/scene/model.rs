@@ -554,8 +554,8 @@ declare! {
     /// Metres from the centre to each side, positive.
     half_extents: [f64; 3] = [1.0; 3], "half_extents" => ValueKind::Numbers(3, limits::OBSTACLE),
         Required("give half of its length, depth and height in metres"), Some("half_extents");
-    /// The axis it is turned about, of a length that is the angle, rad.
-    rotation: [f64; 3] = [0.0; 3], "rotation" => ValueKind::Numbers(3, Bounds::signed(1e3, "rad")),
+    /// The axis it is turned about, of a length that is the angle, rad, up to a whole turn.
+    rotation: [f64; 3] = [0.0; 3], "rotation" => ValueKind::Numbers(3, Bounds::signed(std::f64::consts::TAU, "rad")),
         Usual, Some("rotations");
 }
 

@@ -269,6 +269,7 @@ impl std::fmt::Debug for Solver {
 
 /// What [`RapierContact`](crate::integrators::RapierContact) is not the law of.
 fn lone_contact(scene: &Scene, system: &ParticleSystem) -> Result<(), Unsupported> {
+    rapier::takes_obstacles(scene)?;
     let reason = if system.strain_limiter().is_some() {
         "rapier has no strain limit"
     } else if scene.colliders.is_empty() {
@@ -278,7 +279,7 @@ fn lone_contact(scene: &Scene, system: &ParticleSystem) -> Result<(), Unsupporte
     } else if system.obstacles().is_some_and(Obstacles::among_particles) {
         "contact of particles with each other is not written here: rapier has it"
     } else {
-        return rapier::takes_obstacles(scene);
+        return Ok(());
     };
     Err(Unsupported {
         reason: reason.to_owned(),

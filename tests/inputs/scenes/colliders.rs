@@ -15,6 +15,7 @@ pub const REFUSED: &[Row] = &[
     ("ball without radius", "colliders: [{ball: »{center: [0, 0, -9]}}]", &["colliders[0].ball.radius", "missing"]),
     ("ball of radius 0", "colliders: [{ball: {center: [0, 0, -9], radius: »0}}]", &["colliders[0].ball.radius", "expected a positive number (m), found 0"]),
     ("box of no height", "colliders:\n- box: {center: [0, 0, -9], half_extents: [1, 1, »0]}", &["colliders[0].box.half_extents", "expected a positive number (m), found 0"]),
+    ("box turned by degrees", "colliders:\n- box: {center: [0, 0, -9], half_extents: [1, 1, 1], rotation: [0, 0, »45]}", &["colliders[0].box.rotation", "at most 6.28", "(rad), found 45"]),
     ("capsule of one point", "colliders:\n- capsule: {a: [0, 0, -9], b: »[0, 0, -9], radius: 1}", &["colliders[0].capsule.b", "two ends apart", "`ball: {center, radius}`"]),
     ("mesh without triangles", "colliders:\n- mesh: {vertices: [[0, 0, -9], [1, 0, -9], [0, 1, -9]], triangles: »[]}", &["colliders[0].mesh.triangles", "expected"]),
     ("mesh with a vertex that is not there", "colliders:\n- mesh:\n    vertices: [[0, 0, -9], [1, 0, -9], [0, 1, -9]]\n    triangles: [»[0, 1, 3]]", &["colliders[0].mesh.triangles[0]", "a vertex from 0 to 2, found 3"]),
