@@ -54,6 +54,7 @@ pub mod report;
 pub mod scene;
 pub mod shape;
 pub mod solvers;
+mod space;
 pub mod trajectory;
 pub mod truth;
 mod vector;

@@ -9,6 +9,7 @@ use super::newton::Newton;
 use super::{Integrator, Settings, StepError, agree, axpy, refuse};
 use crate::physics::constraints::contact::{Against, Obstacles};
 use crate::physics::{ForceKinds, Linearization, Power, State, System};
+use crate::space::{dot, three};
 use std::f64::consts::TAU;
 
 /// Gaps of more than this, m, are no contacts, whatever the speed.
@@ -79,20 +80,20 @@ struct Row {
 impl Row {
     /// The gap, m, `t` seconds into the step.
     fn gap(&self, x: &[f64], t: f64) -> f64 {
-        let x = at(x, self.particle);
+        let x = three(x, self.particle);
         let moved = |axis: usize| (x[axis] - self.there[axis]) - t * self.surface[axis];
         dot(self.normal, [0, 1, 2].map(moved))
     }
 
     /// How much of a gap is rounding, m.
     fn rounding(&self, x: &[f64]) -> f64 {
-        let size = at(x, self.particle).map(f64::abs);
+        let size = three(x, self.particle).map(f64::abs);
         ROUNDING * size.iter().fold(RADIUS, |most, c| c.max(most))
     }
 
     /// Relative to the obstacle, m/s.
     fn velocity(&self, v: &[f64]) -> [f64; 3] {
-        let v = at(v, self.particle);
+        let v = three(v, self.particle);
         [0, 1, 2].map(|axis| v[axis] - self.surface[axis])
     }
 
@@ -207,7 +208,7 @@ impl RapierContact {
             let beside = obstacles.beside(particle, against, state);
             let [old, new] = [state.t, state.t + h].map(|t| obstacles.moved(against, t)[0]);
             let surface = [0, 1, 2].map(|axis| (new[axis] - old[axis]) / h);
-            let x = at(&state.x, particle);
+            let x = three(&state.x, particle);
             let mut row = Row {
                 particle,
                 obstacle,
@@ -383,16 +384,8 @@ impl Integrator for RapierContact {
     }
 }
 
-fn at(all: &[f64], particle: usize) -> [f64; 3] {
-    [0, 1, 2].map(|axis| all[3 * particle + axis])
-}
-
 fn add(all: &mut [f64], particle: usize, factor: f64, what: [f64; 3]) {
     for (axis, part) in what.iter().enumerate() {
         all[3 * particle + axis] += factor * part;
     }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

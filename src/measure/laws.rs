@@ -6,6 +6,7 @@
 
 use crate::physics::constraints::contact::{Against, Beside, Obstacles};
 use crate::physics::{ParticleSystem, State, System};
+use crate::space::{dot, minus, norm, three};
 use crate::trajectory::{Rows, Trajectory};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -538,20 +539,4 @@ impl<'a> Pair<'a> {
         let unexplained = parting(&next) - parting(&now) - self.h * forces;
         unexplained.abs() <= 0.5 * self.pushes * self.h + self.off_v
     }
-}
-
-fn three(all: &[f64], particle: usize) -> [f64; 3] {
-    [0, 1, 2].map(|axis| all[3 * particle + axis])
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| a[axis] - b[axis])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }

@@ -125,7 +125,7 @@ impl Engine for IntegratorEngine {
     fn counts(&self) -> Counts {
         let counted = evaluated(&self.system, &self.corrected);
         Counts {
-            // Who deals with obstacles by himself does not count impacts.
+            // An integrator with a contact of its own counts no impacts.
             corrections: counted
                 .corrections
                 .filter(|_| !self.integrator.keeps_contact()),

@@ -11,17 +11,14 @@ mod root;
 use super::{Integrator, StepError};
 use crate::physics::constraints::contact::{Against, Beside, Change, Held, Near, Obstacles};
 use crate::physics::{State, System};
-use path::{Path, crossing};
-use root::Bracket;
+use crate::space::three;
+use path::{Path, meeting};
+use root::Due;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Roots are located to this part of a step.
 pub const LOCATED: f64 = 1e-12;
-/// Cuts of no length after which no further event of a step is located.
-const IDLE: u32 = 16;
-/// The most cuts in a step.
-const CUTS: usize = 2_000;
 /// Where more particles than these have events in one step, the rest of these are found each on its particle's own path.
 const MANY: usize = 4;
 
@@ -43,16 +40,6 @@ impl Event {
             Self::Impact { particle, .. } | Self::Contact { particle, .. } => particle,
         }
     }
-}
-
-/// An event due within a sub-step: none at `clear`, and due at `due`, both in seconds from the start of the sub-step.
-#[derive(Debug, Clone, Copy)]
-struct Due {
-    event: Event,
-    clear: f64,
-    due: f64,
-    /// The gap at which an impact is due, m: 0, or the rounding of one for a particle that has not risen above that.
-    level: f64,
 }
 
 /// Advances a state by `h` seconds from `state.t`, through all events where there are obstacles; returns the number of
@@ -82,34 +69,19 @@ fn step(
     h: f64,
     state: &mut State,
 ) -> Result<u64, StepError> {
-    let begin = state.t;
     let mut walk = Walk {
         integrator,
         system,
         obstacles,
         h,
         impacts: 0,
-        most: most_located(obstacles),
         involved: BTreeSet::new(),
-        near: obstacles.near([state.t; 2], |particle| (three(&state.x, particle), 0.0)),
+        near: obstacles.near_now(state),
     };
     walk.settle(state)?;
-    let mut done = 0.0;
-    let mut idle = 0;
-    for _ in 0..CUTS {
-        let left = h - done;
-        let taken = walk.advance(left, state)?;
-        done += taken;
-        idle += u32::from(taken <= LOCATED * h);
-        if idle > IDLE {
-            walk.most = 0;
-        }
-        state.t = begin + done;
-        if taken >= left {
-            return Ok(walk.impacts);
-        }
-    }
-    Err(StepError::TooManyEvents { t: state.t })
+    let advance = |left: f64, located: usize, state: &mut State| walk.advance(left, located, state);
+    root::cut(h, most_located(obstacles), state, advance)?;
+    Ok(walk.impacts)
 }
 
 /// The most particles whose events are located on sub-steps.
@@ -128,8 +100,6 @@ struct Walk<'a> {
     /// The whole step, s.
     h: f64,
     impacts: u64,
-    /// The most particles whose events are located on sub-steps.
-    most: usize,
     /// The particles with events so far.
     involved: BTreeSet<usize>,
     /// What may touch where particles are now.
@@ -153,9 +123,9 @@ impl Walk<'_> {
         }
         let (obstacles, rods) = (self.obstacles, self.system.rods());
         let mut struck = due.clone();
-        let impacts = obstacles.strike(&self.near, rods, due, state)?;
-        self.impacts += impacts.1;
-        struck.extend(impacts.0);
+        let (more, impulses) = obstacles.strike(&self.near, rods, (due, true), state)?;
+        self.impacts += impulses;
+        struck.extend(more);
         obstacles.push_out(&self.near, &mut struck, state);
         // What has come to rest holds up what lies on it.
         while self.rest(&struck, state)? {}
@@ -191,7 +161,9 @@ impl Walk<'_> {
     fn acceleration(&self, state: &State) -> Result<Vec<f64>, StepError> {
         if self.obstacles.among_particles() || self.system.rods().is_some() {
             let touching = self.obstacles.touching(&self.near, state);
-            if let Some(held) = self.held(&touching, state)? {
+            let taken = self.integrator.takes();
+            let (system, obstacles) = (self.system, self.obstacles);
+            if let Some(held) = Held::at(system, obstacles, &touching, state, taken)? {
                 return Ok(held.whole(state));
             }
         }
@@ -201,19 +173,9 @@ impl Walk<'_> {
         Ok(a)
     }
 
-    fn held(&self, touching: &[Beside], state: &State) -> Result<Option<Held<'_>>, StepError> {
-        let taken = self.integrator.takes();
-        Ok(Held::at(
-            self.system,
-            self.obstacles,
-            touching,
-            state,
-            taken,
-        )?)
-    }
-
-    /// One sub-step of at most `left` seconds, to the next event. Returns its length.
-    fn advance(&mut self, left: f64, state: &mut State) -> Result<f64, StepError> {
+    /// One sub-step of at most `left` seconds, to the next event, if no more particles than `located` have some. Returns its
+    /// length.
+    fn advance(&mut self, left: f64, located: usize, state: &mut State) -> Result<f64, StepError> {
         let start = state.clone();
         let (system, obstacles) = (self.system, self.obstacles);
         let touching = obstacles.touching(&self.near, &start);
@@ -222,18 +184,19 @@ impl Walk<'_> {
         let held = held.as_ref();
         self.integrator.forget();
         let mut end = self.sub_step(held, left, &start)?;
-        self.near = obstacles.near([start.t, start.t + left], |particle| {
-            Path::new(particle, left, &start, &end).ball()
-        });
+        self.near = path::near(obstacles, left, &start, &end);
         let a = held.map(|held| held.free(&end));
         let mut due = Self::changes(held, left, &end, a.as_deref());
         due.extend(self.impacts(held, left, &start, &end));
         self.involved
             .extend(due.iter().map(|due| due.event.particle()));
-        let first = if self.involved.len() > self.most {
+        let first = if self.involved.len() > located {
             None
         } else {
-            self.first(held, &mut due, left, &start)?
+            let sign = |due: &Due<Event>, state: &State| sign(obstacles, held, due, state);
+            let within = [left, self.h];
+            let to = |h| self.sub_step(held, h, &start);
+            root::first(&mut due, within, &start, sign, to)?
         };
         let Some((time, at, event)) = first else {
             // Those of many particles, and those that were not found on sub-steps.
@@ -260,34 +223,6 @@ impl Walk<'_> {
         Ok(time)
     }
 
-    /// The first of these events within `left` seconds, its time and the state there; None where none is found.
-    fn first(
-        &mut self,
-        held: Option<&Held>,
-        all: &mut [Due],
-        left: f64,
-        start: &State,
-    ) -> Result<Option<(f64, State, Event)>, StepError> {
-        all.sort_by(|a, b| a.due.total_cmp(&b.due));
-        let mut first: Option<(f64, State, Event)> = None;
-        for due in all {
-            let mut due = *due;
-            // What is not due where another event was found comes later.
-            if let Some((time, at, _)) = &first {
-                if due.clear >= *time || sign(self.obstacles, held, &due, at) >= 0.0 {
-                    continue;
-                }
-                due.due = due.due.min(*time);
-            }
-            if let Some((time, at)) = self.locate(held, &due, left, start)?
-                && first.as_ref().is_none_or(|(bound, ..)| time < *bound)
-            {
-                first = Some((time, at, due.event));
-            }
-        }
-        Ok(first)
-    }
-
     /// The state after a sub-step of `h` seconds, without the work of friction and of moving obstacles.
     fn sub_step(&mut self, held: Option<&Held>, h: f64, start: &State) -> Result<State, StepError> {
         let Some(held) = held else {
@@ -308,7 +243,7 @@ impl Walk<'_> {
     }
 
     /// What has changed in contacts at the end of a sub-step.
-    fn changes(held: Option<&Held>, h: f64, end: &State, a: Option<&[f64]>) -> Vec<Due> {
+    fn changes(held: Option<&Held>, h: f64, end: &State, a: Option<&[f64]>) -> Vec<Due<Event>> {
         let changes = held.zip(a).map(|(held, a)| held.changes(end, a));
         let changes = changes.unwrap_or_default();
         let due = changes.into_iter().filter(|(.., by)| *by > 0.0);
@@ -322,66 +257,23 @@ impl Walk<'_> {
     }
 
     /// The impacts of particles that do not stay in contact, on the cubic through both ends of their paths.
-    fn impacts(&self, held: Option<&Held>, h: f64, start: &State, end: &State) -> Vec<Due> {
-        let mut found = Vec::new();
-        for (particle, against) in self.near.pairs() {
-            if held.is_some_and(|held| held.holds(particle, against)) {
-                continue;
-            }
-            let path = |particle| Path::new(particle, h, start, end);
-            let (own, other) = (
-                path(particle),
-                match against {
-                    Against::Particle(other) => Some((other, path(other))),
-                    Against::Obstacle(_) => None,
-                },
-            );
-            let gap = |s: f64| {
-                let at = |which: usize| match &other {
-                    Some((other, path)) if *other == which => path.at(s),
-                    _ => own.at(s),
-                };
-                self.obstacles.gap(particle, against, start.t + s * h, at)
-            };
-            let reach = self.obstacles.reach(against, start.t, start.t + h);
-            let others = other.as_ref().map_or(0.0, |(_, path)| path.length());
-            let bound = own.length() + reach + others;
-            let last = gap(1.0);
-            if last > bound {
-                continue;
-            }
-            let close = self.obstacles.close(own.at(0.0));
-            if let Some(([clear, due], level)) = crossing(gap, bound, close) {
-                found.push(Due {
-                    event: Event::Impact { particle, against },
-                    clear: clear * h,
-                    due: due * h,
-                    level,
-                });
-            }
-        }
+    fn impacts(&self, held: Option<&Held>, h: f64, start: &State, end: &State) -> Vec<Due<Event>> {
+        let free = self.near.pairs().filter(|(particle, against)| {
+            !held.is_some_and(|held| held.holds(*particle, *against))
+        });
+        let meets = |(particle, against): (usize, Against)| {
+            let event = Event::Impact { particle, against };
+            meeting(
+                self.obstacles,
+                (particle, against),
+                (event, 1.0),
+                h,
+                [start, end],
+            )
+        };
+        let mut found: Vec<Due<Event>> = free.filter_map(meets).collect();
         found.sort_by(|a, b| a.due.total_cmp(&b.due));
         found
-    }
-
-    /// The time of an event and the state there, on sub-steps of at most `left` seconds from the start; None where it does
-    /// not happen on them.
-    fn locate(
-        &mut self,
-        held: Option<&Held>,
-        due: &Due,
-        left: f64,
-        start: &State,
-    ) -> Result<Option<(f64, State)>, StepError> {
-        let bracket = Bracket {
-            clear: due.clear,
-            due: due.due,
-            left,
-            h: self.h,
-        };
-        let obstacles = self.obstacles;
-        let sign = |state: &State| sign(obstacles, held, due, state);
-        root::locate(&bracket, start, sign, |h| self.sub_step(held, h, start))
     }
 
     /// Many events in one step: each impact at its own time on its particle's path, which the change of velocity bends from
@@ -390,7 +282,7 @@ impl Walk<'_> {
     fn each_on_its_path(
         &mut self,
         held: Option<&Held>,
-        due: &[Due],
+        due: &[Due<Event>],
         h: f64,
         start: &State,
         end: &mut State,
@@ -416,9 +308,7 @@ impl Walk<'_> {
             let move_to = |s: f64, there: &mut State| {
                 there.t = start.t + s * h;
                 for (particle, path) in &paths {
-                    let range = 3 * particle..3 * particle + 3;
-                    there.x[range.clone()].copy_from_slice(&path.at(s));
-                    there.v[range].copy_from_slice(&path.velocity(s));
+                    path.put(*particle, s, there);
                 }
             };
             let (mut low, mut high) = (due.clear / h, due.due / h);
@@ -436,9 +326,12 @@ impl Walk<'_> {
             // Of its own place alone is it known when it is there.
             let work = std::mem::replace(&mut there.work, end.work);
             let impacts = match against {
-                Against::Obstacle(_) => self
-                    .obstacles
-                    .strike_obstacles(&self.near, rods, particle, &mut there)?,
+                Against::Obstacle(_) => {
+                    let alone = ([particle].into(), false);
+                    self.obstacles
+                        .strike(&self.near, rods, alone, &mut there)?
+                        .1
+                }
                 Against::Particle(_) => {
                     let beside = self.obstacles.beside(particle, against, &there);
                     u64::from(self.obstacles.apply(rods, &beside, &mut there)?)
@@ -468,7 +361,7 @@ impl Walk<'_> {
 }
 
 /// Positive before an event, negative after it.
-fn sign(obstacles: &Obstacles, held: Option<&Held>, due: &Due, state: &State) -> f64 {
+fn sign(obstacles: &Obstacles, held: Option<&Held>, due: &Due<Event>, state: &State) -> f64 {
     match due.event {
         Event::Impact { particle, against } => {
             let at = |particle| three(&state.x, particle);
@@ -481,8 +374,4 @@ fn sign(obstacles: &Obstacles, held: Option<&Held>, due: &Due, state: &State) ->
             -own.map(|c| c.2).fold(f64::NEG_INFINITY, f64::max)
         }
     }
-}
-
-fn three(all: &[f64], particle: usize) -> [f64; 3] {
-    [0, 1, 2].map(|axis| all[3 * particle + axis])
 }

@@ -1,9 +1,9 @@
 //! Contact by penalty: a step is cut where a particle enters what it collides with, and where it leaves it. Within a
 //! sub-step the same contacts press, whatever stages look ahead: so the force is smooth there, and a method keeps its order.
 
-use super::path::{Path, crossing};
-use super::root::{self, Bracket};
-use super::{CUTS, IDLE, LOCATED, most_located, three};
+use super::most_located;
+use super::path::{self, Path, meeting};
+use super::root::{self, Due};
 use crate::integrators::{Integrator, StepError};
 use crate::physics::constraints::contact::{Against, Beside, Obstacles};
 use crate::physics::constraints::{Rods, StrainLimiter};
@@ -11,6 +11,7 @@ use crate::physics::effects::{PenaltyLaw, Press};
 use crate::physics::{
     Dampers, ForceKinds, Injected, Jacobian, Linearization, Power, State, Sweep, System,
 };
+use crate::space::three;
 use std::collections::BTreeSet;
 
 /// A particle, and what it is inside of.
@@ -25,12 +26,10 @@ pub(super) fn step(
     h: f64,
     state: &mut State,
 ) -> Result<u64, StepError> {
-    let begin = state.t;
     let mut walk = Walk {
         integrator,
         h,
         entered: 0,
-        most: most_located(obstacles),
         involved: BTreeSet::new(),
         frozen: Frozen {
             system,
@@ -39,27 +38,14 @@ pub(super) fn step(
             pressed: pressed(system, obstacles, state),
         },
     };
-    let (mut done, mut idle) = (0.0, 0);
-    for _ in 0..CUTS {
-        let left = h - done;
-        let taken = walk.advance(left, state)?;
-        done += taken;
-        idle += u32::from(taken <= LOCATED * h);
-        if idle > IDLE {
-            walk.most = 0;
-        }
-        state.t = begin + done;
-        if taken >= left {
-            return Ok(walk.entered);
-        }
-    }
-    Err(StepError::TooManyEvents { t: state.t })
+    let advance = |left: f64, located: usize, state: &mut State| walk.advance(left, located, state);
+    root::cut(h, most_located(obstacles), state, advance)?;
+    Ok(walk.entered)
 }
 
 /// The contacts that press at a state. On a surface it is what enters, or is about to.
 fn pressed(system: &dyn System, obstacles: &Obstacles, state: &State) -> BTreeSet<Pair> {
-    let near = obstacles.near([state.t; 2], |particle| (three(&state.x, particle), 0.0));
-    let touching = obstacles.touching(&near, state);
+    let touching = obstacles.touching(&obstacles.near_now(state), state);
     let mut a = Vec::new();
     let mut enters = |beside: &Beside| {
         if beside.parting().abs() > beside.slow {
@@ -84,35 +70,27 @@ struct Walk<'a> {
     /// The whole step, s.
     h: f64,
     entered: u64,
-    /// The most particles whose events are located on sub-steps.
-    most: usize,
     /// The particles with events so far.
     involved: BTreeSet<usize>,
     frozen: Frozen<'a>,
 }
 
-/// A contact that begins or ends within a sub-step: not yet at `clear`, but at `due`, both in seconds from its start.
-#[derive(Clone, Copy)]
-struct Due {
-    pair: Pair,
-    clear: f64,
-    due: f64,
-    /// The depth or gap at which it does, m.
-    level: f64,
-}
-
 impl Walk<'_> {
-    /// One sub-step of at most `left` seconds, to the next event. Returns its length.
-    fn advance(&mut self, left: f64, state: &mut State) -> Result<f64, StepError> {
+    /// One sub-step of at most `left` seconds, to the next contact that begins or ends, if no more particles than `located`
+    /// have some. Returns its length.
+    fn advance(&mut self, left: f64, located: usize, state: &mut State) -> Result<f64, StepError> {
         let start = state.clone();
         self.integrator.forget();
         let end = self.frozen.step(self.integrator, left, &start)?;
         let mut all = self.frozen.due(left, &start, &end);
-        self.involved.extend(all.iter().map(|due| due.pair.0));
-        let first = if self.involved.len() > self.most {
+        self.involved.extend(all.iter().map(|due| due.event.0));
+        let first = if self.involved.len() > located {
             None
         } else {
-            self.first(&mut all, left, &start)?
+            let frozen = &self.frozen;
+            let sign = |due: &Due<Pair>, state: &State| frozen.sign(due, state);
+            let to = |h| frozen.step(self.integrator, h, &start);
+            root::first(&mut all, [left, self.h], &start, sign, to)?
         };
         let Some((time, at, pair)) = first else {
             let mut there = end.clone();
@@ -120,7 +98,7 @@ impl Walk<'_> {
             for due in &all {
                 let ends = [&start, &end];
                 self.frozen.bend(due, left, ends, &mut there, state);
-                self.turn(due.pair);
+                self.turn(due.event);
             }
             return Ok(left);
         };
@@ -135,41 +113,6 @@ impl Walk<'_> {
             self.frozen.pressed.insert(pair);
             self.entered += 1;
         }
-    }
-
-    /// The first of these within `left` seconds, its time and the state there; None where none is found.
-    fn first(
-        &mut self,
-        all: &mut [Due],
-        left: f64,
-        start: &State,
-    ) -> Result<Option<(f64, State, Pair)>, StepError> {
-        all.sort_by(|a, b| a.due.total_cmp(&b.due));
-        let mut first: Option<(f64, State, Pair)> = None;
-        let frozen = &self.frozen;
-        for due in all {
-            let sign = |state: &State| frozen.sign(due, state);
-            let mut bracket = Bracket {
-                clear: due.clear,
-                due: due.due,
-                left,
-                h: self.h,
-            };
-            // What is not due where another event was found comes later.
-            if let Some((time, at, _)) = &first {
-                if due.clear >= *time || sign(at) >= 0.0 {
-                    continue;
-                }
-                bracket.due = due.due.min(*time);
-            }
-            let to = |h| frozen.step(self.integrator, h, start);
-            if let Some((time, at)) = root::locate(&bracket, start, sign, to)?
-                && first.as_ref().is_none_or(|(bound, ..)| time < *bound)
-            {
-                first = Some((time, at, due.pair));
-            }
-        }
-        Ok(first)
     }
 }
 
@@ -195,60 +138,32 @@ impl Frozen<'_> {
         Ok(end)
     }
 
-    /// How far from its end a contact that presses is, m, and from its beginning another.
-    fn left(&self, pair: Pair, gap: f64) -> f64 {
+    /// Of a contact that presses what comes to an end is its depth, of another its gap.
+    fn side(&self, pair: Pair) -> f64 {
         if self.pressed.contains(&pair) {
-            -gap
+            -1.0
         } else {
-            gap
+            1.0
         }
     }
 
     /// Positive before an event, negative after it.
-    fn sign(&self, due: &Due, state: &State) -> f64 {
-        let (particle, against) = due.pair;
+    fn sign(&self, due: &Due<Pair>, state: &State) -> f64 {
+        let (particle, against) = due.event;
         let at = |particle| three(&state.x, particle);
         let gap = self.obstacles.gap(particle, against, state.t, at);
-        self.left(due.pair, gap) - due.level
+        self.side(due.event) * gap - due.level
     }
 
     /// The contacts that begin or end, on the cubics through both ends of a sub-step of `h` seconds.
-    fn due(&self, h: f64, start: &State, end: &State) -> Vec<Due> {
-        let path = |particle| Path::new(particle, h, start, end);
-        let near = self
-            .obstacles
-            .near([start.t, start.t + h], |particle| path(particle).ball());
+    fn due(&self, h: f64, start: &State, end: &State) -> Vec<Due<Pair>> {
+        let near = path::near(self.obstacles, h, start, end);
         let pairs: BTreeSet<Pair> = near.pairs().chain(self.pressed.iter().copied()).collect();
-        let due = pairs.into_iter().filter_map(|pair| {
-            let (particle, against) = pair;
-            let own = path(particle);
-            let other = match against {
-                Against::Particle(other) => Some((other, path(other))),
-                Against::Obstacle(_) => None,
-            };
-            let left = |s: f64| {
-                let at = |which: usize| match &other {
-                    Some((other, path)) if *other == which => path.at(s),
-                    _ => own.at(s),
-                };
-                let gap = self.obstacles.gap(particle, against, start.t + s * h, at);
-                self.left(pair, gap)
-            };
-            let others = other.as_ref().map_or(0.0, |(_, path)| path.length());
-            let reach = self.obstacles.reach(against, start.t, start.t + h);
-            let bound = own.length() + reach + others;
-            if left(1.0) > bound {
-                return None;
-            }
-            let ([clear, due], level) = crossing(left, bound, self.obstacles.close(own.at(0.0)))?;
-            Some(Due {
-                pair,
-                clear: clear * h,
-                due: due * h,
-                level,
-            })
-        });
-        due.collect()
+        let meets = |pair: Pair| {
+            let event = (pair, self.side(pair));
+            meeting(self.obstacles, pair, event, h, [start, end])
+        };
+        pairs.into_iter().filter_map(meets).collect()
     }
 
     /// Where there are too many events to cut at: what the damper of one does, or does no more, from its instant on its
@@ -256,27 +171,24 @@ impl Frozen<'_> {
     /// step left it, and `there` any state.
     fn bend(
         &self,
-        due: &Due,
+        due: &Due<Pair>,
         h: f64,
         [start, before]: [&State; 2],
         there: &mut State,
         end: &mut State,
     ) {
-        let (particle, against) = due.pair;
+        let (particle, against) = due.event;
         let ends = against.with(particle);
         there.t = start.t + due.due;
         for one in &ends {
-            let path = Path::new(*one, h, start, before);
-            let own = 3 * one..3 * one + 3;
-            there.x[own.clone()].copy_from_slice(&path.at(due.due / h));
-            there.v[own].copy_from_slice(&path.velocity(due.due / h));
+            Path::new(*one, h, start, before).put(*one, due.due / h, there);
         }
         let beside = self.obstacles.beside(particle, against, there);
         let weight: f64 = ends.iter().map(|one| self.obstacles.weight(*one)).sum();
         let (rest, u) = (h - due.due, beside.parting());
         // The flow of the damper alone, which turns nothing round however strong it is.
         let acted = u * (-self.law.damping * weight * rest).exp_m1();
-        let gain = if self.pressed.contains(&due.pair) {
+        let gain = if self.pressed.contains(&due.event) {
             -acted
         } else {
             acted

@@ -1,4 +1,4 @@
-//! The time of an event, as the root of a function of the method's own sub-steps.
+//! The times of events, as roots of functions of the method's own sub-steps, and the cuts of a step there.
 
 use super::LOCATED;
 use crate::integrators::StepError;
@@ -6,32 +6,86 @@ use crate::physics::State;
 
 /// Halvings after which an event is not located but counts as one of the end.
 const HALVES: u32 = 40;
+/// The most cuts in a step.
+const CUTS: usize = 2_000;
+/// Cuts of no length after which no further event of a step is located.
+const IDLE: u32 = 16;
 
-/// Where an event is looked for, in seconds from the start of a sub-step.
-pub(super) struct Bracket {
-    /// About where it is not due yet, and where it is.
+/// An event due within a sub-step: none at `clear`, and due at `due`, both in seconds from the start of the sub-step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Due<E> {
+    pub event: E,
     pub clear: f64,
     pub due: f64,
-    /// It is no later.
-    pub left: f64,
-    /// The whole step, which it is located to a part of.
-    pub h: f64,
+    /// The gap at which an impact is due, m: 0, or the rounding of one for a particle that has not risen above that.
+    pub level: f64,
+}
+
+/// Advances a state by `h` seconds in sub-steps, each of what is left at most. `advance` takes one, in which no more than so
+/// many particles have their events located, and tells its length.
+pub(super) fn cut(
+    h: f64,
+    located: usize,
+    state: &mut State,
+    mut advance: impl FnMut(f64, usize, &mut State) -> Result<f64, StepError>,
+) -> Result<(), StepError> {
+    let (begin, mut located) = (state.t, located);
+    let (mut done, mut idle) = (0.0, 0);
+    for _ in 0..CUTS {
+        let left = h - done;
+        let taken = advance(left, located, state)?;
+        done += taken;
+        idle += u32::from(taken <= LOCATED * h);
+        if idle > IDLE {
+            located = 0;
+        }
+        state.t = begin + done;
+        if taken >= left {
+            return Ok(());
+        }
+    }
+    Err(StepError::TooManyEvents { t: state.t })
+}
+
+/// The first of these events within `left` seconds of a step of `h`, its time and the state there; None where none is found.
+/// `sign` is positive before an event and negative after it, `to` the state some time from the start.
+pub(super) fn first<E: Copy>(
+    all: &mut [Due<E>],
+    [left, h]: [f64; 2],
+    start: &State,
+    sign: impl Fn(&Due<E>, &State) -> f64,
+    mut to: impl FnMut(f64) -> Result<State, StepError>,
+) -> Result<Option<(f64, State, E)>, StepError> {
+    all.sort_by(|a, b| a.due.total_cmp(&b.due));
+    let mut first: Option<(f64, State, E)> = None;
+    for due in all {
+        let mut bracket = [due.clear, due.due];
+        // What is not due where another event was found comes later.
+        if let Some((time, at, _)) = &first {
+            if due.clear >= *time || sign(due, at) >= 0.0 {
+                continue;
+            }
+            bracket[1] = due.due.min(*time);
+        }
+        let sign = |state: &State| sign(due, state);
+        if let Some((time, at)) = locate(bracket, [left, h], start, sign, &mut to)?
+            && first.as_ref().is_none_or(|(bound, ..)| time < *bound)
+        {
+            first = Some((time, at, due.event));
+        }
+    }
+    Ok(first)
 }
 
 /// The first time at which `sign` of the state has fallen below 0, and the state there; None where it does not on sub-steps
-/// `to` some time from the start.
-pub(super) fn locate(
-    bracket: &Bracket,
+/// of at most `left` seconds. It is about after `clear` and before `due`, and located to a part of `h`.
+fn locate(
+    [clear, due]: [f64; 2],
+    [left, h]: [f64; 2],
     start: &State,
     sign: impl Fn(&State) -> f64,
     mut to: impl FnMut(f64) -> Result<State, StepError>,
 ) -> Result<Option<(f64, State)>, StepError> {
-    let Bracket {
-        clear,
-        due,
-        left,
-        h,
-    } = *bracket;
     let mut high = due;
     let mut below = sign(&to(high)?);
     // The cubic and the method's own path differ, if only by rounding: a little beyond, lest it is through.

@@ -8,6 +8,7 @@
 use super::ConstraintRow;
 use crate::gram::{Factor, Gram, NoFactor};
 use crate::scene::{Constraints, Drive, Scene, Stabilisation};
+use crate::space::{dot, minus, three};
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -558,16 +559,4 @@ impl At<'_> {
         });
         work
     }
-}
-
-fn three(y: &[f64], particle: usize) -> [f64; 3] {
-    [y[3 * particle], y[3 * particle + 1], y[3 * particle + 2]]
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -11,6 +11,7 @@
 use super::ConstraintRow;
 use super::{RodError, Rods};
 use crate::scene::Scene;
+use crate::space::dot;
 
 /// Lengths within this part of a limit are at it.
 const SLACK: f64 = 1e-9;
@@ -246,9 +247,4 @@ fn apart(y: &Vectors, [i, j]: [u32; 2]) -> [f64; 3] {
 #[inline(always)]
 fn square(d: [f64; 3]) -> f64 {
     dot(d, d)
-}
-
-#[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

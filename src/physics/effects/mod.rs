@@ -31,6 +31,7 @@ pub use wind::WindForce;
 
 use crate::physics::{ForceKinds, Jacobian, Linearization, Power, Sweep};
 use crate::scene::{Drive, Scene};
+use crate::space::dot;
 
 /// A force on particles. It is computed for all its members at once, in flat vectors of length 3n.
 ///
@@ -155,11 +156,6 @@ pub static REGISTRY: &[EffectRow] = &[
 fn difference(x: &[f64], i: usize, j: usize) -> [f64; 3] {
     let (from, to) = (&x[i..i + 3], &x[j..j + 3]);
     [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
-}
-
-#[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The velocity of particle `i`.

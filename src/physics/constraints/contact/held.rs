@@ -16,10 +16,11 @@
 
 use super::group::{Group, TooManyTouch, grouped};
 use super::member::{Contact, Member, approach, multipliers};
-use super::{Against, Beside, Obstacles, dot, minus, norm, three};
+use super::{Against, Beside, Obstacles};
 use crate::physics::{
     Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, State, System, Triplets,
 };
+use crate::space::{dot, minus, norm, three};
 
 use std::collections::BTreeMap;
 

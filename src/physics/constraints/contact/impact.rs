@@ -1,8 +1,9 @@
 //! Impacts: Newton's restitution along the normal, Coulomb's friction across it.
 
-use super::{Against, Beside, Near, Obstacles, Surface, dot, minus, norm};
+use super::{Against, Beside, Near, Obstacles, Surface};
 use crate::physics::State;
 use crate::physics::constraints::{RodError, Rods};
+use crate::space::{dot, minus, norm, three};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeSet;
 
@@ -77,8 +78,8 @@ impl Obstacles {
     /// Gives particles that strike something the velocities after the impacts, and books the energy that they take. With V
     /// the speed of approach, the normal velocity becomes e V, and the sliding one falls by µ (1 + e) V, to 0 at most:
     /// Coulomb's law for the impulses. What they touch as well they strike next, and what that touches, until nothing is
-    /// left to strike: pair by pair, in ascending order of the particles. Returns the particles that were struck, and the
-    /// number of impulses.
+    /// left to strike: pair by pair, in ascending order of the particles. `among`: other particles count, too. Returns the
+    /// particles that were struck, and the number of impulses.
     ///
     /// # Errors
     /// [`RodError`] where rods depend on each other.
@@ -86,7 +87,7 @@ impl Obstacles {
         &self,
         near: &Near,
         rods: Option<&Rods>,
-        particles: BTreeSet<usize>,
+        (particles, among): (BTreeSet<usize>, bool),
         state: &mut State,
     ) -> Result<(BTreeSet<usize>, u64), RodError> {
         let (mut struck, mut impulses) = (BTreeSet::new(), 0);
@@ -95,7 +96,8 @@ impl Obstacles {
             let mut later = BTreeSet::new();
             for particle in next {
                 let all = self.touched(near, particle, state).into_iter();
-                for beside in all.filter(Beside::strikes) {
+                let seen = all.filter(|one| among || matches!(one.against, Against::Obstacle(_)));
+                for beside in seen.filter(Beside::strikes) {
                     if self.apply(rods, &beside, state)? {
                         later.extend(beside.particles());
                         impulses += 1;
@@ -109,32 +111,6 @@ impl Obstacles {
             next = later;
         }
         Ok((struck, impulses))
-    }
-
-    /// The same of one particle and the obstacles it touches alone. Returns the number of impulses.
-    ///
-    /// # Errors
-    /// [`RodError`] where rods depend on each other.
-    pub fn strike_obstacles(
-        &self,
-        near: &Near,
-        rods: Option<&Rods>,
-        particle: usize,
-        state: &mut State,
-    ) -> Result<u64, RodError> {
-        let mut impulses = 0;
-        for _ in 0..PASSES {
-            let all = self.touched(near, particle, state).into_iter();
-            let fixed = all.filter(|one| matches!(one.against, Against::Obstacle(_)));
-            let before = impulses;
-            for beside in fixed.filter(Beside::strikes) {
-                impulses += u64::from(self.apply(rods, &beside, state)?);
-            }
-            if impulses == before {
-                break;
-            }
-        }
-        Ok(impulses)
     }
 
     /// One impulse, unless an earlier one has turned the two away.
@@ -158,11 +134,15 @@ impl Obstacles {
             return self.apply_on_rods(rods, &beside, [away, surface.friction[0]], state);
         }
         let change = self.law.change(&beside, surface, 0.0);
-        let before = beside.velocity;
-        self.push(&beside, change, &mut state.v);
-        let impulse = change.map(|c| c / self.lightness(&beside));
-        self.book(&beside, before, impulse, state);
+        self.kick(&beside, change, state);
         Ok(true)
+    }
+
+    /// Changes the velocity of two relative to each other, and books it.
+    fn kick(&self, beside: &Beside, change: [f64; 3], state: &mut State) {
+        self.push(beside, change, &mut state.v);
+        let impulse = change.map(|c| c / self.lightness(beside));
+        self.book(beside, impulse, state);
     }
 
     /// One impulse where rods pass some of it on: K is what an impulse here changes the velocity here by.
@@ -227,7 +207,7 @@ impl Obstacles {
         for (v, change) in state.v.iter_mut().zip(change) {
             *v += change;
         }
-        self.book(beside, beside.velocity, impulse.into(), state);
+        self.book(beside, impulse.into(), state);
         Ok(true)
     }
 
@@ -253,7 +233,7 @@ impl Obstacles {
         }
     }
 
-    /// Takes the normal velocity of what touches away, and books the energy.
+    /// Takes the normal velocity of what touches away, and books the energy; `beside` is as the state has it.
     ///
     /// # Errors
     /// [`RodError`] where rods depend on each other.
@@ -263,17 +243,13 @@ impl Obstacles {
         beside: &Beside,
         state: &mut State,
     ) -> Result<(), RodError> {
-        let beside = self.beside(beside.particle, beside.against, state);
         let parting = beside.parting();
-        if let Some(rods) = rods {
-            return self
-                .apply_on_rods(rods, &beside, [-parting, 0.0], state)
-                .map(|_| ());
+        match rods {
+            Some(rods) => {
+                self.apply_on_rods(rods, beside, [-parting, 0.0], state)?;
+            }
+            None => self.kick(beside, beside.normal.map(|n| -parting * n), state),
         }
-        let change = beside.normal.map(|n| -parting * n);
-        self.push(&beside, change, &mut state.v);
-        let impulse = change.map(|c| c / self.lightness(&beside));
-        self.book(&beside, beside.velocity, impulse, state);
         Ok(())
     }
 
@@ -299,20 +275,19 @@ impl Obstacles {
 
     /// A vector at the particle relative to the other; to an obstacle as if that was at rest.
     fn relative(&self, beside: &Beside, all: &[f64]) -> [f64; 3] {
-        let own = super::three(all, beside.particle);
+        let own = three(all, beside.particle);
         match beside.against {
             Against::Obstacle(_) => own,
-            Against::Particle(other) => minus(own, super::three(all, other)),
+            Against::Particle(other) => minus(own, three(all, other)),
         }
     }
 
-    /// Books what an impulse, N s, takes out, and what the obstacle's motion does by it; `before` is the relative velocity
-    /// before it.
-    fn book(&self, beside: &Beside, before: [f64; 3], impulse: [f64; 3], state: &mut State) {
+    /// Books what an impulse, N s, took out, and what the obstacle's motion did by it; `beside` is as before it.
+    fn book(&self, beside: &Beside, impulse: [f64; 3], state: &mut State) {
         let along = self.moved(beside.against, state.t)[1];
         let after = minus(self.relative(beside, &state.v), along);
         state.work.injected += dot(impulse, along);
-        state.work.impacts -= 0.5 * (dot(impulse, before) + dot(impulse, after));
+        state.work.impacts -= 0.5 * (dot(impulse, beside.velocity) + dot(impulse, after));
     }
 }
 

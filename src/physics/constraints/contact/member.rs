@@ -1,8 +1,9 @@
 //! One particle that stays in contact: its axes, what presses it, and how it rubs.
 
-use super::{Beside, Obstacles, cross, dot, minus, norm, three};
+use super::{Beside, Obstacles};
 use crate::physics::State;
 use crate::shape::Bend;
+use crate::space::{cross, dot, minus, norm, three};
 use std::borrow::Cow;
 
 /// Newton's steps onto a surface.

@@ -17,6 +17,7 @@ use super::ConstraintRow;
 use crate::physics::State;
 use crate::scene::{Collider, Drive, Scene};
 use crate::shape::{Bend, Shape};
+use crate::space::{dot, minus, norm, three};
 use near::Broad;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -266,6 +267,11 @@ impl Obstacles {
         broad.near(self, times, &ball)
     }
 
+    /// What may touch at a state, as [`near`](Self::near).
+    pub fn near_now(&self, state: &State) -> Arc<Near> {
+        self.near([state.t; 2], |particle| (three(&state.x, particle), 0.0))
+    }
+
     /// Whether one of them moves.
     pub fn any_moves(&self) -> bool {
         self.obstacles.iter().any(|one| one.motion.is_some())
@@ -284,7 +290,7 @@ impl Obstacles {
     /// Every contact in which something is inside, in ascending order.
     pub fn inside(&self, state: &State) -> Vec<Beside> {
         let at = |particle| three(&state.x, particle);
-        let near = self.near([state.t; 2], |particle| (at(particle), 0.0));
+        let near = self.near_now(state);
         let inside = near
             .pairs()
             .filter(|(particle, against)| self.gap(*particle, *against, state.t, at) < 0.0);
@@ -507,28 +513,4 @@ impl Obstacles {
         });
         all.filter(Beside::touches).collect()
     }
-}
-
-fn three(all: &[f64], particle: usize) -> [f64; 3] {
-    [0, 1, 2].map(|axis| all[3 * particle + axis])
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }

@@ -1,7 +1,8 @@
 //! What rounding does to rods: a program that sums and solves in another order is off by so much.
 
-use super::{Rods, dot, minus, three};
+use super::Rods;
 use crate::scene::Drive;
+use crate::space::{dot, minus, three};
 
 /// Signs of a residual under which the solve is tried, by rod. The first leads to the bound itself where the inverse has
 /// no negative entries, as of a chain whose links all turn less than a right angle.

@@ -2,7 +2,6 @@
 
 use super::laws;
 use crate::measure::Contact;
-use crate::report::table::Table;
 use crate::report::words;
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
@@ -37,11 +36,7 @@ pub fn table(report: &Report) -> String {
     if rows.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(&rows);
-    table.engines(|(o, _)| (super::engine(o), report.header.mark(&o.engine)));
-    if super::several_timesteps(report) {
-        table.markdown("h (s)", |(o, _)| words::short(o.timestep));
-    }
+    let mut table = super::beside(report, &rows);
     table.markdown("impacts", |(_, contact)| contact.impacts.map(words::count));
     table.markdown("lost in impacts (J)", |(o, _)| taken(o, |e| e.impacts_j));
     table.markdown("lost to friction (J)", |(o, _)| taken(o, |e| e.friction_j));

@@ -10,6 +10,7 @@ mod strain;
 mod table;
 mod verdict;
 
+use table::beside;
 pub use table::{engine, several_timesteps};
 
 use crate::report::markdown::{findings, opening, section};

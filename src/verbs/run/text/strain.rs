@@ -1,7 +1,6 @@
 //! What the strain limit left of the strain, in words.
 
 use crate::measure::Strain;
-use crate::report::table::Table;
 use crate::report::words::{self, escape};
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
@@ -26,11 +25,7 @@ pub fn table(report: &Report) -> String {
     if rows.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(&rows);
-    table.engines(|(o, _)| (super::engine(o), report.header.mark(&o.engine)));
-    if super::several_timesteps(report) {
-        table.markdown("h (s)", |(o, _)| words::short(o.timestep));
-    }
+    let mut table = super::beside(report, &rows);
     table.markdown("limit", |(_, strain)| words::percent(strain.ratio));
     table.markdown("largest", |(_, strain)| strain.largest.map(words::percent));
     table.markdown("spring", |(_, strain)| strain.spring.to_string());

@@ -152,6 +152,19 @@ fn legend(report: &Report) -> String {
     text
 }
 
+/// A table in Markdown of what outcomes have besides: it begins with engines, and timesteps where there are several.
+pub(super) fn beside<'r, T>(
+    report: &Report,
+    rows: &'r [(&Outcome, &T)],
+) -> Table<'r, (&'r Outcome, &'r T)> {
+    let mut table = Table::new(rows);
+    table.engines(|(o, _)| (engine(o), report.header.mark(&o.engine)));
+    if several_timesteps(report) {
+        table.markdown("h (s)", |(o, _)| words::short(o.timestep));
+    }
+    table
+}
+
 /// Whether the outcomes have different timesteps, so that the table states them.
 pub fn several_timesteps(report: &Report) -> bool {
     let mut timesteps = report.outcomes().iter().map(|o| o.timestep);

@@ -1,10 +1,11 @@
 //! What a group keeps: contacts that press, and rods, as rows over its scaled coordinates.
 
+use super::super::Obstacles;
 use super::super::member::{Contact, unit};
-use super::super::{Obstacles, cross, dot, minus, norm, three};
 use crate::physics::State;
 use crate::physics::constraints::Rods;
 use crate::shape::Bend;
+use crate::space::{cross, dot, minus, norm, three};
 use nalgebra::{DMatrix, DVector};
 
 /// Rows that depend on others to this part add no direction.
@@ -45,8 +46,17 @@ pub(super) struct Rows {
     pub(super) rubs: DMatrix<f64>,
     /// Of the matrix of multipliers.
     pub(super) inverse: DMatrix<f64>,
-    /// The link of each row, and its direction.
-    pub(super) of: Vec<(usize, [f64; 3])>,
+    pub(super) of: Vec<Row>,
+}
+
+/// What a row is of.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row {
+    /// Its link.
+    pub(super) link: usize,
+    pub(super) direction: [f64; 3],
+    /// Whether that is the normal.
+    pub(super) normal: bool,
 }
 
 impl Rows {
@@ -54,22 +64,29 @@ impl Rows {
         let size = 3 * scales.len();
         let mut of = Vec::new();
         for (at, link) in links.iter().enumerate() {
-            of.push((at, link.normal));
+            let mut row = |direction, normal| {
+                of.push(Row {
+                    link: at,
+                    direction,
+                    normal,
+                });
+            };
+            row(link.normal, true);
             if let Kept::Contact(_, Rubs::Sticks) = link.kept {
                 let across = unit(smallest_across(link.normal)).unwrap_or([0.0; 3]);
-                of.push((at, across));
-                of.push((at, cross(link.normal, across)));
+                row(across, false);
+                row(cross(link.normal, across), false);
             }
         }
         let mut kept = DMatrix::zeros(of.len(), size);
         let mut rubs = DMatrix::zeros(of.len(), size);
-        for (row, (at, direction)) in of.iter().enumerate() {
-            put(&mut kept, row, &links[*at], *direction, scales);
-            let normal = *direction == links[*at].normal;
-            if let (Kept::Contact(contact, Rubs::Slides(forward)), true) = (links[*at].kept, normal)
-            {
+        for (at, row) in of.iter().enumerate() {
+            let link = &links[row.link];
+            put(&mut kept, at, link, row.direction, scales);
+            // What slides has its normal alone.
+            if let Kept::Contact(contact, Rubs::Slides(forward)) = link.kept {
                 let against = forward.map(|c| -contact.friction[0] * c);
-                put(&mut rubs, row, &links[*at], against, scales);
+                put(&mut rubs, at, link, against, scales);
             }
         }
         let matrix = &kept * (&kept + &rubs).transpose();
@@ -94,14 +111,13 @@ impl Rows {
 
     /// The accelerations along the rows that are kept.
     pub(super) fn right(&self, obstacles: &Obstacles, links: &[Link], t: f64) -> DVector<f64> {
-        let each = self.of.iter().map(|(at, direction)| {
-            let link = &links[*at];
+        let each = self.of.iter().map(|row| {
+            let link = &links[row.link];
             let pushed = match link.kept {
                 Kept::Contact(contact, _) => obstacles.moved(contact.beside.against, t)[2],
                 Kept::Rod(_) => [0.0; 3],
             };
-            let along = *direction == link.normal;
-            dot(*direction, pushed) + if along { link.turning } else { 0.0 }
+            dot(row.direction, pushed) + if row.normal { link.turning } else { 0.0 }
         });
         DVector::from_iterator(self.of.len(), each)
     }
@@ -120,13 +136,7 @@ pub(super) fn inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// A row: a direction at the first end, and against it at the second.
-pub(super) fn put(
-    rows: &mut DMatrix<f64>,
-    row: usize,
-    link: &Link,
-    direction: [f64; 3],
-    scales: &[f64],
-) {
+fn put(rows: &mut DMatrix<f64>, row: usize, link: &Link, direction: [f64; 3], scales: &[f64]) {
     for (end, sign) in link.ends.iter().zip([1.0, -1.0]) {
         if let Some(end) = *end {
             for axis in 0..3 {
@@ -137,7 +147,7 @@ pub(super) fn put(
 }
 
 /// A vector across another.
-pub(super) fn smallest_across(n: [f64; 3]) -> [f64; 3] {
+fn smallest_across(n: [f64; 3]) -> [f64; 3] {
     let least = |best: usize, c: usize| if n[c].abs() < n[best].abs() { c } else { best };
     let mut other = [0.0; 3];
     other[(0..3).fold(0, least)] = 1.0;
@@ -182,7 +192,7 @@ pub(super) fn pressed(rows: &Rows, multipliers: &DVector<f64>, link: usize) -> (
         .of
         .iter()
         .zip(multipliers)
-        .filter(|((at, _), _)| *at == link)
+        .filter(|(row, _)| row.link == link)
         .map(|(_, multiplier)| *multiplier)
         .collect();
     let across = own[1..].iter().fold(0.0_f64, |sum, c| sum.hypot(*c));

@@ -14,10 +14,11 @@ pub(super) use sets::grouped;
 pub use sets::{MOST, TooManyTouch};
 
 use super::member::{Contact, unit};
-use super::{Against, Beside, Obstacles, dot, minus, norm, three};
+use super::{Against, Beside, Obstacles};
 use crate::physics::State;
 use crate::physics::constraints::Rods;
-use links::{DEPENDENT, Kept, Link, Rows, Rubs, inverse, plain, pressed, rod_now};
+use crate::space::{dot, minus, norm, three};
+use links::{DEPENDENT, Kept, Link, Row, Rows, Rubs, inverse, plain, pressed, rod_now};
 use nalgebra::{DMatrix, DVector};
 use pressing::pressing;
 
@@ -47,7 +48,7 @@ pub(super) struct Group {
 
 impl Group {
     /// The particles that stay in contact among those that contacts and rods join: `resting` has their contacts. `a` are the
-    /// accelerations of all without contacts and rods, m/s². None where no contact presses.
+    /// accelerations of all without contacts and rods, m/s².
     pub fn new(
         obstacles: &Obstacles,
         rods: Option<&Rods>,
@@ -116,7 +117,7 @@ impl Group {
         group
     }
 
-    /// The contacts that press, and whether particles in it depend on each other.
+    /// The contacts that press.
     pub fn contacts(&self) -> impl Iterator<Item = &Beside> {
         self.links.iter().filter_map(|link| match &link.kept {
             Kept::Contact(contact, _) => Some(&contact.beside),
@@ -222,8 +223,10 @@ impl Group {
         }
         let moved = |which: usize| {
             let each = self.independent.iter().map(|row| {
-                let (at, direction) = self.rows.of[*row];
-                let Kept::Contact(contact, _) = self.links[at].kept else {
+                let Row {
+                    link, direction, ..
+                } = self.rows.of[*row];
+                let Kept::Contact(contact, _) = self.links[link].kept else {
                     return 0.0;
                 };
                 let against = contact.beside.against;
@@ -296,6 +299,20 @@ impl Group {
         each.collect()
     }
 
+    /// The links at a state with these accelerations without them, their rows and multipliers.
+    fn forces(
+        &self,
+        obstacles: &Obstacles,
+        rods: Option<&Rods>,
+        state: &State,
+        a: &[f64],
+    ) -> (Vec<Link>, Rows, DVector<f64>) {
+        let links = self.now(obstacles, rods, state);
+        let rows = Rows::new(&links, &self.scales);
+        let multipliers = rows.multipliers(obstacles, &links, state.t, &self.gather(a));
+        (links, rows, multipliers)
+    }
+
     /// What has changed at a state in the axes of space, by how much, as
     /// [`Held::changes`](super::Held::changes).
     pub fn changes(
@@ -305,9 +322,7 @@ impl Group {
         state: &State,
         a: &[f64],
     ) -> Vec<(usize, super::Change, f64)> {
-        let links = self.now(obstacles, rods, state);
-        let rows = Rows::new(&links, &self.scales);
-        let multipliers = rows.multipliers(obstacles, &links, state.t, &self.gather(a));
+        let (links, rows, multipliers) = self.forces(obstacles, rods, state, a);
         let mut found = Vec::new();
         for (at, link) in links.iter().enumerate() {
             let Kept::Contact(contact, rubs) = link.kept else {
@@ -356,18 +371,16 @@ impl Group {
         state: &State,
         a: &[f64],
     ) -> [f64; 2] {
-        let links = self.now(obstacles, rods, state);
-        let rows = Rows::new(&links, &self.scales);
-        let multipliers = rows.multipliers(obstacles, &links, state.t, &self.gather(a));
+        let (links, rows, multipliers) = self.forces(obstacles, rods, state, a);
         let mut sums = [0.0; 2];
-        for (row, (at, direction)) in rows.of.iter().enumerate() {
-            let Kept::Contact(contact, rubs) = links[*at].kept else {
+        for (row, multiplier) in rows.of.iter().zip(&multipliers) {
+            let Kept::Contact(contact, rubs) = links[row.link].kept else {
                 continue;
             };
             let along = obstacles.moved(contact.beside.against, state.t)[1];
-            let force = self.mass * multipliers[row];
-            sums[1] += force * dot(*direction, along);
-            if let (Rubs::Slides(forward), true) = (rubs, *direction == links[*at].normal) {
+            let force = self.mass * multiplier;
+            sums[1] += force * dot(row.direction, along);
+            if let Rubs::Slides(forward) = rubs {
                 let rubbed = contact.friction[0] * force;
                 sums[0] += rubbed * dot(forward, contact.beside.sliding());
                 sums[1] -= rubbed * dot(forward, along);
@@ -387,7 +400,7 @@ impl Group {
         state: &mut State,
     ) {
         let normals: Vec<usize> = (0..self.rows.of.len())
-            .filter(|row| self.rows.of[*row].1 == self.links[self.rows.of[*row].0].normal)
+            .filter(|row| self.rows.of[*row].normal)
             .collect();
         if normals.is_empty() {
             return;
@@ -420,9 +433,9 @@ impl Group {
         let parting: Vec<f64> = rows
             .of
             .iter()
-            .map(|(at, direction)| match links[*at].kept {
+            .map(|row| match links[row.link].kept {
                 Kept::Contact(contact, _) => dot(
-                    *direction,
+                    row.direction,
                     obstacles.moved(contact.beside.against, state.t)[1],
                 ),
                 Kept::Rod(_) => 0.0,

@@ -57,11 +57,11 @@ pub(super) fn pressing(
                 .of
                 .iter()
                 .zip(&multipliers)
-                .skip_while(|((of, _), _)| *of != at);
+                .skip_while(|(row, _)| row.link != at);
             let mut across = [0.0; 3];
-            for ((_, direction), multiplier) in force.skip(1).take(2) {
+            for (row, multiplier) in force.skip(1).take(2) {
                 for axis in 0..3 {
-                    across[axis] -= multiplier * direction[axis];
+                    across[axis] -= multiplier * row.direction[axis];
                 }
             }
             if let Kept::Contact(contact, rubs) = &mut links[set[at]].kept {
