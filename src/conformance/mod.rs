@@ -26,6 +26,7 @@
 //! `docs/conformance.md` lists them law by law, with their reasons.
 
 mod balance;
+mod contact;
 mod cost;
 mod energy;
 mod exactness;
@@ -141,6 +142,7 @@ pub static LAWS: &[Law] = &[
     order::UNDAMPED,
     order::DAMPED,
     order::DRIVEN,
+    contact::LAW,
     balance::LAW,
     energy::LAW,
     stability::ALONG,

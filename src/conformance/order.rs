@@ -9,7 +9,7 @@ use crate::physics::{State, System};
 use crate::scene::{DampingModel, Scene};
 use crate::truth::converged::{Gragg, Precise, Stepper};
 
-const DERIVATION: &str = "the observed order is an extrapolation of at least four slopes that agree \
+pub(super) const DERIVATION: &str = "the observed order is an extrapolation of at least four slopes that agree \
                           within 0.05 among themselves; these systems have no symmetry that could \
                           make an error vanish";
 
@@ -198,7 +198,7 @@ fn refinements(order: u32) -> Vec<usize> {
     refinements
 }
 
-fn judge(observed: &Observed, stated: u32) -> Finding {
+pub(super) fn judge(observed: &Observed, stated: u32) -> Finding {
     let Some(order) = observed.order else {
         let why = match observed.verdict {
             Verdict::Inconclusive(reason) => reason.to_string(),

@@ -24,7 +24,7 @@ pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};
 
 use crate::physics::constraints::RodError;
-use crate::physics::constraints::contact::{Obstacles, TooManyTouch};
+use crate::physics::constraints::contact::{BlowError, Obstacles, TooManyTouch};
 use crate::physics::{ForceKinds, Refused, State, System};
 use crate::scene::Stabilisation;
 use crate::vector::axpy;
@@ -84,6 +84,8 @@ pub enum StepError {
     Rods(#[from] RodError),
     #[error(transparent)]
     TooManyTouch(#[from] TooManyTouch),
+    #[error(transparent)]
+    Blows(#[from] BlowError),
     #[error(
         "Newton's iteration stopped at a relative residual of {residual:.1e} after {iterations} \
          iterations (wanted {tolerance:.0e}), largest at particle {particle}: a smaller timestep \

@@ -37,8 +37,8 @@ pub(crate) use expectation::{ALL, REST, SKIP};
 pub use expectation::{Expectation, KeyKind, Names, OutcomeKey, Scope, Skipped, Wanted};
 pub use model::{
     Air, Axis, Bending, Collider, Constraints, Contact, DampingModel, Driven, GravitationalPair,
-    Knots, Magnetic, Particle, Penalty, Plot, Rod, Scene, Sine, SolverSpec, Spring, Stabilisation,
-    StrainLimit, Table, Triangle, Wind, steps,
+    Knots, Magnetic, Particle, Penalty, Plane, Plot, Rod, Scene, Sine, SolverSpec, Spring,
+    Stabilisation, StrainLimit, Table, Triangle, Wind, steps,
 };
 pub use number::ObjectNumber;
 pub use table::{Value, Vectors};

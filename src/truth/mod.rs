@@ -162,9 +162,7 @@ pub fn find(
             "what a strain limit does depends on the timestep and on its sweeps: no motion is the true one",
         );
     }
-    // Closed forms know of no obstacle.
-    let open = system.obstacles().is_none();
-    if let Some(found) = open.then(|| closed::find(scene, system, until)).flatten()
+    if let Some(found) = closed::find(scene, system, until)
         && found.error_bound.is_finite()
     {
         return found;
@@ -200,7 +198,7 @@ pub fn expected(
     let few = scene.particles.len() <= FEW;
     if demand != Demand::Auto
         || system.strain_limiter().is_some()
-        || (few && system.obstacles().is_none() && closed::find(scene, system, until).is_some())
+        || (few && closed::find(scene, system, until).is_some())
     {
         return 0;
     }

@@ -2,7 +2,7 @@
 
 use crate::testkit::method;
 use crate::testkit::scenes::{empty, fixed, free, parsed, spring};
-use springcheck::integrators::{self, Method, Settings, StepError};
+use springcheck::integrators::{self, Method, Settings};
 use springcheck::physics::{ForceKinds, ParticleSystem, State, System};
 use springcheck::scene::{Particle, Scene};
 use springcheck::solvers::{self, Setting, advance};
@@ -383,34 +383,6 @@ fn a_valley_of_a_mesh_holds_from_both_sides() {
 }
 
 /// From the time on at which there is no room left no step can be taken, which is said.
-#[test]
-fn what_is_squeezed_ends_as_a_failure() {
-    let scene = lone(
-        "pos: [0, 0, 0.5]",
-        "{plane: {normal: [0, 0, 1]}, driven: {velocity: [0, 0, 1]}}, {plane: {normal: [0, 0, -1], offset: -1}}",
-        -G,
-    );
-    let system = ParticleSystem::new(&scene);
-    for method in integrators::fixed() {
-        let mut state = ParticleSystem::initial_state(&scene);
-        let mut integrator = method.build(&Settings::default());
-        let failed = (1..=150).find_map(|n| {
-            let end = f64::from(n) * 0.01;
-            advance(integrator.as_mut(), &system, 0.01, end, &mut state)
-                .err()
-                .map(|error| (error, end))
-        });
-        if let Some((error, end)) = failed {
-            assert!(
-                matches!(error, StepError::TooManyEvents { .. }),
-                "{}: {error}",
-                method.id
-            );
-            assert!((0.99..1.02).contains(&end), "{}: {end}", method.id);
-        }
-    }
-}
-
 #[test]
 fn in_a_wedge_both_planes_hold() {
     let scene = lone(

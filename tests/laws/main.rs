@@ -17,6 +17,7 @@ mod hard;
 mod implicit;
 mod kernel;
 mod magnetic;
+mod many_impacts;
 mod momentum;
 mod objects;
 mod order;

@@ -4,14 +4,16 @@
 //! The time of an event is the root of a gap, or of a force or velocity that changes its sign, as a function of the length
 //! of the sub-step that ends there. So every method keeps its order.
 
+mod many;
 mod path;
 mod pressed;
 mod root;
 
 use super::{Integrator, StepError};
-use crate::physics::constraints::contact::{Against, Beside, Change, Held, Near, Obstacles};
+use crate::physics::constraints::contact::{Against, Beside, Blows, Change, Held, Near, Obstacles};
 use crate::physics::{State, System};
 use crate::space::three;
+use many::Many;
 use path::{Path, meeting};
 use root::Due;
 use std::collections::BTreeSet;
@@ -78,7 +80,6 @@ fn step(
         involved: BTreeSet::new(),
         near: obstacles.near_now(state),
     };
-    walk.settle(state)?;
     let advance = |left: f64, located: usize, state: &mut State| walk.advance(left, located, state);
     root::cut(h, most_located(obstacles), state, advance)?;
     Ok(walk.impacts)
@@ -107,13 +108,16 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Impacts that are due at once.
-    fn settle(&mut self, state: &mut State) -> Result<(), StepError> {
-        let touching = self.obstacles.touching(&self.near, state).into_iter();
-        let due = touching
-            .filter(Beside::strikes)
-            .map(|beside| beside.particle);
-        self.strike(due.collect(), state)
+    /// What touches, after the impacts that are due at once.
+    fn settled(&mut self, state: &mut State) -> Result<Vec<Beside>, StepError> {
+        let touching = self.obstacles.touching(&self.near, state);
+        let due = touching.iter().filter(|beside| beside.strikes());
+        let due: BTreeSet<usize> = due.map(|beside| beside.particle).collect();
+        if due.is_empty() {
+            return Ok(touching);
+        }
+        self.strike(due, state)?;
+        Ok(self.obstacles.touching(&self.near, state))
     }
 
     /// The impacts of these particles, after which what would come back at once stays.
@@ -123,9 +127,15 @@ impl Walk<'_> {
         }
         let (obstacles, rods) = (self.obstacles, self.system.rods());
         let mut struck = due.clone();
-        let (more, impulses) = obstacles.strike(&self.near, rods, (due, true), state)?;
-        self.impacts += impulses;
-        struck.extend(more);
+        let blows = Blows {
+            near: &self.near,
+            rods,
+            among: true,
+            lands: false,
+        };
+        let more = obstacles.strike(&blows, due, state)?;
+        self.impacts += more.impulses;
+        struck.extend(more.particles);
         obstacles.push_out(&self.near, &mut struck, state);
         // What has come to rest holds up what lies on it.
         while self.rest(&struck, state)? {}
@@ -176,9 +186,9 @@ impl Walk<'_> {
     /// One sub-step of at most `left` seconds, to the next event, if no more particles than `located` have some. Returns its
     /// length.
     fn advance(&mut self, left: f64, located: usize, state: &mut State) -> Result<f64, StepError> {
+        let touching = self.settled(state)?;
         let start = state.clone();
         let (system, obstacles) = (self.system, self.obstacles);
-        let touching = obstacles.touching(&self.near, &start);
         let taken = self.integrator.takes();
         let held = Held::at(system, obstacles, &touching, &start, taken)?;
         let held = held.as_ref();
@@ -204,7 +214,7 @@ impl Walk<'_> {
                 held.book(left, &start, &mut end, a);
             }
             *state = end;
-            self.each_on_its_path(held, &due, left, &start, state)?;
+            self.take_many(held, due, left, &start, state)?;
             return Ok(left);
         };
         *state = at;
@@ -261,101 +271,55 @@ impl Walk<'_> {
         let free = self.near.pairs().filter(|(particle, against)| {
             !held.is_some_and(|held| held.holds(*particle, *against))
         });
-        let meets = |(particle, against): (usize, Against)| {
-            let event = Event::Impact { particle, against };
-            meeting(
-                self.obstacles,
-                (particle, against),
-                (event, 1.0),
-                h,
-                [start, end],
-            )
+        let path = |one: usize| Path::new(one, h, start, end);
+        let meets = |pair: (usize, Against)| {
+            let due = meeting(self.obstacles, pair, (0.0, 1.0), [start.t, h], path)?;
+            let (particle, against) = pair;
+            Some(due.of(Event::Impact { particle, against }))
         };
         let mut found: Vec<Due<Event>> = free.filter_map(meets).collect();
         found.sort_by(|a, b| a.due.total_cmp(&b.due));
         found
     }
 
-    /// Many events in one step: each impact at its own time on its particle's path, which the change of velocity bends from
-    /// there on; what has stopped is at rest at the end, and what leaves or slips does so from there on. Of second order
-    /// for a bounded number of impacts.
-    fn each_on_its_path(
+    /// Many events in one step: impacts along the paths of their particles; what has stopped is at rest at the end, and
+    /// what leaves or slips does so from there on.
+    fn take_many(
         &mut self,
         held: Option<&Held>,
-        due: &[Due<Event>],
+        due: Vec<Due<Event>>,
         h: f64,
         start: &State,
         end: &mut State,
     ) -> Result<(), StepError> {
-        let before = end.clone();
-        let mut there = before.clone();
-        let rods = self.system.rods();
+        let mut met = Vec::new();
         for due in due {
-            let (particle, against) = match due.event {
-                Event::Contact { particle, change } => {
-                    if let (Some(held), Change::Stops) = (held, change) {
-                        held.stop(particle, end);
-                    }
-                    continue;
+            match (due.event, held) {
+                (Event::Impact { particle, against }, _) => met.push(due.of((particle, against))),
+                (
+                    Event::Contact {
+                        particle,
+                        change: Change::Stops,
+                    },
+                    Some(held),
+                ) => {
+                    held.stop(particle, end);
                 }
-                Event::Impact { particle, against } => (particle, against),
-            };
-            let ends = against.with(particle);
-            let paths = ends
-                .iter()
-                .map(|end| (*end, Path::new(*end, h, start, &before)));
-            let paths: Vec<(usize, Path)> = paths.collect();
-            let move_to = |s: f64, there: &mut State| {
-                there.t = start.t + s * h;
-                for (particle, path) in &paths {
-                    path.put(*particle, s, there);
-                }
-            };
-            let (mut low, mut high) = (due.clear / h, due.due / h);
-            for _ in 0..60 {
-                let middle = 0.5 * (low + high);
-                move_to(middle, &mut there);
-                if self.obstacles.beside(particle, against, &there).gap < 0.0 {
-                    high = middle;
-                } else {
-                    low = middle;
-                }
-            }
-            move_to(high, &mut there);
-            let old: Vec<_> = ends.iter().map(|end| three(&there.v, *end)).collect();
-            // Of its own place alone is it known when it is there.
-            let work = std::mem::replace(&mut there.work, end.work);
-            let impacts = match against {
-                Against::Obstacle(_) => {
-                    let alone = ([particle].into(), false);
-                    self.obstacles
-                        .strike(&self.near, rods, alone, &mut there)?
-                        .1
-                }
-                Against::Particle(_) => {
-                    let beside = self.obstacles.beside(particle, against, &there);
-                    u64::from(self.obstacles.apply(rods, &beside, &mut there)?)
-                }
-            };
-            self.impacts += impacts;
-            end.work = std::mem::replace(&mut there.work, work);
-            // Rods pass impulses on to all.
-            let moved: Vec<usize> = match rods {
-                Some(_) => (0..end.v.len() / 3).collect(),
-                None => ends.clone(),
-            };
-            for moved in moved {
-                let at = ends.iter().position(|end| *end == moved);
-                let old = at.map_or_else(|| three(&before.v, moved), |at| old[at]);
-                for (axis, old) in old.into_iter().enumerate() {
-                    let place = 3 * moved + axis;
-                    let change = there.v[place] - old;
-                    end.v[place] += change;
-                    end.x[place] += change * (1.0 - high) * h;
-                    (there.x[place], there.v[place]) = (before.x[place], before.v[place]);
-                }
+                _ => {}
             }
         }
+        if met.is_empty() {
+            return Ok(());
+        }
+        let mut many = Many {
+            obstacles: self.obstacles,
+            rods: self.system.rods(),
+            near: Arc::clone(&self.near),
+            h,
+            start,
+        };
+        self.impacts += many.strike(met, end)?;
+        self.near = many.near;
         Ok(())
     }
 }

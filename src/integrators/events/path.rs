@@ -4,6 +4,7 @@ use super::root::Due;
 use crate::physics::State;
 use crate::physics::constraints::contact::{Against, Near, Obstacles};
 use crate::space::{norm, three};
+use std::borrow::Borrow;
 use std::sync::Arc;
 
 /// The cubic through both ends of a particle's path, over the part s of a step.
@@ -48,6 +49,16 @@ impl Path {
         state.v[own].copy_from_slice(&self.velocity(s));
     }
 
+    /// Adds a change of velocity from s on.
+    pub fn bend(&mut self, s: f64, change: [f64; 3]) {
+        for (axis, change) in change.into_iter().enumerate() {
+            self.x[0][axis] -= change * s * self.h;
+            self.x[1][axis] += change * (1.0 - s) * self.h;
+            self.v[0][axis] += change;
+            self.v[1][axis] += change;
+        }
+    }
+
     /// A ball that it keeps within: its centre, and its radius, m.
     pub fn ball(&self) -> ([f64; 3], f64) {
         let center = [0, 1, 2].map(|c| 0.5 * (self.x[0][c] + self.x[1][c]));
@@ -69,57 +80,70 @@ pub(super) fn near(obstacles: &Obstacles, h: f64, start: &State, end: &State) ->
     })
 }
 
-/// When the gap of a particle closes on the paths through both ends of a sub-step of `h` seconds; with a `side` of -1 when
-/// the depth does.
-pub(super) fn meeting<E>(
+/// When the gap of a pair closes on the paths of a step from `t` on of `h` seconds, after a part s of it; with a `side` of
+/// -1 when the depth does.
+pub(super) fn meeting<P: Borrow<Path>>(
     obstacles: &Obstacles,
     (particle, against): (usize, Against),
-    (event, side): (E, f64),
-    h: f64,
-    [start, end]: [&State; 2],
-) -> Option<Due<E>> {
-    let path = |particle| Path::new(particle, h, start, end);
+    (s, side): (f64, f64),
+    [t, h]: [f64; 2],
+    path: impl Fn(usize) -> P,
+) -> Option<Due<(usize, Against)>> {
     let own = path(particle);
+    let own: &Path = own.borrow();
     let other = match against {
         Against::Particle(other) => Some((other, path(other))),
         Against::Obstacle(_) => None,
     };
     let left = |s: f64| {
         let at = |which: usize| match &other {
-            Some((other, path)) if *other == which => path.at(s),
+            Some((other, path)) if *other == which => path.borrow().at(s),
             _ => own.at(s),
         };
-        side * obstacles.gap(particle, against, start.t + s * h, at)
+        side * obstacles.gap(particle, against, t + s * h, at)
     };
-    let others = other.as_ref().map_or(0.0, |(_, path)| path.length());
-    let reach = obstacles.reach(against, start.t, start.t + h);
+    let others = other
+        .as_ref()
+        .map_or(0.0, |(_, path)| path.borrow().length());
+    let reach = obstacles.reach(against, t, t + h);
     let bound = own.length() + reach + others;
     if left(1.0) > bound {
         return None;
     }
-    let ([clear, due], level) = crossing(left, bound, obstacles.close(own.at(0.0)))?;
+    let ([clear, due], level) = crossing(left, s, bound, obstacles.close(own.at(s)))?;
     Some(Due {
-        event,
+        event: (particle, against),
         clear: clear * h,
         due: due * h,
         level,
     })
 }
 
-/// Where a gap first becomes negative, as parts of a step, before and after; and the level it falls below. `bound` is the
-/// most that it changes over the whole step. A gap that starts within `close` of 0, after a bounce, and never rises above
-/// that has to fall clearly below 0.
-fn crossing(gap: impl Fn(f64) -> f64, bound: f64, close: f64) -> Option<([f64; 2], f64)> {
+/// Where a gap first becomes negative after a part `from` of a step, as parts of it, before and after; and the level it
+/// falls below. `bound` is the most that it changes over the whole step. A gap that starts within `close` of 0, after a
+/// bounce, and never rises above that has to fall clearly below 0.
+fn crossing(
+    gap: impl Fn(f64) -> f64,
+    from: f64,
+    bound: f64,
+    close: f64,
+) -> Option<([f64; 2], f64)> {
     const SHORT: f64 = 1e-6;
-    let (mut clear, mut s, mut short) = (0.0, 0.0, SHORT);
+    const RISEN: f64 = 1e-2;
+    let (mut clear, mut s, mut short) = (from, from, SHORT);
     let mut level = -2.0 * close;
+    let mut now = gap(s);
     loop {
-        let now = gap(s);
         if now > close {
             level = 0.0;
         }
         if now < level {
-            return Some(([clear, s], level));
+            // A bounce may be over before it was seen to rise.
+            let mut halves = (1..=40).map(|k| from + (s - from) * 0.5_f64.powi(k));
+            return match halves.find(|s| level < 0.0 && gap(*s) > RISEN * close) {
+                Some(risen) => Some(([risen, s], 0.0)),
+                None => Some(([clear, s], level)),
+            };
         }
         if now > level {
             clear = s;
@@ -130,12 +154,45 @@ fn crossing(gap: impl Fn(f64) -> f64, bound: f64, close: f64) -> Option<([f64; 2
         // The gap changes by no more than the path is long.
         let safe = now.max(0.0) / bound;
         if safe > short {
-            s += safe;
-            short = SHORT;
-        } else {
-            s += short;
-            short *= 1.5;
+            (s, short) = ((s + safe).min(1.0), SHORT);
+            now = gap(s);
+            continue;
         }
-        s = s.min(1.0);
+        let (to, before) = ((s + short).min(1.0), now);
+        now = gap(to);
+        if now >= level
+            && before >= level
+            && let Some(inside) = dip(&gap, [s, to], [before, now], level)
+        {
+            return Some(([s.max(clear), inside], level));
+        }
+        (s, short) = (to, 1.5 * short);
     }
+}
+
+/// Where between two parts of a step, with these gaps, a gap falls below a level and rises again: along a straight line
+/// the distance from a convex body has one minimum.
+fn dip(gap: impl Fn(f64) -> f64, [from, to]: [f64; 2], ends: [f64; 2], level: f64) -> Option<f64> {
+    let (mut low, mut high, mut middle) = (from, to, 0.5 * (from + to));
+    let ([mut before, mut after], mut least) = (ends, gap(middle));
+    for _ in 0..100 {
+        if least < level {
+            return Some(middle);
+        }
+        // No convex function through these three is lower on either side.
+        let lowest = (2.0 * least - before).min(2.0 * least - after);
+        if lowest >= level || high - low <= 1e-15 {
+            return None;
+        }
+        let sides = [0.5 * (low + middle), 0.5 * (middle + high)];
+        let [left, right] = sides.map(&gap);
+        if left <= least && left <= right {
+            (high, after, middle, least) = (middle, least, sides[0], left);
+        } else if right <= least {
+            (low, before, middle, least) = (middle, least, sides[1], right);
+        } else {
+            (low, before, high, after) = (sides[0], left, sides[1], right);
+        }
+    }
+    None
 }

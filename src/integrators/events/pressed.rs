@@ -159,9 +159,10 @@ impl Frozen<'_> {
     fn due(&self, h: f64, start: &State, end: &State) -> Vec<Due<Pair>> {
         let near = path::near(self.obstacles, h, start, end);
         let pairs: BTreeSet<Pair> = near.pairs().chain(self.pressed.iter().copied()).collect();
+        let path = |one: usize| Path::new(one, h, start, end);
         let meets = |pair: Pair| {
-            let event = (pair, self.side(pair));
-            meeting(self.obstacles, pair, event, h, [start, end])
+            let side = self.side(pair);
+            meeting(self.obstacles, pair, (0.0, side), [start.t, h], path)
         };
         pairs.into_iter().filter_map(meets).collect()
     }

@@ -21,6 +21,21 @@ pub(super) struct Due<E> {
     pub level: f64,
 }
 
+impl<E> Due<E> {
+    /// The same of another event.
+    pub fn of<F>(self, event: F) -> Due<F> {
+        let Self {
+            clear, due, level, ..
+        } = self;
+        Due {
+            event,
+            clear,
+            due,
+            level,
+        }
+    }
+}
+
 /// Advances a state by `h` seconds in sub-steps, each of what is left at most. `advance` takes one, in which no more than so
 /// many particles have their events located, and tells its length.
 pub(super) fn cut(

@@ -3,7 +3,7 @@
 //! Particles that springs join form a group; a scene has a closed form if every group has one. A
 //! group has one where its forces stay linear: without springs, with springs of rest length 0, or
 //! moving on one line with lengths proven to stay above 0. Its modes are then decoupled, and each is
-//! one scalar equation. With quadratic drag a particle without springs has one on a line; in a magnetic field it goes
+//! one scalar equation. A particle by itself among planes has a form on every piece of its motion. With quadratic drag a particle without springs has one on a line; in a magnetic field it goes
 //! round a helix; on a rod to a fixed point it is a pendulum. Forces here are read off the scene, not off the effects' code, so that
 //! either would show a fault in the other.
 
@@ -19,6 +19,7 @@ mod mode;
 mod modes;
 mod part;
 mod pendulum;
+mod pieces;
 mod vector;
 mod words;
 
@@ -34,6 +35,7 @@ use helix::Helix;
 use hung::Hung;
 use nalgebra::Vector3;
 use part::GroupMotion;
+use pieces::{Pieces, Wall, walls};
 
 /// Ids of the effects the forms account for. Any other effect in a scene means no closed form.
 const KNOWN: &[&str] = &[
@@ -62,7 +64,9 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
     if !groups.iter().all(Group::is_plain) {
         return None;
     }
-    let parts: Vec<Part> = groups.iter().map(Part::of).collect::<Option<_>>()?;
+    let walls = walls(scene)?;
+    let parts = groups.iter().map(|group| Part::of(group, &walls));
+    let parts: Vec<Part> = parts.collect::<Option<_>>()?;
     let words: Vec<[&str; 2]> = parts.iter().map(Part::words).collect();
     let mut methods = each_once(words.iter().map(|words| words[0]));
     let mut reasons = each_once(words.iter().map(|words| words[1]));
@@ -84,7 +88,10 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
     if !(finite && motion.error_bar(until).is_finite()) {
         return None;
     }
-    let size = scene.size().max(farthest(&end.x, &motion.x));
+    let part = |k: u32| until * f64::from(k) / 8.0;
+    let way = motion.states(&[1, 2, 3, 4, 5, 6, 7, 8].map(part));
+    let ways = (0..8).map(|k| farthest(way.x(k), &motion.x));
+    let size = ways.fold(scene.size(), f64::max);
     let horizon = horizon(&motion, until, HORIZON * size)?;
     if horizon < until {
         reason += "; beyond it a rounding of the start has grown too large";
@@ -139,11 +146,15 @@ enum Part {
     Fall(Fall),
     Helix(Helix),
     Hung(Box<Hung>),
+    Pieces(Pieces),
 }
 
 impl Part {
     /// The group's motion, if it has a closed form.
-    fn of(group: &Group) -> Option<Self> {
+    fn of(group: &Group, walls: &[Wall]) -> Option<Self> {
+        if !walls.is_empty() {
+            return Pieces::of(group, walls).map(Self::Pieces);
+        }
         if !group.rods.is_empty() {
             return Hung::of(group).map(Box::new).map(Self::Hung);
         }
@@ -164,6 +175,7 @@ impl Part {
             Self::Fall(_) => [fall::METHOD, fall::REASON],
             Self::Helix(helix) => helix.words(),
             Self::Hung(_) => [hung::METHOD, hung::REASON],
+            Self::Pieces(pieces) => [&pieces.method, &pieces.reason],
         }
     }
 
@@ -173,6 +185,7 @@ impl Part {
             Self::Fall(fall) => fall.add(t, x, v),
             Self::Helix(helix) => helix.add(t, x, v),
             Self::Hung(hung) => hung.put(t, x, v),
+            Self::Pieces(pieces) => pieces.put(t, x, v),
         }
     }
 
@@ -182,6 +195,7 @@ impl Part {
             Self::Fall(fall) => fall.error_bar(t),
             Self::Helix(helix) => helix.error_bar(t),
             Self::Hung(hung) => hung.error_bar(t),
+            Self::Pieces(pieces) => pieces.error_bar(t),
         }
     }
 }

@@ -64,12 +64,13 @@ impl Level {
         farther.map(|distance| distance / MAGNIFIED).collect()
     }
 
-    /// The error bar at each instant, m. `rounding` is how far rounding may have led the motion astray, m.
-    pub fn bars(&self, rounding: &[f64]) -> Vec<f64> {
+    /// The error bar at each instant, m. `rounding` is how far rounding may have led the motion astray, m, `unseen` what
+    /// bounces that are not seen any more may, m.
+    pub fn bars(&self, rounding: &[f64], unseen: f64) -> Vec<f64> {
         let instants = 0..=self.mesh.intervals();
         let magnitudes = running_largest(instants.map(|k| largest(self.first.x(k))));
         let off = self.gaps.iter().zip(rounding).zip(magnitudes);
-        off.map(|((gap, rounding), m)| CAUTION * (gap + rounding) + f64::EPSILON * m)
+        off.map(|((gap, rounding), m)| CAUTION * (gap + rounding) + f64::EPSILON * m + unseen)
             .collect()
     }
 }

@@ -6,6 +6,7 @@ use super::rate::fastest_rate;
 use super::reference::STEPS;
 use super::stepper::Precise;
 use super::{NotConverged, thousands};
+use crate::physics::constraints::contact::Obstacles;
 use crate::physics::{State, System};
 
 /// Most bytes of kept states.
@@ -147,7 +148,7 @@ pub(super) fn halve(
     level.gaps = gaps;
     Ok(Halved {
         amplification,
-        bars: level.bars(&rounding),
+        bars: level.bars(&rounding, system.obstacles().map_or(0.0, Obstacles::unseen)),
         size,
         spent,
         ended,

@@ -137,10 +137,7 @@ pub fn converge(
         let _ = match (growth, halved.ended) {
             (Some(rate), _) => write!(reason, "; neighbours part at {rate:.2} /s"),
             (None, StopReason::Spent) => write!(reason, "; {TOO_MUCH}"),
-            (None, _) => write!(
-                reason,
-                "; beyond it smaller steps do not bring them together"
-            ),
+            (None, _) => write!(reason, "; beyond it {}", apart(&**system)),
         };
     }
     Ok(Converged {
@@ -166,6 +163,15 @@ pub fn converge(
             },
         },
     })
+}
+
+/// Why two estimates part.
+fn apart(system: &dyn System) -> &'static str {
+    if system.obstacles().is_some() {
+        "smaller steps do not bring them together, as where an impact only grazes, or two come at the same time"
+    } else {
+        "smaller steps do not bring them together"
+    }
 }
 
 /// The reason given where the budget ended the halving.

@@ -246,3 +246,42 @@ fn what_is_nearly_so_is_neither_believed_nor_refuted_when_denied() {
         assert_eq!(status("symplecticity", "midpoint", &build), denied, "{by}");
     }
 }
+
+/// Velocity Verlet that starts a step with the force at the end of the last one, and does not forget it where a step is cut.
+#[derive(Default)]
+struct KeepsForce(Option<Vec<f64>>);
+
+impl Integrator for KeepsForce {
+    fn step(&mut self, system: &dyn System, h: f64, state: &mut State) -> Result<(), StepError> {
+        let mut a = self.0.take().unwrap_or_else(|| {
+            let mut a = vec![0.0; state.x.len()];
+            system.acceleration(state.t, &state.x, &state.v, &mut a);
+            a
+        });
+        for ((x, v), a) in state.x.iter_mut().zip(&mut state.v).zip(&a) {
+            *v += 0.5 * h * a;
+            *x += h * *v;
+        }
+        state.t += h;
+        system.acceleration(state.t, &state.x, &state.v, &mut a);
+        for (v, a) in state.v.iter_mut().zip(&a) {
+            *v += 0.5 * h * a;
+        }
+        self.0 = Some(a);
+        Ok(())
+    }
+}
+
+#[test]
+fn a_force_kept_across_a_cut_is_caught() {
+    let build = || Box::new(KeepsForce::default()) as Box<dyn Integrator>;
+    let claims = Claims::from(method("velocity_verlet"));
+    let judged = |law: &str| {
+        conformance::find(law)
+            .expect(law)
+            .check(&build, &claims)
+            .status
+    };
+    assert_eq!(judged("order"), CheckStatus::Pass);
+    assert_ne!(judged("contact"), CheckStatus::Pass);
+}

@@ -11,6 +11,7 @@ mod families;
 mod gauss;
 mod motion;
 mod pendulum;
+mod pieces;
 
 use springcheck::physics::ParticleSystem;
 use springcheck::scene::Scene;

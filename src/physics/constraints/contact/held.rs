@@ -229,7 +229,7 @@ impl<'s> Held<'s> {
             }
         }
         for group in &self.groups {
-            group.stop(self.obstacles, particle, state);
+            group.stop(self.obstacles, self.system.rods(), particle, state);
         }
     }
 

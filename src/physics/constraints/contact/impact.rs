@@ -7,6 +7,18 @@ use crate::space::{dot, minus, norm, three};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeSet;
 
+/// Why impacts cannot be taken.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BlowError {
+    #[error(transparent)]
+    Rods(#[from] RodError),
+    #[error("impacts at t = {t} s come to no end: a particle is squeezed between obstacles")]
+    NoEnd {
+        /// s.
+        t: f64,
+    },
+}
+
 /// What an impact starts from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
@@ -74,46 +86,64 @@ impl ImpactLaw {
 /// The most passes over particles that press each other, or that several obstacles press.
 const PASSES: usize = 1000;
 
+/// Among what impacts happen, and how.
+pub struct Blows<'a> {
+    pub near: &'a Near,
+    pub rods: Option<&'a Rods>,
+    /// Particles strike each other, too.
+    pub among: bool,
+    /// Nothing is given back: what strikes stays.
+    pub lands: bool,
+}
+
+/// What impacts have done.
+#[derive(Debug, Default)]
+pub struct Struck {
+    /// The particles that were struck.
+    pub particles: BTreeSet<usize>,
+    /// The number of impulses.
+    pub impulses: u64,
+}
+
 impl Obstacles {
     /// Gives particles that strike something the velocities after the impacts, and books the energy that they take. With V
     /// the speed of approach, the normal velocity becomes e V, and the sliding one falls by µ (1 + e) V, to 0 at most:
     /// Coulomb's law for the impulses. What they touch as well they strike next, and what that touches, until nothing is
-    /// left to strike: pair by pair, in ascending order of the particles. `among`: other particles count, too. Returns the
-    /// particles that were struck, and the number of impulses.
+    /// left to strike: pair by pair, in ascending order of the particles.
     ///
     /// # Errors
-    /// [`RodError`] where rods depend on each other.
+    /// [`BlowError`] where rods depend on each other, and where impacts come to no end.
     pub fn strike(
         &self,
-        near: &Near,
-        rods: Option<&Rods>,
-        (particles, among): (BTreeSet<usize>, bool),
+        blows: &Blows,
+        particles: BTreeSet<usize>,
         state: &mut State,
-    ) -> Result<(BTreeSet<usize>, u64), RodError> {
-        let (mut struck, mut impulses) = (BTreeSet::new(), 0);
+    ) -> Result<Struck, BlowError> {
+        let mut struck = Struck::default();
         let mut next = particles;
         for _ in 0..PASSES {
             let mut later = BTreeSet::new();
             for particle in next {
-                let all = self.touched(near, particle, state).into_iter();
-                let seen = all.filter(|one| among || matches!(one.against, Against::Obstacle(_)));
+                let all = self.touched(blows.near, particle, state).into_iter();
+                let seen =
+                    all.filter(|one| blows.among || matches!(one.against, Against::Obstacle(_)));
                 for beside in seen.filter(Beside::strikes) {
-                    if self.apply(rods, &beside, state)? {
+                    if self.apply(blows.rods, &beside, blows.lands, state)? {
                         later.extend(beside.particles());
-                        impulses += 1;
+                        struck.impulses += 1;
                     }
                 }
             }
             if later.is_empty() {
-                break;
+                return Ok(struck);
             }
-            struck.extend(&later);
+            struck.particles.extend(&later);
             next = later;
         }
-        Ok((struck, impulses))
+        Err(BlowError::NoEnd { t: state.t })
     }
 
-    /// One impulse, unless an earlier one has turned the two away.
+    /// One impulse, unless an earlier one has turned the two away; `lands`: nothing is given back.
     ///
     /// # Errors
     /// [`RodError`] where rods depend on each other.
@@ -121,6 +151,7 @@ impl Obstacles {
         &self,
         rods: Option<&Rods>,
         beside: &Beside,
+        lands: bool,
         state: &mut State,
     ) -> Result<bool, RodError> {
         let beside = self.beside(beside.particle, beside.against, state);
@@ -128,7 +159,10 @@ impl Obstacles {
         if speed <= beside.slow {
             return Ok(false);
         }
-        let surface = self.surface(beside.against);
+        let mut surface = self.surface(beside.against);
+        if lands {
+            surface.restitution = 0.0;
+        }
         if let Some(rods) = rods {
             let away = (1.0 + surface.restitution) * speed;
             return self.apply_on_rods(rods, &beside, [away, surface.friction[0]], state);
@@ -233,7 +267,8 @@ impl Obstacles {
         }
     }
 
-    /// Takes the normal velocity of what touches away, and books the energy; `beside` is as the state has it.
+    /// Takes the normal velocity V of what touches away, and books the energy; `beside` is as the state has it. By the end
+    /// of its bounces friction would have taken µ V less off a sliding velocity than it does from now on: that is given.
     ///
     /// # Errors
     /// [`RodError`] where rods depend on each other.
@@ -248,7 +283,18 @@ impl Obstacles {
             Some(rods) => {
                 self.apply_on_rods(rods, beside, [-parting, 0.0], state)?;
             }
-            None => self.kick(beside, beside.normal.map(|n| -parting * n), state),
+            None => {
+                let mut change = beside.normal.map(|n| -parting * n);
+                let sliding = beside.sliding();
+                let fast = norm(sliding);
+                if parting > 0.0 && fast > beside.slow {
+                    let given = self.surface(beside.against).friction[0] * parting / fast;
+                    for (change, along) in change.iter_mut().zip(sliding) {
+                        *change += given * along;
+                    }
+                }
+                self.kick(beside, change, state);
+            }
         }
         Ok(())
     }

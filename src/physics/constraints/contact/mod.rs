@@ -10,7 +10,7 @@ mod near;
 
 pub use group::{MOST, TooManyTouch};
 pub use held::{Change, Held};
-pub use impact::{Hit, ImpactLaw};
+pub use impact::{BlowError, Blows, Hit, ImpactLaw, Struck};
 pub use near::Near;
 
 use super::ConstraintRow;
@@ -33,7 +33,7 @@ const TOUCHING: f64 = 1e-13;
 /// A gap that a report calls closed is within this part.
 const CLOSED: f64 = 1e-9;
 /// A bounce of less than this part of the scene's size is the last of a row.
-const LOWEST: f64 = 1e-11;
+const LOWEST: f64 = 4e-13;
 /// Normal velocities within this part of the speed are none.
 const SLOW: f64 = 1e-10;
 /// Nor is a gap right to more than this part of the coordinates it comes from.
@@ -346,6 +346,16 @@ impl Obstacles {
     /// What would rise by less than this, m, stays: less than is seen.
     pub fn lowest(&self, beside: &Beside) -> f64 {
         self.lowest.max(2.0 * beside.close)
+    }
+
+    /// How far off what stays may be, m, since it is not seen to rise: by the last bounce, and along a surface by µ V times
+    /// the time that its bounces would still take, 2 V/((1 - e) a). 0 where nothing bounces to an end.
+    pub fn unseen(&self) -> f64 {
+        let surfaces = self.surfaces().chain(self.among);
+        let each = surfaces
+            .filter(|one| one.restitution > 0.0 && one.restitution < 1.0)
+            .map(|one| 1.0 + 4.0 * one.friction[0] / (1.0 - one.restitution));
+        self.lowest * each.fold(0.0, f64::max)
     }
 
     /// Whether surfaces of obstacles bend on which a particle may slide.

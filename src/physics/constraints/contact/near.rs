@@ -36,6 +36,11 @@ impl Near {
         })
     }
 
+    /// Whether a ball that a particle keeps within, its centre and radius in metres, is within its box.
+    pub fn holds(&self, particle: usize, (center, radius): ([f64; 3], f64)) -> bool {
+        self.boxes[particle].contains(&around(center, radius))
+    }
+
     /// What a particle may touch, ascending.
     pub fn of(&self, particle: usize) -> &[Against] {
         &self.against[particle]
@@ -60,10 +65,7 @@ impl Broad {
         let last = &self.last;
         let lasting =
             !obstacles.any_moves() || (last.times[0] <= times[0] && times[1] <= last.times[1]);
-        let within = |particle: usize| {
-            let (center, radius) = ball(particle);
-            last.boxes[particle].contains(&around(center, radius))
-        };
+        let within = |particle: usize| last.holds(particle, ball(particle));
         if lasting && !last.boxes.is_empty() && obstacles.particles().all(within) {
             return Arc::clone(last);
         }

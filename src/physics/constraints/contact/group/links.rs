@@ -44,8 +44,12 @@ pub(super) struct Rows {
     pub(super) kept: DMatrix<f64>,
     /// For each row its friction, in multiples of its multiplier.
     pub(super) rubs: DMatrix<f64>,
-    /// Of the matrix of multipliers.
+    /// The accelerations along rows by a multiplier of 1 each.
+    pub(super) matrix: DMatrix<f64>,
+    /// Its inverse.
     pub(super) inverse: DMatrix<f64>,
+    /// Where rows depend on each other, and multipliers are not determined, those nearest to these are taken.
+    pub(super) about: DVector<f64>,
     pub(super) of: Vec<Row>,
 }
 
@@ -91,7 +95,9 @@ impl Rows {
         }
         let matrix = &kept * (&kept + &rubs).transpose();
         Self {
-            inverse: inverse(matrix),
+            about: DVector::zeros(of.len()),
+            inverse: inverse(matrix.clone()),
+            matrix,
             kept,
             rubs,
             of,
@@ -106,7 +112,15 @@ impl Rows {
         t: f64,
         a: &DVector<f64>,
     ) -> DVector<f64> {
-        &self.inverse * (self.right(obstacles, links, t) - &self.kept * a)
+        self.nearest(
+            &self.about,
+            &(self.right(obstacles, links, t) - &self.kept * a),
+        )
+    }
+
+    /// The multipliers nearest to `about` that give these accelerations along the rows.
+    pub(super) fn nearest(&self, about: &DVector<f64>, along: &DVector<f64>) -> DVector<f64> {
+        about + &self.inverse * (along - &self.matrix * about)
     }
 
     /// The accelerations along the rows that are kept.

@@ -22,6 +22,8 @@ use links::{DEPENDENT, Kept, Link, Row, Rows, Rubs, inverse, plain, pressed, rod
 use nalgebra::{DMatrix, DVector};
 use pressing::pressing;
 
+/// What is left of a sliding velocity, in parts of what it was, where a contact has stopped.
+const TURNED: f64 = 1e-3;
 /// Newton's steps onto surfaces and rods.
 const ITERATIONS: usize = 50;
 
@@ -98,8 +100,7 @@ impl Group {
                 .zip(&scales)
                 .flat_map(|(particle, scale)| three(a, *particle).map(|c| scale * c)),
         );
-        let links = pressing(obstacles, links, &scales, state.t, &scaled);
-        let rows = Rows::new(&links, &scales);
+        let (links, rows) = pressing(obstacles, links, &scales, state.t, &scaled);
         let mut group = Self {
             axes: DMatrix::zeros(0, 0),
             given: 0,
@@ -308,7 +309,8 @@ impl Group {
         a: &[f64],
     ) -> (Vec<Link>, Rows, DVector<f64>) {
         let links = self.now(obstacles, rods, state);
-        let rows = Rows::new(&links, &self.scales);
+        let mut rows = Rows::new(&links, &self.scales);
+        rows.about.copy_from(&self.rows.about);
         let multipliers = rows.multipliers(obstacles, &links, state.t, &self.gather(a));
         (links, rows, multipliers)
     }
@@ -346,20 +348,37 @@ impl Group {
         found
     }
 
-    /// Takes the sliding velocity away where a contact of this particle has come to rest.
-    pub fn stop(&self, obstacles: &Obstacles, particle: usize, state: &mut State) {
-        for link in &self.links {
-            let Kept::Contact(contact, Rubs::Slides(forward)) = link.kept else {
+    /// Takes the sliding velocity away where a contact of this particle has come to rest, and what that moves in other
+    /// contacts and rods.
+    pub fn stop(
+        &self,
+        obstacles: &Obstacles,
+        rods: Option<&Rods>,
+        particle: usize,
+        state: &mut State,
+    ) {
+        let mut stops = false;
+        let mut links = self.now(obstacles, rods, state);
+        for (link, before) in links.iter_mut().zip(&self.links) {
+            let (Kept::Contact(now, rubs), Kept::Contact(begun, _)) = (&mut link.kept, before.kept)
+            else {
                 continue;
             };
-            if contact.beside.particle != particle {
+            let Rubs::Slides(forward) = *rubs else {
                 continue;
+            };
+            let sliding = now.beside.sliding();
+            // What has turned meanwhile slides on, aside.
+            let aside = norm(sliding) > now.beside.slow + TURNED * norm(begun.beside.sliding());
+            let own = now.beside.particle == particle;
+            if own && !aside && dot(forward, sliding) <= now.beside.slow {
+                (*rubs, stops) = (Rubs::Sticks, true);
+            } else {
+                *rubs = Rubs::Not;
             }
-            let beside = contact.now(obstacles, state).beside;
-            let sliding = beside.sliding();
-            if dot(forward, sliding) <= beside.slow {
-                obstacles.push(&beside, sliding.map(|c| -c), &mut state.v);
-            }
+        }
+        if stops {
+            self.follow(obstacles, &links, state);
         }
     }
 
@@ -428,20 +447,22 @@ impl Group {
             let held = given.tr_mul(&(given * self.gather(begins)));
             self.add(&held, 0.5 * h, &mut state.v);
         }
-        let links = self.now(obstacles, rods, state);
-        let rows = Rows::new(&plain(&links), &self.scales);
-        let parting: Vec<f64> = rows
-            .of
-            .iter()
-            .map(|row| match links[row.link].kept {
-                Kept::Contact(contact, _) => dot(
-                    row.direction,
-                    obstacles.moved(contact.beside.against, state.t)[1],
-                ),
-                Kept::Rod(_) => 0.0,
-            })
-            .collect();
-        let parting = DVector::from_vec(parting) - &rows.kept * self.gather(&state.v);
+        let links = plain(&self.now(obstacles, rods, state));
+        self.follow(obstacles, &links, state);
+    }
+
+    /// Takes the velocities away that links do not leave.
+    fn follow(&self, obstacles: &Obstacles, links: &[Link], state: &mut State) {
+        let rows = Rows::new(links, &self.scales);
+        let each = rows.of.iter().map(|row| match links[row.link].kept {
+            Kept::Contact(contact, _) => {
+                let against = contact.beside.against;
+                dot(row.direction, obstacles.moved(against, state.t)[1])
+            }
+            Kept::Rod(_) => 0.0,
+        });
+        let along = DVector::from_iterator(rows.of.len(), each);
+        let parting = along - &rows.kept * self.gather(&state.v);
         let change = rows.kept.tr_mul(&(&rows.inverse * parting));
         self.add(&change, 1.0, &mut state.v);
     }
