@@ -31,7 +31,7 @@ const UNCOUNTED: u64 = 150;
 /// What a rod costs in a step and in each evaluation, in passes over a particle.
 const ROD: u64 = 12;
 /// What looking for contact costs in a step and in each evaluation, in passes over a particle.
-const CONTACT: u64 = 20;
+const CONTACT: u64 = 60;
 
 /// The cost of a step, in passes over all particles, from a few steps of the scene. It is counted, not
 /// timed, so that every machine searches alike.
