@@ -53,6 +53,14 @@ pub enum Bend {
 }
 
 impl Bend {
+    /// The largest curvature, 1/m; 0 of what is flat.
+    pub fn curvature(&self) -> f64 {
+        match *self {
+            Self::Flat => 0.0,
+            Self::Line(_, radius) | Self::Point(radius) => 1.0 / radius,
+        }
+    }
+
     /// The normal acceleration, m/s², of a motion at velocity `u`, m/s, along such a surface with this normal: -u²/r on a
     /// sphere.
     pub fn turning(&self, normal: [f64; 3], u: [f64; 3]) -> f64 {

@@ -2,8 +2,9 @@
 //!
 //! Between two rows an impact is where the free motion from the first, x + v t + a t²/2, meets the surface. The velocities
 //! before and after it are those of the rows, each taken there by its own acceleration. With forces that are constant this is
-//! exact; what else forces may do within the two rows is the bound, |a| h.
+//! exact; what else forces may do within the two rows, |a| h, and rounding are the bound.
 
+use crate::integrators::events::LOCATED;
 use crate::physics::constraints::contact::{Against, Beside, Obstacles};
 use crate::physics::{ParticleSystem, State, System};
 use crate::space::{dot, minus, norm, three};
@@ -44,8 +45,9 @@ impl Residual {
 }
 
 /// The laws of contact over the recorded rows. Not judged, and null where nothing else happened: an impact whose speed the
-/// forces change by more than a quarter within its rows; one that takes several rows, as a penalty's; what touches more
-/// than one thing, or is joined by a spring to what touches something; without velocities. With a strain limit nothing is judged, and with rods no friction.
+/// forces change by more than a quarter within its rows; one that takes several rows, as a program's penalty; what touches
+/// more than one thing within two rows, triangles of a mesh counted one by one, or is joined by a spring or by rods to what
+/// touches something; without velocities. With a penalty or a strain limit nothing is judged, and with rods no friction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Laws {
     /// Newton's: |v_n' + e v_n| / |v_n| of impacts.
@@ -58,6 +60,43 @@ pub struct Laws {
     /// The largest energy, J, that one impact or a row of sliding puts in, as the surface sees it: none should.
     pub energy_gain: Option<Residual>,
 }
+
+/// The laws that residuals are of, and what they are about, for `explain`: ids, and what each says.
+pub static CONTACT_LAWS: &[(&str, &str)] = &[
+    (
+        "contact",
+        "what touches pushes and does not pull: N ≥ 0, gap ≥ 0, one of them 0 (Signorini); impacts are impulses (`separation`, \
+         `impact_friction`), what stays rubs (`sliding_friction`)",
+    ),
+    (
+        "impulse",
+        "an impact changes velocities at its instant, within the step, and positions not at all: as here, and as none of the \
+         treatments of contact does",
+    ),
+    (
+        "friction",
+        "Coulomb's law: of an impact `impact_friction`, of what stays in contact `sliding_friction`",
+    ),
+    (
+        "separation",
+        "v_n' = -e v_n, relative to what is met (Newton); off by |v_n' + e v_n| / |v_n|",
+    ),
+    (
+        "impact_friction",
+        "an impact takes min(µ (1 + e) |v_n|, |v_t|) off the sliding velocity, in its direction (Coulomb, for the impulses); off \
+         by what |Δv_t| is above µ |Δv_n|, in parts of |Δv_n|",
+    ),
+    (
+        "sliding_friction",
+        "what slides is held back by µ N, what sticks by what it takes, up to µ_s N (Coulomb); off by the distance from that, in \
+         parts of N",
+    ),
+    (
+        "energy_gain",
+        "neither an impact nor friction puts energy in, as the surface sees it; off by the J that one impact, or a row of \
+         sliding, puts in",
+    ),
+];
 
 /// Two rows are judged where forces change the speed of an impact by no more than this part of it.
 const UNDISTURBED: f64 = 0.25;
@@ -77,7 +116,8 @@ impl Laws {
             return laws;
         };
         let steps = rows.steps.windows(2).map(|pair| pair[1] - pair[0]);
-        let (Some(pitch), None) = (steps.min(), system.strain_limiter()) else {
+        let (Some(pitch), None, None) = (steps.min(), system.strain_limiter(), obstacles.penalty())
+        else {
             return laws;
         };
         let obstacles = obstacles.copied();
@@ -85,6 +125,7 @@ impl Laws {
             system,
             rows,
             pitch,
+            rigid: rigid(system),
             last: VecDeque::new(),
             mixed: None,
         };
@@ -135,11 +176,13 @@ impl Laws {
                     let collider = obstacles.collider(*other);
                     collider.is_some() && collider == obstacles.collider(against)
                 };
-                // What springs join feels the impacts of the other.
-                let undisturbed = obstacles
-                    .joined_to(one)
-                    .iter()
-                    .all(|two| !of.contains_key(two));
+                // What springs join feels the impacts of the other, and all that rods join those of each.
+                let with = against.with(particle);
+                let joined = |two: &usize| {
+                    let rigid = seen.rigid[*two] == seen.rigid[one] && !with.contains(two);
+                    rigid || obstacles.joined_to(one).contains(two)
+                };
+                let undisturbed = !of.keys().any(joined);
                 undisturbed && (all.len() == 1 || all.iter().all(same))
             });
             if alone {
@@ -175,14 +218,16 @@ impl Laws {
         let k = pair.k;
         let told = (!inside(first) || k > 0 && pair.free(seen, k - 1))
             && (!inside(second) || pair.free(seen, k + 1));
-        let elsewhere = others.iter().any(|other| pair.touches(*other, theta));
         let turns = speed > 0.0 && parts >= -(a * h + pair.off_v);
         let clear = disturbed <= UNDISTURBED * speed;
-        if !turns || !clear || !free || !told || elsewhere {
+        if !turns || !clear || !free || !told || !pair.is_alone(others, theta) {
             return false;
         }
         let normal = parts + speed;
-        let doubt = a * h + pair.off_v;
+        // The normal of a round surface turns on the way to where the impact is found.
+        let late = LOCATED * h + first.close / speed;
+        let turned = before.bend.curvature() * norm(before.velocity).powi(2) * late;
+        let doubt = a * h + pair.off_v + turned;
         self.note(
             |laws| &mut laws.separation,
             pair,
@@ -210,7 +255,11 @@ impl Laws {
         }
         let kinetic = |v: f64| 0.5 * pair.mass * v * v;
         let along = kinetic(parts) - kinetic(speed);
-        let across = kinetic(norm(new)) - kinetic(norm(old));
+        // Rods turn what an impact takes along the normal into motion across it.
+        let across = match seen.system.rods() {
+            Some(_) => 0.0,
+            None => kinetic(norm(new)) - kinetic(norm(old)),
+        };
         let gained = along.max(across).max(0.0);
         let fast = speed + parts + norm(old) + norm(new);
         self.note(
@@ -222,7 +271,7 @@ impl Laws {
     }
 
     /// Judges the friction of what is on a surface in both rows.
-    fn stay(&mut self, pair: &Pair, seen: &Seen) {
+    fn stay(&mut self, pair: &Pair, seen: &mut Seen) {
         let (obstacles, h) = (pair.obstacles, pair.h);
         let slow = pair.pushes * h + pair.off_v;
         let on = |beside: &Beside| beside.gap <= pair.closed() && beside.parting().abs() <= slow;
@@ -239,12 +288,18 @@ impl Laws {
         let pressed = dot(force, n);
         let rubs = [0, 1, 2].map(|c| force[c] - pressed * n[c]);
         let mixed = of(&pair.mixed);
+        let middle = of(&seen.middle(pair.k));
+        // The rule of the trapezoid beside the middle: a force that turns between the rows is the same at both.
+        let bent = norm([0, 1, 2].map(|c| middle[c] - 0.5 * (a0[c] + a1[c])));
         let bend = norm(minus(second.normal, n));
         let speed = norm(of(&now.state.v));
         // On a surface that bends by this, methods may keep to the plane that touches it at the first row.
         let doubt = norm(minus(mixed, a0))
             + norm(minus(a1, mixed))
+            + 2.0 * bent
             + pair.off_v / h
+            // Times have rounding too.
+            + norm(force) * f64::EPSILON * next.state.t / h
             + (norm(force) + speed / h * bend) * bend;
         if pressed <= 0.0 || doubt > DOUBT * pressed {
             return;
@@ -324,6 +379,8 @@ struct Seen<'a> {
     rows: &'a Rows,
     /// Steps between rows that follow each other.
     pitch: u64,
+    /// Of each particle, the least that rods join to it, over any number of them.
+    rigid: Vec<usize>,
     last: VecDeque<Rc<Row>>,
     /// See [`Pair::mixed`], of the last row.
     mixed: Option<(usize, Rc<Vec<f64>>)>,
@@ -347,6 +404,24 @@ impl Seen<'_> {
         a
     }
 
+    /// The acceleration in the middle between row k and the next, on the cubic through both, m/s².
+    fn middle(&mut self, k: usize) -> Vec<f64> {
+        let [now, next] = [k, k + 1].map(|row| self.row(row));
+        let (start, end) = (&now.state, &next.state);
+        let h = end.t - start.t;
+        let each = 0..start.x.len();
+        let x: Vec<f64> = (each.clone())
+            .map(|i| 0.5 * (start.x[i] + end.x[i]) + 0.125 * h * (start.v[i] - end.v[i]))
+            .collect();
+        let v: Vec<f64> = each
+            .map(|i| 1.5 * (end.x[i] - start.x[i]) / h - 0.25 * (start.v[i] + end.v[i]))
+            .collect();
+        let mut a = vec![0.0; x.len()];
+        let t = start.t + 0.5 * h;
+        self.system.acceleration(t, &x, &v, &mut a);
+        a
+    }
+
     fn row(&mut self, k: usize) -> Rc<Row> {
         if let Some(row) = self.last.iter().find(|row| row.k == k) {
             return Rc::clone(row);
@@ -366,6 +441,22 @@ impl Seen<'_> {
     }
 }
 
+/// Of each particle, the least that rods join to it, over any number of them: it feels the impacts of all these.
+fn rigid(system: &ParticleSystem) -> Vec<usize> {
+    let mut least: Vec<usize> = (0..system.dim() / 3).collect();
+    let ends = system.rods().map_or(&[][..], |rods| rods.ends());
+    loop {
+        let before = least.clone();
+        for [i, j] in ends {
+            let low = least[*i].min(least[*j]);
+            (least[*i], least[*j]) = (low, low);
+        }
+        if before == least {
+            return least;
+        }
+    }
+}
+
 /// A particle and what it is near, over two rows.
 struct Pair<'a> {
     obstacles: &'a Obstacles,
@@ -381,7 +472,7 @@ struct Pair<'a> {
     h: f64,
     /// The largest acceleration relative to the other, m/s².
     pushes: f64,
-    /// How far velocities are off by rounding and by the digits they are given to, m/s.
+    /// How far velocities are off by rounding, also of positions and times, and by the digits they are given to, m/s.
     off_v: f64,
     /// The mass that the impact sees, kg.
     mass: f64,
@@ -404,12 +495,10 @@ impl<'a> Pair<'a> {
         let mut off_v: f64 = 0.0;
         for row in &rows {
             for i in with.iter().flat_map(|one| 3 * one..3 * one + 3) {
-                let (x, v) = (row.state.x[i], row.state.v[i]);
-                let rounding = ROUNDINGS * f64::EPSILON * v.abs();
-                // The normal of a round surface turns with the position.
-                let turned = seen.rows.half_unit(i, x) / h;
-                off_v = off_v
-                    .max(2.0 * seen.rows.half_unit(dim + i, v) + rounding + f64::EPSILON * turned);
+                let (x, v, a) = (row.state.x[i], row.state.v[i], row.a[i]);
+                let sums = ROUNDINGS * (v.abs() + h * a.abs());
+                let rounding = f64::EPSILON * (sums + x.abs() / h + row.state.t * a.abs());
+                off_v = off_v.max(2.0 * seen.rows.half_unit(dim + i, v) + rounding);
             }
         }
         let mut pair = Self {
@@ -508,16 +597,38 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// Whether it touches another at the impact, or at the second row.
-    fn touches(&self, other: Against, theta: f64) -> bool {
+    /// A particle in free motion to the second row, s after the first.
+    fn came(&self, particle: usize, time: f64) -> [f64; 3] {
+        let Row { state, a, .. } = &*self.rows[1];
+        let [x, v, a] = [&state.x, &state.v, a].map(|all| three(all, particle));
+        let since = time - self.h;
+        [0, 1, 2].map(|c| x[c] + since * (v[c] + 0.5 * since * a[c]))
+    }
+
+    /// Whether it touches none of these on its way to the impact and on.
+    fn is_alone(&self, others: &[Against], theta: f64) -> bool {
+        let speed = |row: &Row| norm(three(&row.state.v, self.particle));
+        let fastest = speed(&self.rows[0]).max(speed(&self.rows[1])) + self.pushes * self.h;
         let t = self.rows[0].state.t;
-        let met = self.obstacles.gap(self.particle, other, t + theta, |one| {
-            self.falls(one, theta)
-        });
-        let next = &self.rows[1].state;
-        let at = |one| three(&next.x, one);
-        let after = self.obstacles.gap(self.particle, other, next.t, at);
-        met.min(after) <= self.closed()
+        (0..=2 * LOOKS).all(|look| {
+            let part = f64::from(look % (LOOKS + 1)) / f64::from(LOOKS);
+            let before = look <= LOOKS;
+            let leg = if before { theta } else { self.h - theta };
+            let time = if before {
+                part * leg
+            } else {
+                theta + part * leg
+            };
+            // Gaps change by no more than the way between two looks.
+            let within = self.closed() + 0.5 * leg / f64::from(LOOKS) * fastest;
+            others.iter().all(|other| {
+                let at = |particle| match before {
+                    true => self.falls(particle, time),
+                    false => self.came(particle, time),
+                };
+                self.obstacles.gap(self.particle, *other, t + time, at) > within
+            })
+        })
     }
 
     /// Whether its normal velocity changes by forces alone from row k to the next; false where there are no such rows.

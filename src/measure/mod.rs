@@ -25,7 +25,7 @@ pub use contact::Contact;
 pub(crate) use energy::Sum;
 pub use energy::{Behaviour, Energy, EnergySeries, judge};
 pub use error::{Deviation, ErrorSummary, Errors, TOLERANCE, TrueStates, deviation, errors, reach};
-pub use laws::{Laws, Residual};
+pub use laws::{CONTACT_LAWS, Laws, Residual};
 pub(crate) use momentum::totals;
 pub use momentum::{Momentum, momentum};
 pub use scale::{divergence_limit, energy_scale};

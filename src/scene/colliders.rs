@@ -180,10 +180,17 @@ fn contact(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
         }
         return Ok(());
     }
-    if contact.penalty.is_some() {
-        return smooth("contact", contact.restitution, friction);
+    let pressed = contact.penalty.is_some();
+    if pressed {
+        smooth("contact", contact.restitution, friction)?;
     }
-    apart(scene, starts)
+    let mut free = scene.particles.iter().filter(|particle| !particle.fixed);
+    if free.clone().count() > 1 && free.all(|particle| particle.radius == 0.0) {
+        let message = "expected free particles with a radius, found none";
+        let help = "two points never meet: give `radius`, or leave `particles` out";
+        return Problem::because("contact.particles", message, help);
+    }
+    apart(scene, starts, pressed)
 }
 
 /// Checks that beside a penalty nothing is said of impulses.
@@ -213,8 +220,8 @@ fn spoken(number: f64) -> f64 {
     }
 }
 
-/// Checks that no two free particles that collide start inside each other.
-fn apart(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
+/// Checks that no two free particles that collide start in one place, or inside each other unless a penalty presses them.
+fn apart(scene: &Scene, starts: &[[f64; 3]], pressed: bool) -> Result<(), Problem> {
     let joined: HashSet<[usize; 2]> = scene.joined().collect();
     let around = |(id, particle): (usize, &Particle)| {
         let half = Vector::splat(particle.radius);
@@ -236,9 +243,18 @@ fn apart(scene: &Scene, starts: &[[f64; 3]]) -> Result<(), Problem> {
             let deep = particle.radius + scene.particles[other].radius - away.length();
             let ends = starts[id].iter().chain(&starts[other]);
             let largest = ends.fold(particle.radius, |most, c| most.max(c.abs()));
-            if deep > TOUCHING * largest && !joined.contains(&[id, other]) {
+            if joined.contains(&[id, other]) {
+                continue;
+            }
+            let [one, two] = [id, other].map(|id| called(&scene.bodies, id));
+            if starts[id] == starts[other] {
+                let message =
+                    format!("expected free particles apart, found {one} and {two} in one place");
+                let help = "nothing says in which direction they push each other: move one of them";
+                return Problem::because("contact.particles", message, help);
+            }
+            if !pressed && deep > TOUCHING * largest {
                 let deep = spoken(deep);
-                let [one, two] = [id, other].map(|id| called(&scene.bodies, id));
                 let message = format!(
                     "expected free particles apart, found {one} and {two} {deep:?} m inside each other at the start"
                 );
@@ -278,14 +294,6 @@ fn one_shape(of: &str, collider: &Collider) -> Result<(), Problem> {
     let Some(mesh) = &collider.mesh else {
         return Ok(());
     };
-    if mesh.triangles.0.is_empty() {
-        let message = "expected at least one triangle, found none";
-        return Problem::because(
-            format!("{of}.mesh.triangles"),
-            message,
-            "a triangle is [0, 1, 2]",
-        );
-    }
     for (at, row) in mesh.triangles.0.iter().enumerate() {
         let because = |message: String, help| {
             Problem::because(format!("{of}.mesh.triangles[{at}]"), message, help)

@@ -314,10 +314,6 @@ pub(super) fn motion(of: &str, motion: &model::Motion) -> Result<(), Problem> {
     }
     let rows = motion.table.iter().flat_map(|table| &table.0);
     let times: Vec<f64> = rows.map(|row| row[0]).collect();
-    if motion.table.is_some() && times.len() < 2 {
-        let message = format!("expected two rows or more, found {}", times.len());
-        return Problem::because(format!("{of}.table"), message, "a row is [t, x, y, z]");
-    }
     if let Some(row) = (1..times.len()).find(|&row| times[row] <= times[row - 1]) {
         let [before, found] = [times[row - 1], times[row]];
         let message = format!("expected a time after {before:?} s, found {found:?}");

@@ -160,8 +160,8 @@ pub enum ValueKind {
     Number(Bounds),
     /// A list of this many numbers.
     Numbers(usize, Bounds),
-    /// A list of such lists, of any length. Components follow one another, row by row.
-    Table(usize, Bounds),
+    /// A list of such lists, at least so many. Components follow one another, row by row.
+    Table(usize, usize, Bounds),
     /// A list of three numbers, or a list of such lists.
     Vectors(Bounds),
     /// The id of a particle.
@@ -472,7 +472,7 @@ declare! {
         "velocity" => ValueKind::Numbers(3, Bounds::signed(limits::DRIVEN_SPEED, "m/s")), Usual, Some("velocities");
     /// Rows of a time, s, ascending, and a displacement, m: it passes them on a natural cubic spline.
     table: Option<Knots> = None,
-        "table" => ValueKind::Table(4, Bounds::signed(1e12, "s, then m")), Usual, Some("tables");
+        "table" => ValueKind::Table(4, 2, Bounds::signed(1e12, "s, then m")), Usual, Some("tables");
 }
 
 declare! {
@@ -579,11 +579,11 @@ declare! {
     MESH: Mesh, inside (colliders mesh), "a mapping with `vertices` and `triangles`", reserved [];
 
     /// Rows x, y, z, m.
-    vertices: Table<3> = Table(Vec::new()), "vertices" => ValueKind::Table(3, limits::POSITION),
+    vertices: Table<3> = Table(Vec::new()), "vertices" => ValueKind::Table(3, 3, limits::POSITION),
         Required("list its corners: `vertices: [[x, y, z], ...]`"), Some("vertices");
     /// Rows of three vertices, which count from 0.
     triangles: Table<3> = Table(Vec::new()),
-        "triangles" => ValueKind::Table(3, Bounds::not_negative(limits::VERTICES, "a vertex")),
+        "triangles" => ValueKind::Table(3, 1, Bounds::not_negative(limits::VERTICES, "a vertex")),
         Required("list its triangles: `triangles: [[0, 1, 2], ...]`"), Some("triangles");
 }
 
@@ -598,7 +598,7 @@ declare! {
         "velocity" => ValueKind::Numbers(3, Bounds::signed(limits::DRIVEN_SPEED, "m/s")), Usual, Some("velocities");
     /// Rows of a time, s, ascending, and a displacement, m: it passes them on a natural cubic spline.
     table: Option<Knots> = None,
-        "table" => ValueKind::Table(4, Bounds::signed(1e12, "s, then m")), Usual, Some("tables");
+        "table" => ValueKind::Table(4, 2, Bounds::signed(1e12, "s, then m")), Usual, Some("tables");
 }
 
 declare! {

@@ -162,7 +162,7 @@ impl<'n> Entry<'_, 'n> {
         let value = match self.row.kind {
             ValueKind::Number(quantity)
             | ValueKind::Numbers(_, quantity)
-            | ValueKind::Table(_, quantity)
+            | ValueKind::Table(.., quantity)
             | ValueKind::Vectors(quantity) => Value::Number(quantity.judge(number)?),
             ValueKind::Coordinate => Value::Id(coordinate(number)?),
             ValueKind::Count(bounds) => Value::Id(count(bounds, number)?),
@@ -220,8 +220,8 @@ impl<'de> DeserializeSeed<'de> for Entry<'_, '_> {
             ValueKind::Numbers(count, _) => {
                 from.deserialize_any(Numbers(count, |i, n| self.number(i, n)))
             }
-            ValueKind::Table(width, _) => {
-                from.deserialize_any(Table(width, |i, n| self.number(i, n)))
+            ValueKind::Table(width, least, _) => {
+                from.deserialize_any(Table(width, least, |i, n| self.number(i, n)))
             }
             ValueKind::Ids(count) => {
                 from.deserialize_any(Ids(count, |i, id: Id<'_>| self.particle(i, id)))

@@ -298,8 +298,9 @@ fn counted<'de, A: SeqAccess<'de>>(
     Ok(())
 }
 
-/// Reads a list of lists of this many numbers each. The function also gets the index among all of them.
-pub(super) struct Table<F>(pub(super) usize, pub(super) F);
+/// Reads a list of lists of this many numbers each, at least so many of them. The function also gets the index among all
+/// numbers.
+pub(super) struct Table<F>(pub(super) usize, pub(super) usize, pub(super) F);
 
 impl<'de, F: FnMut(usize, Number) -> Result<(), Refusal>> Visitor<'de> for Table<F> {
     type Value = ();
@@ -309,15 +310,20 @@ impl<'de, F: FnMut(usize, Number) -> Result<(), Refusal>> Visitor<'de> for Table
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
-        let Table(width, mut judge) = self;
+        let Table(width, least, mut judge) = self;
         let mut before = 0;
         while let Some(()) =
             list.next_element_seed(Any(Numbers(width, |i, n| judge(before + i, n))))?
         {
             before += width;
         }
-        if before == 0 {
-            let message = "expected two rows or more, found 0";
+        if before < least * width {
+            let wanted = match least {
+                1 => "a row",
+                2 => "two rows",
+                _ => "three rows",
+            };
+            let message = format!("expected {wanted} or more, found {}", before / width);
             let help = format!("a row is a list of {width} numbers");
             return Err(refuse(Refusal::new(message, help)));
         }

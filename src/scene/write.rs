@@ -75,7 +75,7 @@ fn value(row: &Row, scene: &Scene, at: usize) -> Option<String> {
         Value::Text(text) => self::text(text),
     });
     match row.kind {
-        ValueKind::Table(width, _) => {
+        ValueKind::Table(width, ..) => {
             let values: Vec<String> = values.collect();
             let rows = values.chunks(width).map(|row| brackets(row.to_vec()));
             (!values.is_empty()).then(|| brackets(rows))

@@ -309,3 +309,126 @@ fn every_method_keeps_the_laws() {
         }
     }
 }
+
+/// Free flight through a corner of two triangles, x <= 1 and y <= 1, each of which turns its component once.
+fn corner(v: [f64; 2]) -> Laws {
+    let scene = scene(
+        "{pos: [0.5, 0.5, 0.2], mass: 1, radius: 0.01}",
+        "colliders: [{restitution: 1, mesh: {vertices: [[1, -9, -9], [1, 9, -9], [1, 0, 9], [-9, 1, -9], [9, 1, -9], [0, 1, 9]], \
+         triangles: [[0, 1, 2], [3, 4, 5]]}}]",
+        0.0,
+    );
+    laws(&scene, |t| {
+        // 0.49 m from where the ball of 0.01 m touches.
+        let turned = |v: f64| match v * t {
+            way if way < 0.49 => (0.5 + way, v),
+            way => (1.48 - way, -v),
+        };
+        let [(x, vx), (y, vy)] = v.map(turned);
+        (vec![x, y, 0.2], vec![vx, vy, 0.0])
+    })
+}
+
+/// At 0.245 s and at 0.247 s it is one row, at 0.49 s another. Mutants: other triangles at the impact alone; at none.
+#[test]
+fn two_triangles_within_a_row_are_not_judged() {
+    let both = corner([2.0, 1.98]);
+    assert_eq!(both, Laws::default());
+    let apart = corner([2.0, 1.0]);
+    assert_eq!(judged(apart.separation).judged, 2);
+    near(judged(apart.separation).off, 0.0, ROUNDED);
+    near(judged(apart.impact_friction).off, 0.0, ROUNDED);
+}
+
+/// With a penalty a bounce has no restitution to judge, whatever the rows say.
+#[test]
+fn with_a_penalty_nothing_is_judged() {
+    let scene = scene(
+        "{pos: [0, 0, 1], mass: 2, radius: 0}",
+        "colliders: [{plane: {normal: [0, 0, 1]}}]\ncontact: {penalty: {stiffness: 100}}",
+        -G,
+    );
+    assert_eq!(laws(&scene, bounce(1.1, |_| -1.0)), Laws::default());
+}
+
+/// Our run of a scene, every step of 1 ms.
+fn ours(id: &str, more: &str, duration: f64) -> Laws {
+    let scene = parsed(&format!(
+        "solver: {{type: {id}, timestep: 0.001}}\nduration: {duration}\n{more}\n"
+    ));
+    let choice = Choice {
+        solvers: solvers::find(id).into_iter().collect(),
+        prove: false,
+        identify: false,
+        ..Choice::default_for(&scene)
+    };
+    let report = Plan::new(&scene, &choice).execute(&Quiet);
+    let report = report.expect("no files");
+    report.outcomes()[0].contact.as_ref().expect("contact").laws
+}
+
+/// A rod at 53° that falls 0.3 m on its lower end, e = 0: the impulse V/K, K = (1 + cos² θ)/2 = 0.68 /kg (rigid body), gives
+/// that end cos θ sin θ/2K V = 0.35 V across, V = 2.4 m/s: 0.36 J that the other end loses. Mutant: what is across counts.
+#[test]
+fn a_rod_turns_what_an_impact_takes_and_gains_nothing() {
+    let rod = "particles: [{pos: [0, 0, 0.3], mass: 1, radius: 0}, {pos: [0.6, 0, 1.1], mass: 1, radius: 0}]\n\
+               rods: [{particle_ids: [0, 1]}]\ncolliders: [{plane: {normal: [0, 0, 1]}}]";
+    let laws = ours("rattle", rod, 0.26);
+    assert_eq!(judged(laws.separation).judged, 1);
+    assert!(!judged(laws.separation).broken());
+    near(judged(laws.energy_gain).off, 0.0, 0.0);
+}
+
+/// The ends of two rods at right angles fall at once: each feels the impact of the other through the knee, which touches
+/// nothing. Mutant: what one rod joins alone.
+#[test]
+fn what_rods_join_is_not_judged_where_several_meet_something() {
+    let knee = "particles: [{pos: [0, 0, 0.3], mass: 1, radius: 0}, {pos: [1, 0, 1.3], mass: 1, radius: 0}, \
+                {pos: [2, 0, 0.3], mass: 1, radius: 0}]\n\
+                rods: [{particle_ids: [0, 1]}, {particle_ids: [1, 2]}]\ncolliders: [{plane: {normal: [0, 0, 1]}}]";
+    assert_eq!(ours("rattle", knee, 0.26).separation, None);
+}
+
+/// On a belt of 2 m/s a block on a spring swings freely about µ m g/k with 0.2 m, w² = 50: friction is µ N throughout. The
+/// trapezoid misses h² w² a/12 of the force where a = 10 m/s² turns, 4.2e-4 N: the accelerations at both rows are the same
+/// there. Mutant: their difference alone as the bound.
+#[test]
+fn a_force_that_turns_between_two_rows_is_no_fault_of_friction() {
+    let (w, amplitude) = (50.0_f64.sqrt(), 0.2);
+    let scene = scene(
+        "{pos: [0, 0, 0], mass: 1, radius: 0}, {pos: [0, 0, 0], fixed: true}",
+        "springs: [{particle_ids: [0, 1], stiffness: 50, rest_length: 0}]\n\
+         colliders: [{plane: {normal: [0, 0, 1]}, friction: 0.2, driven: {velocity: [2, 0, 0]}}]",
+        -G,
+    );
+    let laws = laws(&scene, |t| {
+        let x = 0.2 * G / 50.0 + amplitude * (w * t).cos();
+        let v = -amplitude * w * (w * t).sin();
+        let still = [0.0; 5];
+        ([&[x], &still[..]].concat(), [&[v], &still[..]].concat())
+    });
+    let sliding = judged(laws.sliding_friction);
+    assert_eq!(sliding.judged, 100);
+    assert!(!sliding.broken(), "{sliding:?}");
+    let missed = H * H * 50.0 / 12.0 * 50.0 * amplitude / G;
+    // cos and its series: (h w)²/20.
+    near(sliding.off, missed, 1e-3 * missed);
+    assert!(sliding.bound < 5.0 * sliding.off, "{sliding:?}");
+}
+
+/// A block lies still on a slope at the very angle of friction, 3 to 4: its velocity is 0, the rounding of its forces not.
+#[test]
+fn a_bound_is_no_smaller_than_rounding() {
+    let slope = scene(
+        "{pos: [0, 0, 0], mass: 1, radius: 0}",
+        "colliders: [{plane: {normal: [-3, 0, 4]}, friction: 0.75}]",
+        -G,
+    );
+    let sliding = laws(&slope, |_| (vec![0.0; 3], vec![0.0; 3])).sliding_friction;
+    let sliding = judged(sliding);
+    assert!(
+        sliding.bound > f64::EPSILON && sliding.bound < 1e-12,
+        "{sliding:?}"
+    );
+    assert!(!sliding.broken(), "{sliding:?}");
+}

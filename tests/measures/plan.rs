@@ -134,6 +134,23 @@ fn what_would_take_longer_than_the_runs_is_left_out_and_named() {
     assert_eq!(said, Some((CheckStatus::Skip, true)));
 }
 
+/// Orders are of integrators: what rapier takes beside them is no part of it. Mutant: all runs.
+#[test]
+fn measuring_orders_takes_two_runs_of_each_integrator() {
+    let scene = shipped("contact/coulomb.yml");
+    let orders = |ids: &[&str]| {
+        let choice = Choice {
+            solvers: ids.iter().filter_map(|id| solvers::find(id)).collect(),
+            ..Choice::default_for(&scene)
+        };
+        let plan = Plan::new(&scene, &choice).expecting(false, &NoStore);
+        plan.beside.orders
+    };
+    // 7 s at 1 ms, two particles.
+    assert_eq!(orders(&["rk4"]), 2 * 7_000 * 2);
+    assert_eq!(orders(&["rk4", "rapier", "rapier-forces"]), 2 * 7_000 * 2);
+}
+
 /// Adds up the progress.
 #[derive(Default)]
 struct Counted(AtomicU64);

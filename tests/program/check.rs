@@ -459,6 +459,7 @@ fn every_check_is_explained_and_listed() {
     ]
     .into_iter()
     .chain(springcheck::verbs::scheme::ids())
+    .chain(springcheck::measure::CONTACT_LAWS.iter().map(|law| law.0))
     {
         assert_eq!(output(&["explain", id]).0, 0, "{id}");
     }

@@ -235,6 +235,19 @@ fn the_largest_stable_value_is_that_of_the_closed_forms() {
             ("explicit_euler", "value", Some(2.0 / h + 0.5 * h * k)),
         ],
     );
+    // A penalty is a spring while it presses, and the scene starts above the floor: 4 - 2 h c - h² k >= 0, 1 kg, c = 20 N s/m.
+    let h = 5e-4;
+    let pressed = largest(&[
+        "scenes/contact/penalty.yml",
+        "--engines",
+        "none",
+        "--integrators",
+        "symplectic_euler",
+        "--largest",
+        "contact.penalty.stiffness",
+    ]);
+    let right = (4.0 - 2.0 * h * 20.0) / (h * h);
+    same(&pressed, &[("symplectic_euler", "value", Some(right))]);
 }
 
 #[test]

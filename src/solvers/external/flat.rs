@@ -137,7 +137,7 @@ fn arrays<M: SerializeMap>(map: &mut M, scene: &Scene, part: &Part) -> Result<()
     for row in part.rows {
         let Some(name) = row.flat else { continue };
         let count = (part.count)(scene);
-        if let ValueKind::Table(width, _) = row.kind {
+        if let ValueKind::Table(width, ..) = row.kind {
             let rows = (0..count).map(|at| row.values(scene, at).count() / width);
             // A mesh has two tables.
             let key = if part.key == MESH.key {

@@ -213,11 +213,21 @@ pub fn expected(scene: &Scene, system: &ParticleSystem, until: f64, store: &dyn 
     let first = halving::first_cost(system, &start, until, scene.size());
     let budget = budget(system.dim());
     let first = first.filter(|cost| *cost <= budget).unwrap_or(0);
-    first.saturating_mul(HALVINGS).min(budget)
+    // What springs join to something that touches is of second order there, however short the steps.
+    let knocked = scene.collides() && !scene.springs.is_empty() && scene.particles.len() > FEW;
+    let halvings = if knocked {
+        HALVINGS * KNOCKED
+    } else {
+        HALVINGS
+    };
+    first.saturating_mul(halvings).min(budget)
 }
 
 /// All levels together, in units of the first: each has twice its steps, and three or four are usual.
 const HALVINGS: u64 = 15;
+/// And this many times as many where more particles than this have events that cannot all be cut at.
+const KNOCKED: u64 = 32;
+const FEW: usize = 4;
 
 impl NotConverged {
     fn new(reason: impl Into<String>) -> Self {

@@ -1,9 +1,9 @@
 //! `springcheck explain ID` says what an id means: a check, an integrator, an engine, an effect, a constraint, a mistake, a
-//! scheme, a treatment of contact, a word of the energy column.
+//! scheme, a law or a treatment of contact, a word of the energy column.
 
 use crate::integrators::{self, Method, Stable};
-use crate::measure::Behaviour;
 use crate::measure::identify::{MISTAKES, treatments};
+use crate::measure::{Behaviour, CONTACT_LAWS};
 use crate::physics::{ForceKinds, constraints, effects};
 use crate::report::terminal::wrap;
 use crate::scene::words::nearest;
@@ -105,6 +105,9 @@ fn facts(id: &str) -> Option<(&'static str, Facts)> {
             owned(&[("what it means", behaviour.says())]),
         ));
     }
+    if let Some((_, says)) = CONTACT_LAWS.iter().find(|law| law.0 == id) {
+        return Some(("a law of contact", owned(&[("it says", says)])));
+    }
     if let Some((_, says, mistake)) = treatments().find(|row| row.0 == id) {
         let kind = if mistake {
             "a known mistake at contact"
@@ -168,6 +171,7 @@ fn known() -> Vec<&'static str> {
         .chain(effects)
         .chain(constraints)
         .chain(mistakes)
+        .chain(CONTACT_LAWS.iter().map(|law| law.0))
         .chain(treatments().map(|row| row.0))
         .collect()
 }

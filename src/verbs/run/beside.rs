@@ -8,6 +8,8 @@ use crate::truth::{self, Store};
 
 /// Replays of a step in all: of up to 16 steps, each twice, and of a few probes.
 const REPLAYS: u64 = 40;
+/// Evaluations that replays of steps beside obstacles take each particle of a run: up to 64 steps, by some 300 treatments.
+const AT_CONTACT: u64 = 20_000;
 /// Sweeps of a twin proof together, where a few doublings are enough.
 const SWEEPS: u64 = 192;
 
@@ -33,6 +35,12 @@ fn beside(plan: &Plan, saving: bool, store: &dyn Store) -> Beside {
         replays.min(of_replays(plan, case))
     });
     let replays = replays.fold(0, u64::saturating_add);
+    let bounces = if scene.collides() {
+        AT_CONTACT * particles
+    } else {
+        0
+    };
+    let replays = replays.saturating_add(bounces.saturating_mul(plan.cases.len() as u64));
     let limits = remarks::effort(plan).filter(|effort| *effort <= of_limits(plan));
     let runs = plan.effort();
     Beside {
@@ -44,7 +52,7 @@ fn beside(plan: &Plan, saving: bool, store: &dyn Store) -> Beside {
             0
         },
         orders: if checks::measures_orders(plan) {
-            2 * runs
+            plan.effort_of_integrators().saturating_mul(2)
         } else {
             0
         },

@@ -67,6 +67,16 @@ impl Plan<'_> {
         let efforts = self.cases.iter().map(|case| case.effort(self.scene));
         efforts.fold(0, u64::saturating_add)
     }
+
+    /// What the runs of its integrators take.
+    pub fn effort_of_integrators(&self) -> u64 {
+        let cases = self
+            .cases
+            .iter()
+            .filter(|case| case.solver.kind == SolverKind::Integrator);
+        let efforts = cases.map(|case| case.effort(self.scene));
+        efforts.fold(0, u64::saturating_add)
+    }
 }
 
 /// What the twin proof may take: half of all runs.

@@ -183,18 +183,19 @@ impl<'a> Plan<'a> {
     pub fn estimate(&self) -> Vec<TimeEstimate> {
         // One after the other: cases that run at the same time would slow each other down.
         let estimate = |case| Some((case, estimate(self, case)?));
-        let runs: Vec<(&Case, TimeEstimate)> = self.cases.iter().filter_map(estimate).collect();
-        // The lightest case shows best how long a step of one particle takes here.
-        let lightest = runs.iter().min_by_key(|(case, _)| case.step(self.scene));
-        let unit = lightest.map_or(NOMINAL, |(case, estimate)| {
-            estimate.seconds / case.effort(self.scene).max(1) as f64
-        });
-        let beside = self
-            .beside
-            .named()
-            .into_iter()
-            .filter(|(_, effort)| *effort > 0);
-        let beside = beside.map(|(what, effort)| TimeEstimate {
+        let runs: Vec<(&Case, Timed)> = self.cases.iter().filter_map(estimate).collect();
+        // The method that does least beside its evaluations shows best how long one takes.
+        let evaluations = runs.iter().filter_map(|(_, timed)| timed.evaluation);
+        let unit = evaluations.reduce(f64::min).unwrap_or(NOMINAL);
+        let integrators = runs
+            .iter()
+            .filter(|(case, _)| case.solver.kind == SolverKind::Integrator);
+        let integrators: f64 = integrators.map(|(_, timed)| timed.estimate.seconds).sum();
+        let run = integrators / self.effort_of_integrators().max(1) as f64;
+        let units = [unit, unit, run, unit, unit];
+        let beside = self.beside.named().into_iter().zip(units);
+        let beside = beside.filter(|((_, effort), _)| *effort > 0);
+        let beside = beside.map(|((what, effort), unit)| TimeEstimate {
             label: Label {
                 engine: what.to_owned(),
                 timestep: self.scene.solver.timestep,
@@ -203,7 +204,8 @@ impl<'a> Plan<'a> {
             },
             seconds: unit * effort as f64,
         });
-        runs.into_iter().map(|(_, run)| run).chain(beside).collect()
+        let runs = runs.into_iter().map(|(_, timed)| timed.estimate);
+        runs.chain(beside).collect()
     }
 }
 
@@ -217,12 +219,23 @@ const TRIED: u64 = 30_000_000;
 /// Seconds of such a step of one particle, about, where none is taken.
 const NOMINAL: f64 = 30e-9;
 
-fn estimate(plan: &Plan, case: &Case) -> Option<TimeEstimate> {
+/// A case, and what its sample shows.
+struct Timed {
+    estimate: TimeEstimate,
+    /// Seconds of a step for each evaluation in it, and each particle; None where nobody counts them.
+    evaluation: Option<f64>,
+}
+
+fn estimate(plan: &Plan, case: &Case) -> Option<Timed> {
     let step = case.step(plan.scene);
+    let of_all = |each: f64| TimeEstimate {
+        label: case.label.clone(),
+        seconds: each * case.label.steps as f64,
+    };
     if step > TRIED {
-        return Some(TimeEstimate {
-            label: case.label.clone(),
-            seconds: NOMINAL * step as f64 * case.label.steps as f64,
+        return Some(Timed {
+            estimate: of_all(NOMINAL * step as f64),
+            evaluation: None,
         });
     }
     let mut run = case.start(plan).ok()?;
@@ -237,13 +250,21 @@ fn estimate(plan: &Plan, case: &Case) -> Option<TimeEstimate> {
             }
             steps += 1;
         }
-        start.elapsed().as_secs_f64() / f64::max(1.0, steps as f64)
+        // Without a step that is no time at all.
+        start.elapsed().as_secs_f64() / steps as f64
     };
     // The least, since a disturbance can only lengthen a sample.
     let samples = if 10 * step > TRIED { 1 } else { SAMPLES };
     let each = (0..samples).map(|_| sample()).fold(f64::INFINITY, f64::min);
-    Some(TimeEstimate {
-        label: case.label.clone(),
-        seconds: each * case.label.steps as f64,
+    if !each.is_finite() {
+        return None;
+    }
+    let evaluations = run.counts().force_evaluations.filter(|count| *count > 0);
+    let particles = plan.scene.particles.len() as f64;
+    let evaluation =
+        evaluations.map(|count| each * run.taken() as f64 / (count as f64 * particles));
+    Some(Timed {
+        estimate: of_all(each),
+        evaluation,
     })
 }

@@ -62,7 +62,7 @@ fn key(part: &'static Part, row: &'static Row, names: &Names) -> Json {
     let mut says = row.summary.trim().to_owned();
     if let ValueKind::Number(bounds)
     | ValueKind::Numbers(_, bounds)
-    | ValueKind::Table(_, bounds)
+    | ValueKind::Table(.., bounds)
     | ValueKind::Vectors(bounds)
     | ValueKind::Count(bounds) = &row.kind
     {
@@ -124,9 +124,9 @@ fn value(row: &Row, names: &Names) -> Json {
     match &row.kind {
         ValueKind::Number(bounds) => number(bounds),
         ValueKind::Numbers(count, bounds) => list(number(bounds), *count, *count),
-        ValueKind::Table(width, bounds) => {
+        ValueKind::Table(width, least, bounds) => {
             let row = list(number(bounds), *width, *width);
-            json!({"type": "array", "items": row, "minItems": 2})
+            json!({"type": "array", "items": row, "minItems": least})
         }
         ValueKind::Vectors(bounds) => {
             let vector = || list(number(bounds), 3, 3);

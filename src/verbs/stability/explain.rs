@@ -32,7 +32,9 @@ pub fn remarks(
     remarks.extend(predicted.and_then(|predicted| {
         let (from, to) = (&predicted.limit, &measured.limit);
         let amplification = solver.follows.map(|method| method.amplification);
-        if !shared.linear {
+        if shared.bounces() {
+            differ(from, to).then(|| CONTACT.to_owned())
+        } else if !shared.linear {
             difference(from, to)
         } else if !differ(from, to) {
             None
@@ -114,6 +116,9 @@ fn differ(predicted: &Limit, measured: &Limit) -> bool {
         (p, m) => p != m,
     }
 }
+
+/// The remark where obstacles give impulses.
+const CONTACT: &str = "limits are predicted without contact, and measured with it";
 
 /// The remark where the limits differ although a step is a linear map.
 const FAULT: &str = "prediction and measurement disagree although a step here is a linear map: one of \

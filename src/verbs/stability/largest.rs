@@ -3,7 +3,7 @@
 use super::rows::predicted;
 use super::vary::VariedKey;
 use crate::measure::stability::{Effort, Limit, Linearised};
-use crate::physics::ParticleSystem;
+use crate::physics::{ParticleSystem, State};
 use crate::scene::Scene;
 use crate::scene::limits::Bounds;
 use crate::solvers::Solver;
@@ -17,24 +17,34 @@ const PER_DECADE: i32 = 2;
 const WIDTH: f64 = 1e-6;
 /// A value is checked this much inside and outside, relative.
 const BESIDE: f64 = 1e-4;
+/// Keys of a penalty, which has no say where it presses nothing.
+const PENALTY: &str = "contact.penalty";
 /// A step at its limit counts as stable to rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// The largest value of `key` for which each solver is stable at `timestep`, s, by the predicted limit of the
-/// scene with that value.
-pub fn find(key: &VariedKey, scene: &Scene, solvers: &[Solver], timestep: f64) -> Largest {
-    let about = |value: f64| Some((value, linearised(&key.apply(scene, value).ok()?)));
+/// scene with that value: about its start, and about the state of a trajectory in which a penalty is `pressed`, if there is
+/// one.
+pub fn find(
+    key: &VariedKey,
+    scene: &Scene,
+    solvers: &[Solver],
+    timestep: f64,
+    pressed: Option<&State>,
+) -> Largest {
+    let about = |value: f64| Some((value, linearised(&key.apply(scene, value).ok()?, pressed)));
     let found: Vec<_> = tried(key, scene)
         .into_par_iter()
         .filter_map(about)
         .collect();
-    let (values, scenes): (Vec<f64>, Vec<Linearised>) = found.into_iter().unzip();
+    let (values, scenes): (Vec<f64>, Vec<Vec<Linearised>>) = found.into_iter().unzip();
     let search = Search {
         key,
         scene,
         timestep,
         values: &values,
         scenes: &scenes,
+        pressed,
     };
     let row = |solver: &Solver| {
         let (found, value, reason) = match search.largest(solver) {
@@ -70,10 +80,13 @@ fn tried(key: &VariedKey, scene: &Scene) -> Vec<f64> {
     places.map(value).filter(allowed).collect()
 }
 
-fn linearised(scene: &Scene) -> Linearised {
+fn linearised(scene: &Scene, pressed: Option<&State>) -> Vec<Linearised> {
     let system = ParticleSystem::new(scene);
     let start = ParticleSystem::initial_state(scene);
-    Linearised::new(&system, &start, Effort::FULL)
+    let states = [&start].into_iter().chain(pressed);
+    states
+        .map(|state| Linearised::new(&system, state, Effort::FULL))
+        .collect()
 }
 
 struct Search<'a> {
@@ -82,12 +95,16 @@ struct Search<'a> {
     timestep: f64,
     /// The values tried first, ascending, and the scene with each.
     values: &'a [f64],
-    scenes: &'a [Linearised],
+    scenes: &'a [Vec<Linearised>],
+    pressed: Option<&'a State>,
 }
 
 impl Search<'_> {
     /// What is found and the value, or why nobody knows.
     fn largest(&self, solver: &Solver) -> Result<(LargestFound, Option<f64>), String> {
+        if self.pressed.is_none() && self.key.to_string().starts_with(PENALTY) {
+            return Err("nothing presses on a penalty along the trajectory".to_owned());
+        }
         let mut above = None;
         // From above, so that the largest is found where small values are unstable too.
         for (value, about) in self.values.iter().zip(self.scenes).rev() {
@@ -104,12 +121,16 @@ impl Search<'_> {
     }
 
     /// Whether the step is within the limit, or why nobody knows.
-    fn is_stable(&self, solver: &Solver, about: &Linearised) -> Result<bool, String> {
-        match predicted(about, solver, self.timestep).map(|predicted| predicted.limit) {
-            None => Err("it follows no method with a predicted limit".to_owned()),
-            Some(Limit::Unknown(why)) => Err(why),
-            Some(limit) => Ok(limit.allows(self.timestep * (1.0 - ROUNDING))),
+    fn is_stable(&self, solver: &Solver, about: &[Linearised]) -> Result<bool, String> {
+        for about in about {
+            match predicted(about, solver, self.timestep).map(|predicted| predicted.limit) {
+                None => return Err("it follows no method with a predicted limit".to_owned()),
+                Some(Limit::Unknown(why)) => return Err(why),
+                Some(limit) if limit.allows(self.timestep * (1.0 - ROUNDING)) => (),
+                Some(_) => return Ok(false),
+            }
         }
+        Ok(true)
     }
 
     /// The value between one that is stable and one that is not, checked just inside and outside.
@@ -117,7 +138,7 @@ impl Search<'_> {
         let stable = |value: f64| {
             let varied = self.key.apply(self.scene, value);
             let varied = varied.map_err(|error| error.to_string())?;
-            self.is_stable(solver, &linearised(&varied))
+            self.is_stable(solver, &linearised(&varied, self.pressed))
         };
         while high - low > WIDTH * low {
             let middle = (low * high).sqrt();

@@ -27,7 +27,7 @@ pub use result::{
 };
 
 use crate::measure::stability::{Effort, Linearised, is_linear};
-use crate::physics::ParticleSystem;
+use crate::physics::{ParticleSystem, System};
 use crate::report::Header;
 use crate::scene::Scene;
 use crate::solvers::{Solver, Tally};
@@ -64,6 +64,14 @@ pub struct Shared<'a> {
     pub path: path::Path,
     /// Evaluations of the integrators, over all runs.
     pub tally: Arc<Tally>,
+}
+
+impl Shared<'_> {
+    /// Whether particles may collide by impulses, which are no part of what is predicted.
+    fn bounces(&self) -> bool {
+        let obstacles = self.system.obstacles();
+        obstacles.is_some_and(|obstacles| obstacles.penalty().is_none())
+    }
 }
 
 impl StabilityPlan<'_> {
@@ -104,8 +112,9 @@ impl StabilityPlan<'_> {
         let map = map
             .map(|(map, varied)| map.run(scene, varied, solvers, steps_per_cell, tally, session));
         let largest = self.largest.as_ref();
+        let pressed = shared.path.pressed.as_ref();
         let largest =
-            largest.map(|key| Box::new(largest::find(key, scene, solvers, self.timestep)));
+            largest.map(|key| Box::new(largest::find(key, scene, solvers, self.timestep, pressed)));
         let Shared {
             system, linearised, ..
         } = &shared;

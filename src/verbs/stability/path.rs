@@ -3,7 +3,8 @@
 use super::StabilityPlan;
 use crate::integrators::Method;
 use crate::measure::stability::{Linearised, LinearisedTrajectory};
-use crate::physics::{ParticleSystem, State};
+use crate::physics::constraints::contact::Obstacles;
+use crate::physics::{ParticleSystem, State, System};
 use crate::scene::Scene;
 use crate::solvers::{Setting, Solver};
 use crate::trajectory::Observer;
@@ -14,6 +15,9 @@ const STATES: u64 = 100;
 /// The most steps times particles of the path: many times what a scene of a few particles needs.
 const MAX_WORK: u64 = 20_000_000;
 
+/// The most states at which it is seen whether a penalty presses.
+const LOOKS: u64 = 20_000;
+
 /// A trajectory, as far as it was followed.
 pub struct Path {
     /// The scene linearised at some of its states, without the start; None where every state has the
@@ -23,6 +27,8 @@ pub struct Path {
     pub until: f64,
     /// The method that computed it.
     pub method: Option<&'static Method>,
+    /// The state in which a penalty presses at most contacts, the first of these; None where none presses.
+    pub pressed: Option<State>,
 }
 
 /// The trajectory of the first method whose step is predicted to be stable; the scene's own is tried
@@ -46,6 +52,7 @@ pub fn of(
         along: None,
         until: scene.duration,
         method: None,
+        pressed: None,
     };
     let (false, Some(&method)) = (linear, chosen) else {
         return start_only;
@@ -55,9 +62,13 @@ pub fn of(
     let Ok(mut run) = Solver::method(method).start(scene, system, &setting) else {
         return start_only;
     };
+    let presses = system.obstacles().filter(|all| all.penalty().is_some());
     let mut kept = KeptStates {
         every: steps.div_ceil(STATES).max(1),
         states: Vec::new(),
+        look: steps.div_ceil(LOOKS).max(1),
+        presses: presses.map(Obstacles::copied),
+        pressed: None,
     };
     run.finish(&facts::limits(scene, system), &mut kept, &|_| {});
     // A run that ended early ends in states that cannot be linearised about.
@@ -66,6 +77,7 @@ pub fn of(
         until: run.state().t.min(scene.duration),
         along: Some(LinearisedTrajectory::new(system, &kept.states)),
         method: Some(method),
+        pressed: kept.pressed.map(|(_, state)| state),
     }
 }
 
@@ -79,15 +91,31 @@ pub fn steps(scene: &Scene) -> u64 {
 struct KeptStates {
     every: u64,
     states: Vec<State>,
+    /// Steps from one look at the contacts to the next.
+    look: u64,
+    /// What presses by a penalty.
+    presses: Option<Obstacles>,
+    /// The most contacts that a penalty presses at, and the state.
+    pressed: Option<(usize, State)>,
 }
 
 impl Observer for KeptStates {
     fn next(&self, from: u64) -> Option<u64> {
-        Some(from.max(1).next_multiple_of(self.every))
+        let next = |every| from.max(1).next_multiple_of(every);
+        let look = self.presses.as_ref().map_or(self.every, |_| self.look);
+        Some(next(self.every).min(next(look)))
     }
 
-    fn observe(&mut self, _step: u64, state: &State) {
-        self.states.push(state.clone());
+    fn observe(&mut self, step: u64, state: &State) {
+        if step.is_multiple_of(self.every) {
+            self.states.push(state.clone());
+        }
+        if let Some(obstacles) = self.presses.as_ref().filter(|_| state.is_finite()) {
+            let inside = obstacles.inside(state).len();
+            if inside > self.pressed.as_ref().map_or(0, |(most, _)| *most) {
+                self.pressed = Some((inside, state.clone()));
+            }
+        }
     }
 
     fn observe_diverged(&mut self, _step: u64, _state: &State) {}

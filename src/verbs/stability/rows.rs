@@ -30,6 +30,8 @@ const SOLVE: u64 = 100;
 const UNCOUNTED: u64 = 150;
 /// What a rod costs in a step and in each evaluation, in passes over a particle.
 const ROD: u64 = 12;
+/// What looking for contact costs in a step and in each evaluation, in passes over a particle.
+const CONTACT: u64 = 60;
 
 /// The cost of a step, in passes over all particles, from a few steps of the scene. It is counted, not
 /// timed, so that every machine searches alike.
@@ -45,10 +47,11 @@ fn passes_per_step(scene: &Scene, solver: &Solver, timestep: f64, tally: &Arc<Ta
         return STEP + UNCOUNTED.min(10 * scene.particles.len() as u64);
     };
     let rods = ROD * scene.rods.len() as u64 / scene.particles.len().max(1) as u64;
-    let work = (1 + rods) * forces
+    let contact = if scene.collides() { CONTACT } else { 0 };
+    let work = (1 + rods + contact) * forces
         + DAMPING * counts.damping_evaluations.unwrap_or(0)
         + solve * counts.linear_solves.unwrap_or(0);
-    STEP + rods + work / run.taken().max(1)
+    STEP + rods + contact + work / run.taken().max(1)
 }
 
 /// Steps the search for one limit may take.

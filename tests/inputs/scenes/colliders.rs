@@ -17,7 +17,8 @@ pub const REFUSED: &[Row] = &[
     ("box of no height", "colliders:\n- box: {center: [0, 0, -9], half_extents: [1, 1, »0]}", &["colliders[0].box.half_extents", "expected a positive number (m), found 0"]),
     ("box turned by degrees", "colliders:\n- box: {center: [0, 0, -9], half_extents: [1, 1, 1], rotation: [0, 0, »45]}", &["colliders[0].box.rotation", "at most 6.28", "(rad), found 45"]),
     ("capsule of one point", "colliders:\n- capsule: {a: [0, 0, -9], b: »[0, 0, -9], radius: 1}", &["colliders[0].capsule.b", "two ends apart", "`ball: {center, radius}`"]),
-    ("mesh without triangles", "colliders:\n- mesh: {vertices: [[0, 0, -9], [1, 0, -9], [0, 1, -9]], triangles: »[]}", &["colliders[0].mesh.triangles", "expected"]),
+    ("mesh without triangles", "colliders:\n- mesh: {vertices: [[0, 0, -9], [1, 0, -9], [0, 1, -9]], triangles: »[]}", &["colliders[0].mesh.triangles", "expected a row or more, found 0"]),
+    ("mesh of two vertices", "colliders:\n- mesh: {vertices: »[[0, 0, -9], [1, 0, -9]], triangles: [[0, 1, 1]]}", &["colliders[0].mesh.vertices", "expected three rows or more, found 2"]),
     ("mesh with a vertex that is not there", "colliders:\n- mesh:\n    vertices: [[0, 0, -9], [1, 0, -9], [0, 1, -9]]\n    triangles: [»[0, 1, 3]]", &["colliders[0].mesh.triangles[0]", "a vertex from 0 to 2, found 3"]),
     ("mesh with half a vertex", "colliders:\n- mesh:\n    vertices: [[0, 0, -9], [1, 0, -9], [0, 1, -9]]\n    triangles: [»[0, 1, 0.5]]", &["colliders[0].mesh.triangles[0]", "a vertex from 0 to 2, found 0.5"]),
     ("mesh with a triangle of no area", "colliders:\n- mesh:\n    vertices: [[0, 0, -9], [1, 0, -9], [2, 0, -9]]\n    triangles: [»[0, 1, 2]]", &["colliders[0].mesh.triangles[0]", "three corners apart, found them on one line"]),
@@ -47,6 +48,12 @@ colliders: »[{plane: {normal: [0, 0, 1], offset: -9}}]", &["colliders", "not su
     ("static friction of particles below the other", "particles: [{pos: [0, 0, 1], mass: 1}, {pos: [0, 0, 0], mass: 1}]\ncontact: {particles: true, friction: 0.5, static_friction: »0.4}", &["contact.static_friction", "at least the friction (0.5), found 0.4"]),
     ("particles inside each other", "particles: [{pos: [0, 0, 0], mass: 1}, {pos: [0, 0.15, 0], mass: 1}]
 contact: {particles: »true}", &["contact.particles", "expected free particles apart, found 0 and 1 0.05 m inside each other"]),
+    ("points that shall collide", "particles: [{pos: [0, 0, 0], mass: 1, radius: 0}, {pos: [0, 1, 0], mass: 1, radius: 0}]
+contact: {particles: »true}", &["contact.particles", "expected free particles with a radius, found none", "two points never meet"]),
+    ("particles in one place", "particles: [{pos: [0, 0, 0], mass: 1, radius: 0}, {pos: [0, 0, 0], mass: 1, radius: 0}, {pos: [0, 1, 0], mass: 1}]
+contact: {particles: »true}", &["contact.particles", "expected free particles apart, found 0 and 1 in one place"]),
+    ("particles in one place beside a penalty", "particles: [{pos: [0, 0, 0], mass: 1}, {pos: [0, 0, 0], mass: 1}]
+contact: {particles: »true, penalty: {stiffness: 1}}", &["contact.particles", "found 0 and 1 in one place"]),
 ];
 
 /// A normal is made a unit vector; static friction is sliding friction; nothing bounces or rubs unless a file says so.

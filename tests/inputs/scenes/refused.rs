@@ -62,7 +62,7 @@ const PARTS: &[Row] = &[
     ("driven, none", "driven: [»1]", &["driven[0]", "expected a motion: a mapping with `particle_id` and one of"]),
     ("driven, no particle", "driven: [»{velocity: [1, 0, 0]}]", &["driven[0].particle_id", "missing", "say which particle it moves"]),
     ("driven, no motion", "driven: [»{particle_id: 0}]", &["driven[0]", "expected one of `sine`, `velocity` and `table`, found none"]),
-    ("driven, two motions", "driven: [»{particle_id: 0, velocity: [1, 0, 0], table: [[0, 0, 0, 0]]}]", &["driven[0]", "found velocity and table"]),
+    ("driven, two motions", "driven: [»{particle_id: 0, velocity: [1, 0, 0], table: [[0,0,0,0],[1,0,0,0]]}]", &["driven[0]", "found velocity and table"]),
     ("driven twice", "driven: [{particle_id: 0, velocity: [1, 0, 0]}, {particle_id: »0, velocity: [0, 1, 0]}]", &["driven[1].particle_id", "particle 0 has two motions", "keep one"]),
     ("driven but free", "driven: [{particle_id: »1, velocity: [1, 0, 0]}]", &["driven[0].particle_id", "expected a fixed particle, found that 1 is free", "add `fixed: true`"]),
     ("driven, unknown", "driven: [{particle_id: »2, velocity: [1, 0, 0]}]", &["driven[0].particle_id", "expected a particle from 0 to 1, found 2"]),

@@ -129,12 +129,20 @@ fn inside_and_outside(row: &Row) -> (Vec<Value>, Vec<Value>) {
             outside.push(json!(vec![1.0; count - 1]));
             (vec![json!(ascending)], outside)
         }
-        ValueKind::Table(width, bounds) => {
+        ValueKind::Table(width, least, bounds) => {
             let row = |x: f64| vec![x; *width];
-            let table = |x: f64| json!([row(0.0), row(x)]);
-            let mut outside = vec![json!([row(0.0)]), json!(row(0.0)), json!([[0.0], [1.0]])];
-            outside.push(table(1.1 * bounds.high));
-            (vec![table(bounds.high)], outside)
+            // Ascending.
+            let table = |rows: usize, x: f64| -> Value {
+                let parts = (1..=rows).map(|i| row(x * i as f64 / rows as f64));
+                json!(parts.collect::<Vec<_>>())
+            };
+            let mut outside = vec![
+                table(least - 1, 1.0),
+                json!(row(0.0)),
+                json!([[0.0], [0.5], [1.0]]),
+            ];
+            outside.push(table(*least, 1.1 * bounds.high));
+            (vec![table(*least, bounds.high)], outside)
         }
         ValueKind::Vectors(Bounds { high, .. }) => (
             vec![
@@ -419,7 +427,7 @@ fn every_key_says_what_it_is() {
         );
         if let ValueKind::Number(bounds)
         | ValueKind::Numbers(_, bounds)
-        | ValueKind::Table(_, bounds)
+        | ValueKind::Table(.., bounds)
         | ValueKind::Vectors(bounds) = &row.kind
         {
             assert!(

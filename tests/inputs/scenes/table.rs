@@ -28,7 +28,7 @@ fn rows() -> impl Iterator<Item = (&'static Part, &'static Row)> {
 fn components(row: &Row) -> usize {
     match row.kind {
         ValueKind::Numbers(count, _) => count,
-        ValueKind::Table(width, _) => width,
+        ValueKind::Table(width, ..) => width,
         ValueKind::Ids(count) => count,
         ValueKind::Vectors(_) => 3,
         _ => 1,

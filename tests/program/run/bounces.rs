@@ -46,6 +46,38 @@ fn a_treatment_of_contact_is_said_and_is_no_fault() {
     assert!(text.contains(says), "{text}");
 }
 
+/// A page that a student reads: how many impacts are judged, and who does not book what they take.
+#[test]
+fn what_nobody_books_is_said_and_so_is_how_much_is_judged() {
+    let run = |scene: &str, more: &[&str]| {
+        let args = [&["run", scene, "--no-files", "--format", "markdown"], more].concat();
+        let (code, text, err) = output(&args);
+        assert_eq!(code, 0, "{err}");
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let unbooked = "not say what impacts and friction take";
+    let text = run(SCENE, &["--integrators", "rk4"]);
+    let says = "rapier and rapier-forces do not say what impacts and friction take: their energy counts it as lost";
+    assert!(text.contains(says), "{text}");
+    // e = 0.8, three impacts in 2 s.
+    assert!(
+        text.contains("rk4: in 3 impacts it separates at 0.8 of"),
+        "{text}"
+    );
+    let own = ["--integrators", "rk4", "--engines", "none"];
+    assert!(!run(SCENE, &own).contains(unbooked));
+    // Where e = 1 nothing is lost. Of 31 impacts those that follow each other within a row are not judged.
+    let text = run(
+        "scenes/contact/blocks_and_a_wall.yml",
+        &["--integrators", "rk4"],
+    );
+    assert!(!text.contains(unbooked), "{text}");
+    assert!(
+        text.contains("of its 31 impacts, which nothing else disturbs,"),
+        "{text}"
+    );
+}
+
 #[test]
 fn a_mistake_at_contact_is_a_fault_from_the_first_impact_on() {
     let folder = tempfile::tempdir().expect("a folder");

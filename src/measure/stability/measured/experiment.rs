@@ -31,6 +31,8 @@ const FEWEST: u64 = 500;
 /// the probe is shorter. And the steps that are taken to see how many it takes.
 const SOLVES: u64 = 4;
 const SAMPLE: u64 = 64;
+/// Force passes after which no more are taken: many bounces within a step take thousands.
+const ENOUGH: u64 = 50_000;
 /// Such a probe is not shorter than this: slow growth needs some thousand steps to show.
 const LEAST: u64 = 4_000;
 /// Acceleration that is left at a rest, against that without rods: rounding, and angles of 1e-12.
@@ -116,7 +118,8 @@ impl<'a> Experiment<'a> {
         } else {
             let mut quadratic = Quadratic::new(system);
             let large = Perturbation::large(scene, system, &mut quadratic);
-            if linear(scene, make, &large, 0.5 * unit)? {
+            // Before the first impact a step may look linear.
+            if system.obstacles().is_none() && linear(scene, make, &large, 0.5 * unit)? {
                 (Some(quadratic), large)
             } else {
                 (None, Perturbation::slight(system, &start, scale))
@@ -190,7 +193,8 @@ impl<'a> Experiment<'a> {
         }
         let scene = self.perturbation.apply(self.scene);
         let mut runs = Runs::new(self.make, h, &[&scene])?;
-        let taken = (0..SAMPLE).take_while(|_| runs.step().is_ok()).count() as u64;
+        let sample = (0..SAMPLE).take_while(|_| runs.passes() < ENOUGH && runs.step().is_ok());
+        let taken = sample.count() as u64;
         if !self.budget.spend(taken, runs.passes()) {
             return Err(Stop::Spent);
         }

@@ -12,6 +12,7 @@ use crate::integrators::StepError;
 use crate::physics::State;
 use crate::scene::Scene;
 use crate::solvers::{Run, Unsupported};
+use std::cell::Cell;
 
 /// The outcome of a probe.
 #[derive(Debug, Clone, PartialEq)]
@@ -178,8 +179,8 @@ impl<'a> Budget<'a> {
     /// take. False when nothing is left.
     pub fn spend(&mut self, steps: u64, passes: u64) -> bool {
         self.taken += steps;
-        (self.tick)(steps);
         let over = (passes / USUAL).saturating_sub(steps);
+        (self.tick)(steps.saturating_add(over));
         self.left = self.left.saturating_sub(over);
         let enough = self.left >= steps;
         self.left = self.left.saturating_sub(steps);
@@ -193,7 +194,7 @@ fn stride(step: u64) -> u64 {
     1 + scramble(step) % 7
 }
 
-/// Steps are counted against the budget in batches of this many.
+/// Steps are counted against the budget in batches of this many, fewer where they take more force passes than usual.
 const PAID: u64 = 256;
 
 /// Steps the runs until the answer is clear; None when the budget ends first.
@@ -204,10 +205,9 @@ pub(super) fn probe(
     budget: &mut Budget,
 ) -> Option<Probed> {
     let mut maxima = Maxima::new(watch.steps);
-    let mut passes = runs.passes();
+    let passes = Cell::new(runs.passes());
     let mut pay = |runs: &Runs, steps: u64| {
-        let since = runs.passes().saturating_sub(passes);
-        passes = runs.passes();
+        let since = runs.passes().saturating_sub(passes.replace(runs.passes()));
         let enough = budget.spend(runs.len() as u64 * steps, since);
         enough.then_some(())
     };
@@ -242,7 +242,7 @@ pub(super) fn probe(
                         Err(ended) => break 'watched Some(ended),
                     }
                 }
-                if unpaid >= PAID {
+                if unpaid >= PAID || runs.passes() > passes.get() + PAID * USUAL {
                     pay(runs, std::mem::take(&mut unpaid))?;
                 }
                 if step >= rest {

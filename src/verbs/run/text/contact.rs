@@ -1,7 +1,7 @@
 //! Contact in words: impacts, what they and friction took, and how far particles are inside obstacles.
 
 use super::laws;
-use crate::measure::Contact;
+use crate::measure::{Behaviour, Contact, Energy};
 use crate::report::words;
 use crate::verbs::Report;
 use crate::verbs::run::Outcome;
@@ -16,7 +16,8 @@ little inside.
 The last columns tell how far each is off the laws, from the rows alone; 0 is right. *Off e*: the speed after an impact, in parts
 of the speed before it. *Off the cone*: friction of an impact above µ times its normal impulse, in parts of that. *Off µ N*:
 friction of what slides or sticks, in parts of N. *Put in*: energy that an impact or friction adds. What forces do between two
-rows, and a run's step, may explain some of it: the sentences below the table say how much.";
+rows, and a run's step, may explain some of it: the sentences below the table say how much. What touches several things at once,
+or not for one step alone, is not judged.";
 
 const PENALTY: &str = "\
 A spring and a damper press while a particle is inside; a step is cut where one enters and where it leaves. *Impacts* are the
@@ -60,12 +61,11 @@ pub fn table(report: &Report) -> String {
     table.markdown("put in (J)", |(_, contact)| {
         laws::cell(contact.laws.energy_gain)
     });
-    let pressed = rows.iter().any(|(outcome, _)| {
-        let energy = outcome.energy.as_ref();
-        energy.is_some_and(|energy| energy.potential_final_j.contains_key("penalty"))
-    });
-    let intro = if pressed { PENALTY } else { INTRO };
+    let intro = if presses(&rows) { PENALTY } else { INTRO };
     let mut text = format!("{intro}\n\n{}", table.in_markdown());
+    if let Some(unbooked) = unbooked(report) {
+        text += &format!("\nWhat is lost: {}.\n", words::escape(&unbooked));
+    }
     let said: Vec<(String, Vec<String>)> = rows
         .iter()
         .map(|(outcome, contact)| (super::engine(outcome), laws::sentences(contact)))
@@ -101,6 +101,50 @@ fn taken(outcome: &Outcome, which: fn(&crate::measure::Energy) -> Option<f64>) -
     which(outcome.energy.as_ref()?).map(words::short)
 }
 
+/// Which rows do not say what impacts and friction take, where there was something to take; None where all say it.
+pub fn unbooked(report: &Report) -> Option<String> {
+    let rows = rows(report);
+    let energies = rows
+        .iter()
+        .filter_map(|(o, _)| Some((*o, o.energy.as_ref()?)));
+    let (say, silent): (Vec<_>, Vec<_>) =
+        energies.partition(|(_, energy)| energy.impacts_j.is_some());
+    let took =
+        |energy: &Energy| is_real(energy, energy.impacts_j) || is_real(energy, energy.friction_j);
+    let fell = |energy: &Energy| energy.lost() && energy.behaviour() != Some(Behaviour::Steady);
+    let lost = match say.as_slice() {
+        [] => silent.iter().any(|(_, energy)| fell(energy)),
+        say => say.iter().any(|(_, energy)| took(energy)),
+    };
+    // What a penalty takes its damper takes.
+    if silent.is_empty() || !lost || presses(&rows) {
+        return None;
+    }
+    let outcomes: Vec<&Outcome> = silent.iter().map(|(outcome, _)| *outcome).collect();
+    let names = super::subjects(report, &outcomes, usize::MAX);
+    let (does, its) = match outcomes.len() {
+        1 => ("does", "its"),
+        _ => ("do", "their"),
+    };
+    Some(format!(
+        "{names} {does} not say what impacts and friction take: {its} energy counts it as lost"
+    ))
+}
+
+/// Whether there is a penalty.
+fn presses(rows: &[(&Outcome, &Contact)]) -> bool {
+    rows.iter().any(|(outcome, _)| {
+        let energy = outcome.energy.as_ref();
+        energy.is_some_and(|energy| energy.potential_final_j.contains_key("penalty"))
+    })
+}
+
+/// Whether energy was taken, J: rounding of impacts that lose nothing is nothing.
+fn is_real(energy: &Energy, joules: Option<f64>) -> bool {
+    let most = energy.initial_j.unwrap_or(0.0).abs();
+    joules.is_some_and(|joules| joules.abs() > 1e-12 * most)
+}
+
 /// The contact of the scene's own engine, or else the first, for the terminal.
 pub fn own(report: &Report) -> Vec<(&'static str, String)> {
     let spoken = super::spoken_of(report, |o| o.contact.is_some());
@@ -112,18 +156,17 @@ pub fn own(report: &Report) -> Vec<(&'static str, String)> {
         parts.push(words::plural(impacts, "impact"));
     }
     let energy = outcome.energy.as_ref();
-    let mut lost = |joules: Option<f64>, by: &str| {
-        // Rounding of impacts that lose nothing is nothing.
-        let most = energy
-            .and_then(|energy| energy.initial_j)
-            .unwrap_or(0.0)
-            .abs();
-        if let Some(joules) = joules.filter(|joules| joules.abs() > 1e-12 * most) {
-            parts.push(format!("{} J lost {by}", words::short(joules)));
-        }
-    };
-    lost(energy.and_then(|energy| energy.impacts_j), "in impacts");
-    lost(energy.and_then(|energy| energy.friction_j), "to friction");
+    let lost = energy.into_iter().flat_map(|energy| {
+        let lost = [
+            (energy.impacts_j, "in impacts"),
+            (energy.friction_j, "to friction"),
+        ];
+        lost.into_iter()
+            .filter(|(joules, _)| is_real(energy, *joules))
+    });
+    parts.extend(
+        lost.filter_map(|(joules, by)| Some(format!("{} J lost {by}", words::short(joules?)))),
+    );
     if let Some(inside) = inside(contact) {
         let deepest = words::short(contact.deepest_m);
         parts.push(format!("at most {deepest} m deep: {inside}"));

@@ -22,8 +22,8 @@ pub fn sentences(contact: &Contact) -> Vec<String> {
     let mut all = Vec::new();
     all.extend(separation.map(|law| {
         let text = format!(
-            "after {} it separates at {} of the speed it came with",
-            words::plural(law.judged, "impact"),
+            "in {} it separates at {} of the speed it came with",
+            judged(law.judged, contact.impacts),
             ratio(law.found)
         );
         if law.off <= ROUNDING {
@@ -58,7 +58,11 @@ pub fn sentences(contact: &Contact) -> Vec<String> {
             return "friction of what slides is µ N against the sliding, and of what sticks no more than it may be".to_owned();
         }
         let found = ratio(law.found);
-        format!("friction on a surface is {found} N, where µ = {} asks that much against the sliding: {}", short(law.asked), verdict(&law))
+        format!(
+            "friction on a surface is {found} of the normal force, where Coulomb's law has µ = {} of it, against the sliding: {}",
+            short(law.asked),
+            verdict(&law)
+        )
     }));
     all.extend(energy_gain.map(|law| {
         if !law.broken() {
@@ -72,6 +76,18 @@ pub fn sentences(contact: &Contact) -> Vec<String> {
         )
     }));
     all
+}
+
+/// `7 impacts`, or where more are known to have been `7 of its 153 impacts, which nothing else disturbs,`
+fn judged(judged: u64, impacts: Option<u64>) -> String {
+    match impacts {
+        Some(all) if all > judged => format!(
+            "{} of its {}, which nothing else disturbs,",
+            words::count(judged),
+            words::plural(all, "impact")
+        ),
+        _ => words::plural(judged, "impact"),
+    }
 }
 
 /// For the terminal: the laws that are missed, or else one that is kept.
@@ -95,12 +111,12 @@ pub fn summary(contact: &Contact) -> Vec<String> {
     missed
 }
 
-/// `off by 0.1 (particle 0 at 0.4 s), more than the forces between its rows explain (0.02)`
+/// `off by 0.1 (particle 0 at 0.4 s), more than forces between its rows and rounding explain (0.02)`
 fn verdict(law: &Residual) -> String {
     let explain = if law.broken() {
-        "more than the forces between its rows explain"
+        "more than forces between its rows and rounding explain"
     } else {
-        "no more than the forces between its rows may explain"
+        "no more than forces between its rows and rounding may explain"
     };
     format!(
         "off by {} (particle {} at {} s), {explain} ({})",

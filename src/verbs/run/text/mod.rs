@@ -49,6 +49,10 @@ pub fn view<'a>(report: &'a Report, outcomes: &[Outcome], columns: usize) -> Vie
         facts.extend(strain::own(report));
         facts.extend(contact::own(report));
     }
+    if let Some(unbooked) = contact::unbooked(report) {
+        let said = facts.iter().any(|(label, _)| *label == "contact");
+        facts.push((if said { "" } else { "contact" }, unbooked));
+    }
     facts.extend(rods::lines(report));
     // The verdict of a comparison is the identity.
     let said = |outcome: &Outcome, sentence: &String| {

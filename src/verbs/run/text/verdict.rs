@@ -66,12 +66,25 @@ fn own(report: &Report) -> Option<String> {
     let distance = distance.map(|e| words::truth_error(e.max, &header.truth));
     let distance = match distance.as_deref() {
         None => String::new(),
-        Some("floor") => ", on the truth".to_owned(),
-        Some(error) => format!(", {error} m from the truth"),
+        Some("floor") => format!(", on the truth{}", until(report)),
+        Some(error) => format!(", {error} m from the truth{}", until(report)),
     };
     let name = words::one_line(&first.engine);
     Some(format!("{name} {does}{distance}"))
 }
+
+/// ` up to 0.06 s` where the truth ends before the scene; else empty.
+fn until(report: &Report) -> String {
+    let header = &report.header;
+    let ends = |horizon: &f64| *horizon < header.scene.duration * (1.0 - ROUNDING);
+    let horizon = header.truth.horizon_s.filter(ends);
+    horizon.map_or(String::new(), |horizon| {
+        format!(" up to {} s", words::short(horizon))
+    })
+}
+
+/// Steps may end this much before the duration, relative.
+const ROUNDING: f64 = 1e-9;
 
 /// What the balance with a strain limit does: not what the energy does, which the limit changes in every step.
 fn limited(energy: &Energy, behaviour: Behaviour, error: f64, scale: Option<f64>) -> String {
