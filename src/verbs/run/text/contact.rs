@@ -68,7 +68,7 @@ pub fn table(report: &Report) -> String {
     let mut text = format!("{intro}\n\n{}", table.in_markdown());
     let said: Vec<(String, Vec<String>)> = rows
         .iter()
-        .map(|(outcome, contact)| (super::engine(outcome), laws::sentences(contact)))
+        .map(|(outcome, contact)| (super::engine(outcome), laws::sentences(&contact.laws)))
         .filter(|(_, said)| !said.is_empty())
         .collect();
     if !said.is_empty() {
