@@ -5,6 +5,24 @@ use crate::measure::identify::words::digits;
 use crate::physics::ParticleSystem;
 use crate::physics::constraints::contact::{Obstacles, Surface};
 
+/// The ids of numbers of a program's own, and what they are, after "at contact it".
+pub(super) const NUMBERS: [(&str, &str); 5] = [
+    ("restitution", "has another restitution than the scene"),
+    ("friction", "has another friction than the scene"),
+    (
+        "radius",
+        "has other radii than the scene, or surfaces elsewhere",
+    ),
+    (
+        "stiffness",
+        "has another stiffness of its penalty than the scene",
+    ),
+    (
+        "damping",
+        "has another damping of its penalty than the scene",
+    ),
+];
+
 /// A number of the program's own, and the scene's where that is one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wrong {

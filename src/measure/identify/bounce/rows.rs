@@ -1,5 +1,6 @@
 //! The tables of what programs do at contact. The first row of each is right.
 
+use super::own::NUMBERS;
 use super::{Bounce, Free, Friction, Lift, Partner, Restitution, Row, Shares, Stepped, Way};
 use crate::physics::State;
 use crate::physics::constraints::contact::{Against, Beside, Hit, ImpactLaw, Obstacles};
@@ -279,6 +280,7 @@ pub fn treatments() -> impl Iterator<Item = (&'static str, &'static str, bool)> 
         .chain(of(RESTITUTIONS))
         .chain(of(FRICTIONS))
         .chain(of(PARTNERS))
+        .chain(NUMBERS.map(|(id, says)| (id, says, true)))
 }
 
 /// Inside and approaching at the end.
