@@ -23,7 +23,8 @@ pub struct Residual {
     pub bound: f64,
     /// What the run has: the ratio of speeds or of forces, or J.
     pub found: f64,
-    /// What the law asks for: e, µ, or 0 J; where it slides exactly that much friction, elsewhere at most.
+    /// What the law asks for: e, µ, or 0 J; where it slides exactly that much friction, where it rests what holds it, elsewhere
+    /// at most.
     pub asked: f64,
     /// How many impacts, or pairs of rows in contact, were judged.
     pub judged: u64,
@@ -310,13 +311,24 @@ impl Laws {
         let fast = norm(both);
         let stops = (pair.pushes + mu * pressed) * h + pair.off_v;
         let slides = norm(old) > stops && norm(new) > stops && dot(old, new) > 0.0;
-        let (off, turned) = if slides {
+        let along = |a: [f64; 3]| {
+            let a = pair.relative(now.state.t, a);
+            let out = dot(a, n);
+            [0, 1, 2].map(|c| a[c] - out * n[c])
+        };
+        // What rests, and may be held by friction, stays.
+        let load = along(a0);
+        let held = norm(old) <= pair.off_v && norm(load) + doubt <= most * pressed;
+        let (off, turned, asked) = if held {
+            let left = [0, 1, 2].map(|c| rubs[c] + load[c]);
+            (norm(left), 0.0, norm(load) / pressed)
+        } else if slides {
             let against = both.map(|c| mu * pressed * c / fast);
             let left = [0, 1, 2].map(|c| rubs[c] + against[c]);
             let turned = minus(new.map(|c| c / norm(new)), old.map(|c| c / norm(old)));
-            (norm(left), mu * norm(turned))
+            (norm(left), mu * norm(turned), mu)
         } else {
-            ((norm(rubs) - most * pressed).max(0.0), 0.0)
+            ((norm(rubs) - most * pressed).max(0.0), 0.0, most)
         };
         self.note(
             |laws| &mut laws.sliding_friction,
@@ -325,7 +337,7 @@ impl Laws {
                 off / pressed,
                 (1.0 + most) * doubt / pressed + turned,
                 norm(rubs) / pressed,
-                if slides { mu } else { most },
+                asked,
             ],
         );
         if slides {
@@ -529,11 +541,15 @@ impl<'a> Pair<'a> {
 
     /// The acceleration relative to the other, m/s².
     fn pushed(&self, t: f64, a: &[f64]) -> [f64; 3] {
-        let other = match self.against {
-            Against::Particle(other) => three(a, other),
-            Against::Obstacle(_) => self.obstacles.moved(self.against, t)[2],
-        };
-        minus(three(a, self.particle), other)
+        match self.against {
+            Against::Particle(other) => minus(three(a, self.particle), three(a, other)),
+            Against::Obstacle(_) => self.relative(t, three(a, self.particle)),
+        }
+    }
+
+    /// An acceleration relative to that of the obstacle, m/s².
+    fn relative(&self, t: f64, a: [f64; 3]) -> [f64; 3] {
+        minus(a, self.obstacles.moved(self.against, t)[2])
     }
 
     /// A particle in free motion from the first row.

@@ -155,6 +155,31 @@ fn sticking_above_the_cone_is_seen() {
     near(judged(laws.sliding_friction).off, 0.7, 1e-13);
 }
 
+/// What lies on a slope of 30° with µ_s = 0.7 is held: friction is tan 30° N. If it slides, with µ = 0.3, that is off by
+/// tan 30° - 0.3 where it begins; later it slides as it may. Its numbers are of up to 2.4 m and m/s, so accelerations over h
+/// have 1e-13 of g.
+#[test]
+fn what_friction_holds_does_not_begin_to_slide() {
+    let slope = scene(
+        "{pos: [0, 0, 0], mass: 1, radius: 0}",
+        "colliders: [{plane: {normal: [-0.5, 0, 0.8660254037844386]}, friction: 0.3, static_friction: 0.7}]",
+        -G,
+    );
+    let lies = laws(&slope, |_| (vec![0.0; 3], vec![0.0; 3]));
+    near(judged(lies.sliding_friction).off, 0.0, 1e-13);
+    let tan = 3.0_f64.sqrt().recip();
+    let a = G * (0.5 - 0.3 * 0.75_f64.sqrt());
+    let slides = laws(&slope, move |t| {
+        let along = |far: f64| vec![-0.75_f64.sqrt() * far, 0.0, -0.5 * far];
+        (along(0.5 * a * t * t), along(a * t))
+    });
+    let off = judged(slides.sliding_friction);
+    assert!(off.broken() && off.t_s == 0.0, "{off:?}");
+    near(off.off, tan - 0.3, 1e-12);
+    near(off.found, 0.3, 1e-12);
+    near(off.asked, tan, 1e-12);
+}
+
 /// The contact of a penalty, half a swing of 4 rows, is no impact between two rows; and one of a tenth of a row is.
 #[test]
 fn a_penalty_is_not_judged_as_an_impulse() {

@@ -2,17 +2,21 @@
 //! step of any method. A treatment is a row of each of four tables.
 
 mod list;
+mod own;
 mod penalty;
 mod rows;
 
-pub(super) use list::all;
+pub(super) use list::{all, relevant, same_here};
+pub use own::{Own, Size, Wrong};
 pub(super) use penalty::pressed;
-pub use rows::{FRICTIONS, PLACES, RESTITUTIONS, WAYS, treatments};
+pub use rows::{FRICTIONS, PARTNERS, PLACES, RESTITUTIONS, WAYS, treatments};
 
 use crate::integrators::StepError;
 use crate::physics::State;
-use crate::physics::constraints::contact::{Beside, Hit, ImpactLaw, Obstacles, Surface};
+use crate::physics::constraints::contact::{Against, Beside, Hit, ImpactLaw, Obstacles};
+use crate::space::three;
 use crate::vector::axpy;
+use std::borrow::Cow;
 use std::fmt;
 
 type Stepped = Result<(), StepError>;
@@ -41,13 +45,21 @@ pub enum Way {
     Force {
         /// Whether a damper may pull it back while it leaves.
         pulls: bool,
+        /// Whether the scene's contact is such a force, and steps are not cut where it begins and ends.
+        whole: bool,
     },
     /// Not at all.
     Never,
 }
 
-/// How far what is inside is moved out, m, from its gap, m, and the restitution.
-pub type Lift = fn(f64, f64) -> f64;
+/// Where what is inside is put.
+#[derive(Debug, Clone, Copy)]
+pub struct Lift {
+    /// How far it is moved out, m, from its gap, m, and the restitution.
+    pub by: fn(f64, f64) -> f64,
+    /// Whether two particles move by half of it each; else each by its part of both 1/m.
+    pub halves: bool,
+}
 
 /// What the normal velocity gains.
 #[derive(Debug, Clone, Copy)]
@@ -61,6 +73,19 @@ pub struct Restitution {
 /// What the sliding speed loses, m/s, where the normal velocity gains so much.
 pub type Friction = fn(&Hit, f64) -> f64;
 
+/// The changes of both velocities, m/s, from the change of the one relative to the other, and from both 1/m, 1/kg.
+pub type Shares = fn(&Beside, [f64; 3], [f64; 2]) -> [[f64; 3]; 2];
+
+/// What the other of a contact is to a program.
+#[derive(Debug, Clone, Copy)]
+pub struct Partner {
+    pub shares: Shares,
+    /// Whether obstacles have the velocity that the scene gives them; else they are at rest.
+    pub moves: bool,
+    /// Whether particles collide with each other.
+    pub meets: bool,
+}
+
 /// A treatment of contact.
 #[derive(Clone, Copy)]
 pub struct Bounce {
@@ -68,8 +93,24 @@ pub struct Bounce {
     pub place: &'static Row<Lift>,
     pub restitution: &'static Row<Restitution>,
     pub friction: &'static Row<Friction>,
+    pub partner: &'static Row<Partner>,
+    /// The program's own coefficients and sizes.
+    pub own: Own,
     /// Stiffness, N/m, and damping, N s/m, of a force; 0 where there is none.
     pub force: [f64; 2],
+    /// What counts as inside.
+    pub touching: Touching,
+}
+
+/// What counts as inside, where rounding decides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Touching {
+    /// What touches does not.
+    Inside,
+    /// What touches exactly does.
+    Exactly,
+    /// What touches but for rounding does.
+    Near,
 }
 
 impl Bounce {
@@ -80,25 +121,39 @@ impl Bounce {
             place: &PLACES[0],
             restitution: &RESTITUTIONS[0],
             friction: &FRICTIONS[0],
+            partner: &PARTNERS[0],
+            own: Own::NONE,
             force: [0.0; 2],
+            touching: Touching::Exactly,
         }
     }
 
     /// What is said of each of its rows but the right ones: id, sentence, whether it is a mistake.
-    fn rows(&self) -> [(&'static str, &'static str, bool); 4] {
+    fn rows(&self) -> Vec<(&'static str, Cow<'static, str>, bool)> {
         let Self {
             way,
             place,
             restitution,
             friction,
+            partner,
             ..
         } = self;
-        [
-            (way.id, way.says, way.mistake),
+        let kept = restitution.id == "velocity_kept";
+        // What leaves the velocity as it is does not turn it at any time.
+        let when = if kept { "" } else { way.says };
+        let rows = [
+            (way.id, when, way.mistake),
             (place.id, place.says, place.mistake),
             (restitution.id, restitution.says, restitution.mistake),
             (friction.id, friction.says, friction.mistake),
-        ]
+            (partner.id, partner.says, partner.mistake),
+        ];
+        let rows = rows.map(|(id, says, mistake)| (id, Cow::Borrowed(says), mistake));
+        let own = self
+            .own
+            .rows()
+            .map(|(id, says)| (id, Cow::Owned(says), true));
+        rows.into_iter().chain(own).collect()
     }
 
     /// The ids of its rows, without those that are right in every respect but when: `flip_at_end+clamped`.
@@ -112,7 +167,16 @@ impl Bounce {
     /// What it does, in clauses after "at contact it".
     pub fn says(&self) -> String {
         let rows = self.rows();
-        let says = rows.iter().map(|row| row.1).filter(|says| !says.is_empty());
+        let says = rows.iter().map(|row| row.1.as_ref());
+        let says = says.filter(|says| !says.is_empty());
+        says.collect::<Vec<_>>().join("; it ")
+    }
+
+    /// What is wrong about it, in such clauses.
+    pub fn wrongs(&self) -> String {
+        let rows = self.rows();
+        let wrong = rows.iter().filter(|(.., mistake)| *mistake);
+        let says = wrong.map(|row| row.1.as_ref());
         says.collect::<Vec<_>>().join("; it ")
     }
 
@@ -122,6 +186,11 @@ impl Bounce {
         rows.filter(|(.., mistake)| *mistake).map(|(id, ..)| id)
     }
 
+    /// Whether sliding is slowed.
+    pub(super) fn rubs(&self) -> bool {
+        self.friction.id != "friction_forgotten"
+    }
+
     /// Whether its rows go together: an event is followed by no other at once, and something is done.
     pub(super) fn is_sensible(&self) -> bool {
         let id = self.restitution.id;
@@ -129,7 +198,7 @@ impl Bounce {
         match self.way.does {
             Way::Event => {
                 let parts = matches!(id, "newton" | "restitution_as_one" | "restitution_as_zero");
-                left && parts
+                left && parts && self.partner.does.moves && !self.partner.mistake
             }
             Way::Force { .. } => left,
             Way::Once(_) => !left || id != "velocity_kept",
@@ -159,37 +228,66 @@ impl Bounce {
         }
     }
 
-    /// Turns velocities of particles that are inside obstacles, and moves these out, one obstacle after the other.
-    /// Returns the particles that it acts on.
+    /// Turns velocities of particles that are inside obstacles, and of those in each other, and moves these out, one pair
+    /// after the other. Returns the particles that it acts on.
     fn meet(&self, obstacles: &Obstacles, h: f64, state: &mut State) -> Vec<usize> {
         let mut met = Vec::new();
         for (particle, obstacle) in obstacles.pairs() {
-            let beside = obstacles.beside(particle, obstacle, state);
-            let surface = obstacles.surface(obstacle);
-            let out = self.moved_out(&beside, surface);
-            let change = self.turned(&beside, surface, h);
-            let own = 3 * particle..3 * particle + 3;
-            axpy(&mut state.x[own.clone()], out, &beside.normal);
-            if let Some(change) = change {
-                axpy(&mut state.v[own], 1.0, &change);
-                met.push(particle);
+            self.act(obstacles, (particle, obstacle), h, state, &mut met);
+        }
+        if obstacles.among_particles() && self.partner.does.meets {
+            let near = obstacles.near_now(state);
+            let among = |(_, against): &(usize, Against)| matches!(against, Against::Particle(_));
+            for pair in near.pairs().filter(among) {
+                self.act(obstacles, pair, h, state, &mut met);
             }
         }
         met
     }
 
-    /// The change of velocity, m/s, of a particle beside an obstacle; None where nothing is done.
-    fn turned(&self, beside: &Beside, surface: Surface, h: f64) -> Option<[f64; 3]> {
-        let inside = beside.gap <= 0.0;
+    fn act(
+        &self,
+        obstacles: &Obstacles,
+        (particle, against): (usize, Against),
+        h: f64,
+        state: &mut State,
+        met: &mut Vec<usize>,
+    ) {
+        let mut beside = obstacles.beside(particle, against, state);
+        let within = match self.touching {
+            Touching::Inside => -beside.close,
+            Touching::Exactly => 0.0,
+            Touching::Near => beside.close,
+        };
+        if beside.gap > within {
+            return;
+        }
+        if !self.partner.does.moves {
+            beside.velocity = three(&state.v, particle);
+        }
+        let surface = obstacles.surface(against);
+        let with = against.with(particle);
+        let weights = [0, 1].map(|end| with.get(end).map_or(0.0, |one| obstacles.weight(*one)));
+        let place = self.place.does;
+        let out = match beside.gap {
+            gap if gap < 0.0 => (place.by)(gap, surface.restitution),
+            _ => 0.0,
+        };
+        let lifted = beside.normal.map(|n| out * n);
+        let lifted = match place.halves && with.len() > 1 {
+            true => rows::halves(&beside, lifted, weights),
+            false => rows::by_mass(&beside, lifted, weights),
+        };
         let due = beside.parting() < 0.0 || self.restitution.does.leaving;
-        (inside && due).then(|| self.law().change(beside, surface, h))
-    }
-
-    fn moved_out(&self, beside: &Beside, surface: Surface) -> f64 {
-        if beside.gap < 0.0 {
-            (self.place.does)(beside.gap, surface.restitution)
-        } else {
-            0.0
+        let change = due.then(|| self.law().change(&beside, surface, h));
+        let change = change.map(|change| (self.partner.does.shares)(&beside, change, weights));
+        for (end, one) in with.into_iter().enumerate() {
+            let own = 3 * one..3 * one + 3;
+            axpy(&mut state.x[own.clone()], 1.0, &lifted[end]);
+            if let Some(change) = &change {
+                axpy(&mut state.v[own], 1.0, &change[end]);
+                met.push(one);
+            }
         }
     }
 }
@@ -202,6 +300,6 @@ impl fmt::Debug for Bounce {
 
 impl PartialEq for Bounce {
     fn eq(&self, other: &Self) -> bool {
-        self.label() == other.label() && self.force == other.force
+        self.label() == other.label() && self.force == other.force && self.own == other.own
     }
 }

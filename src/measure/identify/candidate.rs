@@ -2,7 +2,7 @@
 //! way than to all particles at once.
 
 use super::altered::{Altered, Altering, Around};
-use super::bounce::{Bounce, Way, pressed};
+use super::bounce::{Bounce, Touching, Way, pressed};
 use super::keeping::{Keeping, Kept, keep};
 use super::step::Step;
 use crate::integrators::{
@@ -167,20 +167,26 @@ impl Candidate {
     ) -> Option<Self> {
         let own = !self.mistake && self.scaling.is_none();
         let right = ["newton", "coulomb"] == [bounce.restitution.id, bounce.friction.id];
+        let alters = bounce.alters();
         let mut same = match bounce.way.does {
-            Way::Event if right => self.clone(),
+            Way::Event if right && !alters => self.clone(),
             Way::Event => {
                 let law = bounce.law();
-                let struck = system
-                    .clone()
-                    .with_obstacles(|all| Some(all.struck_by(law)));
-                self.under(&struck)
+                let struck = bounce.met_by(system);
+                self.under(&struck.with_obstacles(|all| Some(all.struck_by(law))))
             }
             Way::Force { .. } => self.under(&pressed(scene, system, bounce)?),
-            Way::Once(_) | Way::Never => Self {
-                bounce: Some(Box::new(*bounce)),
-                ..self.clone()
-            },
+            Way::Once(_) | Way::Never => {
+                let forced = if alters {
+                    self.under(&bounce.met_by(system))
+                } else {
+                    self.clone()
+                };
+                Self {
+                    bounce: Some(Box::new(*bounce)),
+                    ..forced
+                }
+            }
         };
         if bounce.mistakes().next().is_some() {
             let says = same.says.iter().map(|says| format!("{says}; "));
@@ -188,7 +194,8 @@ impl Candidate {
             same.says = Some(format!("{says}at contact it {}", bounce.says()).into());
             same.mistake = true;
         }
-        (own || right || same.bounce.is_some()).then_some(same)
+        let kept = !alters && (right || same.bounce.is_some());
+        (own || kept).then_some(same)
     }
 
     /// The same scheme under another candidate's forces, in its steps, with rods kept as that does.
@@ -230,6 +237,11 @@ impl Candidate {
             alone: true,
             ..self
         }
+    }
+
+    /// The same from rows that do not begin as the scene does: those are begun already.
+    pub(super) fn begun_before(self) -> Self {
+        self.begun(None)
     }
 
     /// The same, begun with another step.
@@ -305,6 +317,11 @@ impl Candidate {
         self.bounce.as_deref().zip(system.obstacles())
     }
 
+    /// The obstacles that it meets; None where contact is a force alone.
+    pub(super) fn meets(&self) -> Option<&Obstacles> {
+        self.forces.obstacles()
+    }
+
     /// The obstacles that it locates impacts with, to a part of a step.
     pub(super) fn locates(&self) -> Option<&Obstacles> {
         self.forces.obstacles().filter(|_| self.bounce.is_none())
@@ -354,6 +371,8 @@ impl Candidate {
             settings: *settings,
             kept: kept.then(|| self.step.build(settings, None)),
             pattern: None,
+            passes: false,
+            touching: Touching::Exactly,
         }
     }
 }
@@ -373,6 +392,10 @@ pub struct Replayer<'a> {
     /// The integrator of steps that do not depend on those before.
     kept: Option<Box<dyn Integrator>>,
     pattern: Option<u64>,
+    /// Whether it passes through obstacles.
+    passes: bool,
+    /// What counts as inside, beside its step.
+    touching: Touching,
 }
 
 impl<'a> Replayer<'a> {
@@ -384,6 +407,24 @@ impl<'a> Replayer<'a> {
     /// From now on moves every force by its rounding in the direction of a pattern, or by nothing.
     pub(super) fn nudge(&mut self, pattern: Option<u64>) {
         self.pattern = pattern;
+    }
+
+    /// Does something in the other ways that rounding may decide where something touches: without the impact of a located
+    /// one, else with what touches inside or not.
+    pub(super) fn otherwise<T>(&mut self, mut what: impl FnMut(&mut Self) -> T) -> Vec<T> {
+        if self.candidate.bounce.is_none() {
+            self.passes = true;
+            let done = what(self);
+            self.passes = false;
+            return vec![done];
+        }
+        let mut with = |touching| {
+            self.touching = touching;
+            let done = what(self);
+            self.touching = Touching::Exactly;
+            done
+        };
+        vec![with(Touching::Inside), with(Touching::Near)]
     }
 
     /// Advances `state`, which is at step `step`, by `span` steps of `h` seconds. `before` is the
@@ -430,9 +471,10 @@ impl<'a> Replayer<'a> {
             let before = previous.as_ref();
             let fresh = |before| step.build(&self.settings, before);
             let beside = candidate.beside(system);
-            let taken = |by: &mut dyn Integrator, f: &dyn System, h, s: &mut State| match beside {
-                Some(_) => by.step(f, h, s),
-                None => events::through(by, f, h, s).map(|_| ()),
+            let passes = self.passes || beside.is_some();
+            let taken = |by: &mut dyn Integrator, f: &dyn System, h, s: &mut State| match passes {
+                true => by.step(f, h, s),
+                false => events::through(by, f, h, s).map(|_| ()),
             };
             let mut free = |state: &mut State| {
                 let x = candidate.scaling.is_some().then(|| state.x.clone());
@@ -452,7 +494,13 @@ impl<'a> Replayer<'a> {
                 Ok(())
             };
             match beside {
-                Some((bounce, obstacles)) => bounce.step(obstacles, inner, state, &mut free)?,
+                Some((bounce, obstacles)) => {
+                    let bounce = Bounce {
+                        touching: self.touching,
+                        ..*bounce
+                    };
+                    bounce.step(obstacles, inner, state, &mut free)?;
+                }
                 None => free(state)?,
             }
             state.t = (part + 1) as f64 * part_of_h;

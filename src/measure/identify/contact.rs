@@ -1,50 +1,53 @@
 //! What a trajectory's program does at contact: of the steps beside obstacles, which treatment explains all to rounding.
 
 mod fitted;
+mod numbers;
+mod order;
+mod search;
 
 use super::Question;
-use super::bounce::{self, Bounce, PLACES, Row, WAYS, Way, pressed};
+use super::bounce::{Bounce, WAYS, pressed};
 use super::candidate::Candidate;
 use super::race::{Race, defects_of_all, quantile};
-use super::replay::{Defect, Replay};
+use super::replay::Defect;
 use super::result::{Deviation, Explained, Identity, Treated, Undecided};
 use super::transition::{Transition, Weighed, beside, choose, spread};
 use super::treated::treated;
 use crate::integrators;
 use crate::physics::System;
-use crate::physics::constraints::contact::Obstacles;
 use crate::trajectory::Rows;
-use rayon::prelude::*;
+use search::{Search, Told};
 
 /// Steps beside obstacles that are replayed, at most.
 const SAMPLE: usize = 64;
+/// Steps away from obstacles that are looked at besides.
+const LEFT: usize = 8;
 /// With fewer steps away from obstacles than these, all name the scheme.
 const FEWEST: usize = 8;
-/// Replays of a transition that a candidate takes, about: most are told in their first.
-const REPLAYS: u64 = 6;
 /// Where nearly all steps are beside obstacles, the scheme is looked for among these.
-const USUAL: [&str; 4] = [
+const USUAL: [&str; 5] = [
     "symplectic_euler",
     "velocity_verlet",
     "rk4",
     "explicit_euler",
+    "midpoint",
 ];
-/// Schemes that treatments are looked for with; of those that a trajectory cannot tell apart elsewhere, the first.
-const SCHEMES: usize = 4;
 
 /// The steps away from obstacles, or all where these are few, and those beside some.
+#[derive(Clone)]
 pub(super) struct Apart {
     pub(super) away: Vec<Weighed>,
     /// Whether those are all.
     mixed: bool,
-    /// The liveliest first.
+    /// Some of those beside obstacles, the liveliest first.
     pub(super) beside: Vec<Transition>,
+    /// All of them.
+    met: Vec<Transition>,
     /// How deep a particle is inside, m.
     deepest: f64,
 }
 
-/// Parts the steps of a trajectory. Where nothing stands in the way, of an engine whose contact is known, and without
-/// velocities, which positions do not tell across an impact, all are away.
+/// Parts the steps of a trajectory. Where nothing stands in the way, and of an engine whose contact is known, all are away.
 pub(super) fn apart(question: &Question) -> Apart {
     let Question {
         rows,
@@ -52,14 +55,12 @@ pub(super) fn apart(question: &Question) -> Apart {
         transitions,
         ..
     } = *question;
-    let told = question.hint.is_none() && rows.v.is_some();
-    // A penalty is a force as any other.
-    let impulses = |all: &&Obstacles| told && all.penalty().is_none();
-    let Some(obstacles) = system.obstacles().filter(impulses) else {
+    let Some(obstacles) = system.obstacles().filter(|_| question.hint.is_none()) else {
         return Apart {
             away: choose(rows, system, transitions),
             mixed: false,
             beside: Vec::new(),
+            met: Vec::new(),
             deepest: 0.0,
         };
     };
@@ -84,6 +85,7 @@ pub(super) fn apart(question: &Question) -> Apart {
         away: spread(&away, most),
         mixed,
         beside: liveliest(rows, &met, most.min(SAMPLE)),
+        met,
         deepest,
     }
 }
@@ -105,125 +107,6 @@ fn liveliest(rows: &Rows, all: &[Transition], most: usize) -> Vec<Transition> {
     lively.into_iter().chain(even).collect()
 }
 
-/// What is replayed to find a treatment.
-struct Search<'a> {
-    question: &'a Question<'a>,
-    replay: &'a Replay<'a>,
-    apart: &'a Apart,
-}
-
-/// The schemes, of those that are no others away from obstacles, that a treatment explains all steps beside them with.
-struct Told {
-    bounce: Bounce,
-    schemes: Vec<Candidate>,
-}
-
-impl Search<'_> {
-    fn fits(&self, candidate: &Candidate) -> bool {
-        let mut replayer = candidate.replayer(&self.replay.settings);
-        let mut all = self.apart.beside.iter();
-        all.all(|t| self.replay.defect(&mut replayer, t).fits())
-    }
-
-    /// The schemes that fit with this treatment.
-    fn fitting(&self, schemes: &[Candidate], bounce: &Bounce) -> Vec<Candidate> {
-        let Question { scene, system, .. } = self.question;
-        let with = |scheme: &&Candidate| {
-            let candidate = scheme.bouncing(scene, system, bounce);
-            candidate.is_some_and(|candidate| self.fits(&candidate))
-        };
-        schemes.iter().filter(with).cloned().collect()
-    }
-
-    fn told(&self, schemes: &[Candidate], bounces: &[Bounce]) -> Option<Told> {
-        bounces.par_iter().find_map_first(|bounce| {
-            let schemes = self.fitting(schemes, bounce);
-            (!schemes.is_empty()).then_some(Told {
-                bounce: *bounce,
-                schemes,
-            })
-        })
-    }
-
-    /// The treatment with the fewest mistakes, a simpler one first, and the schemes that explain all steps with it; None
-    /// where none does. And whether all were tried.
-    fn search(
-        &self,
-        all: &[Candidate],
-        obstacles: &Obstacles,
-        budget: u64,
-    ) -> (Option<Told>, bool) {
-        let (explicit, implicit): (Vec<_>, Vec<_>) = all.iter().cloned().partition(|c| !c.solves());
-        let few = explicit.into_iter().chain(implicit).take(SCHEMES);
-        let few: Vec<Candidate> = few.collect();
-        let first = self.apart.beside.first();
-        let each = few
-            .iter()
-            .zip(first)
-            .map(|(scheme, t)| self.replay.effort(scheme, t));
-        let each = each.fold(0, u64::saturating_add).saturating_mul(REPLAYS);
-        let affordable = (budget / each.max(1)) as usize;
-        let bounces = bounce::all(obstacles, self.question.rows.timestep);
-        let (right, wrong) =
-            bounces.split_at(bounces.partition_point(|b| b.mistakes().next().is_none()));
-        let whole = affordable >= bounces.len() + fitted::REPLAYS;
-        let mut told = self.told(&few, &right[..right.len().min(affordable)]);
-        if whole {
-            told = told
-                .or_else(|| fitted::found(self, all))
-                .or_else(|| self.told(&few, wrong));
-        }
-        let told = told.map(|told| {
-            let others = self.fitting(all, &told.bounce);
-            let own = told.schemes.iter();
-            let new = own.filter(|own| others.iter().all(|other| other.label() != own.label()));
-            let schemes = others.iter().chain(new).cloned().collect();
-            Told { schemes, ..told }
-        });
-        (told, whole)
-    }
-
-    /// What is said of contact.
-    fn treated(&self, told: Option<&Told>) -> Treated {
-        let force = told.map(|told| told.bounce.force);
-        let force = force.filter(|[stiffness, _]| *stiffness != 0.0);
-        let says = "no known treatment explains";
-        Treated {
-            treatment: told.map(|told| told.bounce.label()),
-            says: told.map_or_else(|| says.to_owned(), |told| told.bounce.says()),
-            mistakes: told.map_or_else(Vec::new, |told| {
-                told.bounce.mistakes().map(str::to_owned).collect()
-            }),
-            deepest_m: self.apart.deepest,
-            stiffness_n_m: force.map(|force| force[0]),
-            damping_n_s_m: force.map(|force| force[1]),
-            steps: self.apart.beside.len(),
-            equivalent: told.map_or_else(Vec::new, |told| self.equivalent(told)),
-            bounce: told.map(|told| told.bounce),
-        }
-    }
-
-    /// The other ways and places that explain all steps too.
-    fn equivalent(&self, told: &Told) -> Vec<String> {
-        let alike = |way: &&Row<Way>| match told.bounce.way.does {
-            Way::Force { .. } => matches!(way.does, Way::Force { .. }),
-            Way::Event | Way::Once(_) => matches!(way.does, Way::Event | Way::Once(_)),
-            Way::Never => false,
-        };
-        let others = WAYS.iter().filter(alike).flat_map(|way| {
-            let places = PLACES.iter().map(|place| Bounce {
-                way,
-                place,
-                ..told.bounce
-            });
-            places.filter(Bounce::is_sensible)
-        });
-        let others = others.filter(|other| *other != told.bounce);
-        let fitting = others.filter(|other| !self.fitting(&told.schemes, other).is_empty());
-        fitting.map(|other| other.label()).collect()
-    }
-}
-
 /// Adds what is known of contact to an identity that was found away from obstacles, and narrows its equals.
 pub(super) fn told(
     question: &Question,
@@ -234,11 +117,23 @@ pub(super) fn told(
     let (Some(obstacles), false) = (question.system.obstacles(), apart.beside.is_empty()) else {
         return identity;
     };
-    let search = Search {
-        question,
-        replay: race.replay,
-        apart,
+    let unjudged = |says: &str| {
+        Some(Treated {
+            unjudged: true,
+            says: says.to_owned(),
+            deepest_m: apart.deepest,
+            steps: apart.beside.len(),
+            ..Treated::default()
+        })
     };
+    if question.rows.v.is_none() {
+        // Across an impact positions do not tell a velocity.
+        let contact = unjudged("positions alone do not tell what it does at contact");
+        return Identity {
+            contact,
+            ..identity
+        };
+    }
     let named = |candidate: &Candidate| {
         let own = (&candidate.id, candidate.substeps) == (&identity.method, identity.substeps);
         match own {
@@ -250,18 +145,38 @@ pub(super) fn told(
     let mut schemes: Vec<Candidate> = all.filter(|c| named(c)).cloned().collect();
     schemes.sort_by_key(|scheme| scheme.id != identity.method);
     schemes.dedup_by_key(|scheme| scheme.label());
-    let right = Bounce::new(&WAYS[0]);
-    let free = Bounce::new(&WAYS[WAYS.len() - 1]);
-    if !search.fitting(&schemes, &right).is_empty() && !search.fitting(&schemes, &free).is_empty() {
-        // Nothing was touched.
+    // Steps away from obstacles that leave the scheme may be beside those of the program.
+    let leaves = identity.followed < identity.transitions && !apart.mixed;
+    let more = match schemes.first().filter(|_| leaves) {
+        Some(scheme) => left(race, scheme, &apart.away),
+        None => Vec::new(),
+    };
+    let apart = Apart {
+        met: apart.met.iter().chain(&more).copied().collect(),
+        ..apart.clone()
+    };
+    let search = Search {
+        question,
+        replay: race.replay,
+        apart: &apart,
+    };
+    let fits = |way| !search.fitting(&schemes, &Bounce::new(way)).is_empty();
+    // Nothing was touched where contact makes no difference.
+    let touched = !fits(&WAYS[0]) || !WAYS.last().is_none_or(fits);
+    if !touched && more.is_empty() {
         return identity;
     }
     let budget = race.budget.max(question.budget / 4);
-    let (found, whole) = search.search(&schemes, obstacles, budget);
+    let (found, whole) = order::found(&search, &schemes, obstacles, budget);
+    let right = |told: &Told| told.bounce.mistakes().next().is_none();
+    if !touched && found.as_ref().is_none_or(right) {
+        return identity;
+    }
     if found.is_none() && !whole {
         let own = identity.left_out.iter().cloned();
         return Identity {
             left_out: own.chain(["treatments of contact".to_owned()]).collect(),
+            contact: unjudged("what it does at contact would take too long to find"),
             ..identity
         };
     }
@@ -296,20 +211,26 @@ pub(super) fn told(
     }
 }
 
+/// A few of these steps that a scheme does not explain.
+fn left(race: &Race, scheme: &Candidate, away: &[Weighed]) -> Vec<Transition> {
+    let all: Vec<Transition> = away.iter().map(|w| w.transition).collect();
+    let defects = defects_of_all(race.replay, scheme, &all);
+    let left = all.iter().zip(defects).filter(|(_, defect)| !defect.fits());
+    left.map(|(t, _)| *t).take(LEFT).collect()
+}
+
 /// The identity of rows beside obstacles nearly throughout, which name a scheme and a treatment together.
 pub(super) fn together(question: &Question, race: &Race, apart: &Apart) -> Option<Identity> {
-    let obstacles = question.system.obstacles().filter(|_| apart.mixed)?;
+    let told = apart.mixed && question.rows.v.is_some();
+    let obstacles = question.system.obstacles().filter(|_| told)?;
     let search = Search {
         question,
         replay: race.replay,
         apart,
     };
-    let usual = USUAL.iter().filter_map(|id| integrators::find(id));
-    let usual = usual.filter(|method| method.is_its_own(question.system.kinds()));
-    let usual = usual.map(|method| Candidate::method(question.system, method, 1));
-    let schemes: Vec<Candidate> = usual.chain(treated(question.system)).collect();
+    let schemes: Vec<Candidate> = usual(question).chain(treated(question.system)).collect();
     let budget = race.budget.max(question.budget / 4);
-    let found = search.search(&schemes, obstacles, budget).0?;
+    let found = order::found(&search, &schemes, obstacles, budget).0?;
     let Question { scene, system, .. } = question;
     let all: Vec<Transition> = apart.away.iter().map(|w| w.transition).collect();
     let defects = |scheme: &Candidate| {
@@ -331,6 +252,13 @@ pub(super) fn together(question: &Question, race: &Race, apart: &Apart) -> Optio
         contact: Some(search.treated(Some(&found))),
         ..Identity::of(first)
     })
+}
+
+fn usual(question: &Question) -> impl Iterator<Item = Candidate> {
+    let system = question.system;
+    let usual = USUAL.iter().filter_map(|id| integrators::find(id));
+    let usual = usual.filter(|method| method.is_its_own(system.kinds()));
+    usual.map(|method| Candidate::method(system, method, 1))
 }
 
 /// Schemes that differ in their treatment of dampers where these are those of a penalty.

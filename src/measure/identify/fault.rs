@@ -17,6 +17,7 @@ use super::transition::{Transition, is_finite, neighbours};
 use super::{HALF_SAMPLE, Identity, Question, Undecided, candidates, contact, rods, transition};
 use crate::integrators;
 use crate::measure::identify::Fault;
+use crate::physics::{ParticleSystem, System};
 use crate::trajectory::Rows;
 use rayon::prelude::*;
 use spot::Spot;
@@ -50,18 +51,30 @@ pub fn first_fault(question: &Question, identity: &Identity) -> Option<Fault> {
         .find(named)
         .or_else(damped)
         .or_else(|| fitted(question).into_iter().find(named))?;
-    let Some(bounce) = bounce else {
-        let unknown = |fault: Fault| match treated {
-            Some(treated) => Fault {
-                explanation: format!("{} what it does at contact", treated.says),
-                ..fault
-            },
-            None => fault,
-        };
-        return first_departure(question, &candidate).map(unknown);
+    let Some(treated) = treated else {
+        return first_departure(question, &candidate);
     };
-    let candidate = candidate.bouncing(question.scene, question.system, bounce)?;
-    first_departure(question, &candidate)
+    let Some(bounce) = bounce else {
+        let says = treated.says.clone();
+        return match treated.unjudged {
+            true => departure(question, &candidate, &|t| !met(question, t), |spot| {
+                spot.explained()
+            }),
+            false => departure(question, &candidate, &|_| true, |spot| spot.counted(says)),
+        };
+    };
+    if treated.mistakes.is_empty() {
+        let candidate = candidate.bouncing(question.scene, question.system, bounce)?;
+        return first_departure(question, &candidate);
+    }
+    let says = format!("at contact it {}", treated.says);
+    departure(question, &candidate, &|_| true, |spot| spot.counted(says))
+}
+
+/// Whether something may touch in a transition.
+fn met(question: &Question, t: &Transition) -> bool {
+    let obstacles = question.system.obstacles();
+    obstacles.is_some_and(|all| transition::beside(all, question.rows, t).is_some())
 }
 
 /// The candidates with a number that the rows tell.
@@ -89,6 +102,21 @@ fn followed_everywhere(rows: &Rows, identity: &Identity) -> bool {
 
 /// The first transition that does not follow a candidate of the caller's choice.
 pub fn first_departure(question: &Question, candidate: &Candidate) -> Option<Fault> {
+    departure(question, candidate, &|_| true, |spot| {
+        match candidate.says.as_ref().filter(|_| candidate.mistake) {
+            None => spot.explained(),
+            Some(says) => spot.throughout(says.to_string()),
+        }
+    })
+}
+
+/// The first of some transitions that does not follow a candidate, and how that is told.
+fn departure(
+    question: &Question,
+    candidate: &Candidate,
+    some: &dyn Fn(&Transition) -> bool,
+    told: impl FnOnce(&Spot) -> Fault,
+) -> Option<Fault> {
     let Question {
         scene,
         system,
@@ -103,17 +131,20 @@ pub fn first_departure(question: &Question, candidate: &Candidate) -> Option<Fau
     } else {
         candidate.clone()
     };
-    let transitions: Vec<Transition> = neighbours(rows).collect();
+    let start = ParticleSystem::initial_state(scene);
+    let begins = rows.steps.first() == Some(&0) && rows.v(0) == Some(&start.v[..]);
+    // Velocities that are staggered in the first row already are not begun again.
+    let followed = if begins {
+        followed
+    } else {
+        followed.begun_before()
+    };
+    let transitions: Vec<Transition> = neighbours(rows).filter(|t| some(t)).collect();
     let departures = departures(&replay, &followed, &transitions);
     // A closer look at one may find that rounding explains it after all.
     let spot = (0..departures.len())
         .find_map(|k| Spot::new(question, &replay, &followed, &transitions, &departures[k..]))?;
-    Some(
-        match candidate.says.as_ref().filter(|_| candidate.mistake) {
-            None => spot.explained(),
-            Some(says) => spot.throughout(says.to_string()),
-        },
-    )
+    Some(told(&spot))
 }
 
 /// The indices of the transitions that do not follow the candidate, in order.

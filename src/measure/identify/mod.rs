@@ -35,8 +35,8 @@ mod words;
 
 pub use altered::{Around, OneStep};
 pub use bounce::{
-    Bounce, FRICTIONS, Friction, Lift, PLACES, RESTITUTIONS, Restitution, Row, WAYS, Way,
-    treatments,
+    Bounce, FRICTIONS, Friction, Lift, Own, PARTNERS, PLACES, Partner, RESTITUTIONS, Restitution,
+    Row, Shares, Size, Touching, WAYS, Way, Wrong as WrongNumber, treatments,
 };
 pub use candidate::{Candidate, Factor, Forces, Replayer, ScaledAt, Scaling};
 pub use compose::{composed, composed_schemes};
@@ -133,6 +133,19 @@ fn found(question: &Question) -> Option<Found> {
     let plain = |n: u32| Candidate::plain(system, n);
     race.enter(expected(question).into_iter().collect(), None);
     race.enter(plain(1).collect(), None);
+    let together = |race: &Race| {
+        let identity = contact::together(question, race, &apart)?;
+        Some(Found {
+            explained: contact::explained(&identity),
+            identity: Some(identity),
+        })
+    };
+    // In contact nearly throughout, friction is told from gravity by what treatments leave.
+    if !race.decided()
+        && let Some(found) = together(&race)
+    {
+        return Some(found);
+    }
     // Digits that are few tell fewer schemes apart, and that is to be said.
     let coarse = rows.precision != Precision::Double;
     if coarse || !race.decided() {
@@ -170,17 +183,16 @@ fn found(question: &Question) -> Option<Found> {
         if race.exact(ranking.winner) && Some(ranking.winner) != first {
             return Some(explain::of_truth(&identity));
         }
+        if identity.followed < identity.transitions
+            && let Some(found) = together(&race)
+        {
+            return Some(found);
+        }
         let identity = contact::told(question, &race, &apart, identity);
         let identity = compose::staggered(system, scene, rows, identity);
         let explained = explain::of_mistake(scene, &identity);
         return Some(Found {
             explained: explained.or_else(|| contact::explained(&identity)),
-            identity: Some(identity),
-        });
-    }
-    if let Some(identity) = contact::together(question, &race, &apart) {
-        return Some(Found {
-            explained: contact::explained(&identity),
             identity: Some(identity),
         });
     }

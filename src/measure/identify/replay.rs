@@ -1,6 +1,8 @@
 //! One replay: the row a candidate makes from a row, and how far that is from the next row in units
 //! of rounding.
 
+mod outcome;
+
 use super::altered::sign;
 use super::candidate::{Candidate, Replayer};
 use super::transition::{Transition, beside};
@@ -10,6 +12,7 @@ use crate::integrators::{Settings, StepError};
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{Drive, Scene};
 use crate::trajectory::{Precision, Rows};
+use outcome::{Outcome, grow, jump};
 
 /// A transition follows a scheme if its defect is at most this many units.
 ///
@@ -99,6 +102,8 @@ pub struct Replay<'a> {
     differenced: bool,
     /// Whether the rows themselves are known no better than an iterative solve's tolerance.
     pub(super) iterated: bool,
+    /// Velocities that rounding parts by more are those of other impacts, m/s; infinite where nothing collides.
+    jump: f64,
 }
 
 impl<'a> Replay<'a> {
@@ -135,6 +140,7 @@ impl<'a> Replay<'a> {
             length: lengths.fold(0.0, f64::max),
             differenced: is_differenced(rows),
             iterated: false,
+            jump: jump(system, rows),
         })
     }
 
@@ -171,7 +177,10 @@ impl<'a> Replay<'a> {
     ) -> Result<Vec<f64>, StepError> {
         let mut grown = vec![0.0; self.recorded(transition).count()];
         for pattern in 0..nudges {
-            self.grow(replayer, transition, predicted, pattern, &mut grown)?;
+            let nudged = self.predict_nudged(replayer, transition, Some(pattern))?;
+            if !self.jumps(predicted, &nudged) {
+                grow(predicted, &nudged, &mut grown);
+            }
         }
         Ok(self.with_own(replayer, transition, predicted, &grown))
     }
@@ -188,15 +197,7 @@ impl<'a> Replay<'a> {
         transition: &Transition,
     ) -> Result<Defect, StepError> {
         let predicted = self.predict(replayer, transition)?;
-        let off: Vec<f64> = self
-            .recorded(transition)
-            .zip(predicted.x.iter().chain(&predicted.v))
-            .enumerate()
-            .map(|(i, (recorded, predicted))| match self.is_driven(i) {
-                true => 0.0,
-                false => (predicted - recorded).abs(),
-            })
-            .collect();
+        let off: Vec<f64> = self.apart(transition, &predicted).collect();
         if off.iter().all(|d| *d == 0.0) {
             return Ok(Defect {
                 units: 0.0,
@@ -206,13 +207,33 @@ impl<'a> Replay<'a> {
         let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
         let moved: Vec<f64> = self.moved(transition).collect();
         let far = most(&off) > FAR * most(&moved);
-        let mut grown = vec![0.0; off.len()];
+        let numbers = off.len();
+        let mut outcomes = vec![Outcome::new(predicted, numbers)];
+        if far && self.touches(replayer, transition) {
+            // What touches at a row may be struck in the step before it, or after it.
+            let others = replayer.otherwise(|other| self.predict(other, transition));
+            for other in others.into_iter().flatten() {
+                if outcomes.iter().all(|one| self.jumps(&one.state, &other)) {
+                    outcomes.push(Outcome::new(other, numbers));
+                }
+            }
+        }
         let mut pattern = 0;
         loop {
-            self.grow(replayer, transition, &predicted, pattern, &mut grown)?;
+            let nudged = self.predict_nudged(replayer, transition, Some(pattern))?;
+            let mut known = outcomes.iter_mut();
+            match known.find(|outcome| !self.jumps(&outcome.state, &nudged)) {
+                Some(outcome) => grow(&outcome.state, &nudged, &mut outcome.grown),
+                None => outcomes.push(Outcome::new(nudged, numbers)),
+            }
+            // Until one of its own is met, an outcome is as uncertain as the others.
+            for k in 1..outcomes.len() {
+                let grown = outcomes[0].grown.clone();
+                let pairs = outcomes[k].grown.iter_mut().zip(grown);
+                pairs.for_each(|(own, first)| *own = own.max(first));
+            }
             pattern += 1;
-            let units = self.with_own(replayer, transition, &predicted, &grown);
-            let defect = largest_ratio(&off, &units);
+            let (defect, off, units) = self.least(replayer, transition, &outcomes);
             let enough = if far { 1 } else { FEW };
             let clear = defect <= CLEAR || (defect > HOPELESS && pattern >= enough);
             if clear || pattern == NUDGES {
@@ -232,6 +253,18 @@ impl<'a> Replay<'a> {
                 });
             }
         }
+    }
+
+    /// The distances of a state from what is recorded at the end; 0 of what no scheme computes.
+    fn apart(&self, transition: &Transition, state: &State) -> impl Iterator<Item = f64> {
+        let pairs = self
+            .recorded(transition)
+            .zip(state.x.iter().chain(&state.v));
+        let pairs = pairs.enumerate();
+        pairs.map(|(i, (recorded, predicted))| match self.is_driven(i) {
+            true => 0.0,
+            false => (predicted - recorded).abs(),
+        })
     }
 
     /// The largest distance of a state from what is recorded at the end, in these units.
@@ -267,29 +300,6 @@ impl<'a> Replay<'a> {
     pub(super) fn is_driven(&self, i: usize) -> bool {
         let particle = i % self.rows.dim / 3;
         self.drives.iter().any(|drive| drive.particle == particle)
-    }
-
-    /// Raises `grown` to how far away inputs moved in this direction end.
-    fn grow(
-        &self,
-        replayer: &mut Replayer,
-        transition: &Transition,
-        predicted: &State,
-        pattern: u64,
-        grown: &mut [f64],
-    ) -> Result<(), StepError> {
-        let nudged = self.predict_nudged(replayer, transition, Some(pattern))?;
-        let here = predicted.x.iter().chain(&predicted.v);
-        let there = nudged.x.iter().chain(&nudged.v);
-        let apart: Vec<f64> = here.zip(there).map(|(a, b)| (a - b).abs()).collect();
-        // By particle, since chance may leave one of its axes where it was.
-        for (grown, apart) in grown.chunks_mut(3).zip(apart.chunks(3)) {
-            let most = apart.iter().fold(0.0, |most: f64, d| most.max(*d));
-            for grown in grown {
-                *grown = grown.max(most);
-            }
-        }
-        Ok(())
     }
 
     /// What inputs have grown to, plus the rounding of the recorded number and the solve's

@@ -35,8 +35,8 @@ pub struct Identity {
     /// Candidates that were not tried, for want of time.
     #[serde(default)]
     pub left_out: Vec<String>,
-    /// What it does at contact with obstacles; absent where nothing was touched in the replayed steps, without velocities,
-    /// and for springcheck's own engines, whose contact is known.
+    /// What it does at contact; absent where nothing was touched in the replayed steps, and for springcheck's own engines,
+    /// whose contact is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<Treated>,
     /// Whether it is a known mistake.
@@ -71,7 +71,10 @@ pub struct Treated {
     /// another id, and after each + what else is not as usual: `flip_at_end+clamped`; null where no known treatment
     /// explains the steps.
     pub treatment: Option<String>,
-    /// What it does, after "at contact it"; empty for the impulse at the impact.
+    /// Whether nothing can be said of it: without velocities, and where there are too many treatments to try.
+    #[serde(default)]
+    pub unjudged: bool,
+    /// What it does, after "at contact it"; empty for the impulse at the impact. Where there is no treatment, why.
     pub says: String,
     /// The ids of what is wrong about it.
     pub mistakes: Vec<String>,
@@ -83,7 +86,7 @@ pub struct Treated {
     pub damping_n_s_m: Option<f64>,
     /// Steps beside obstacles that were replayed.
     pub steps: usize,
-    /// Treatments that these steps cannot tell from it.
+    /// Treatments that these steps cannot tell from it; with another scheme where that is said.
     pub equivalent: Vec<String>,
     /// Its rows.
     #[serde(skip)]

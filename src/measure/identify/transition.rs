@@ -1,7 +1,8 @@
 //! The pairs of rows that are replayed.
 
-use crate::physics::constraints::contact::Obstacles;
+use crate::physics::constraints::contact::{Against, Obstacles};
 use crate::physics::{ParticleSystem, System};
+use crate::space::{minus, norm, three};
 use crate::trajectory::Rows;
 
 /// A replay from one row to a later one.
@@ -128,30 +129,49 @@ fn motion(rows: &Rows, system: &ParticleSystem, t: &Transition) -> f64 {
     if most.is_finite() { most } else { f64::MAX }
 }
 
-/// The depth of the deepest particle, m, where one is so near an obstacle that it may meet it within these rows.
+/// The depth of the deepest particle, m, where one is so near an obstacle, or another particle, that it may meet it within
+/// these rows. Without velocities the rows before them count, too.
 pub(super) fn beside(obstacles: &Obstacles, rows: &Rows, t: &Transition) -> Option<f64> {
-    let times = [rows.time(t.from), rows.time(t.to)];
+    let before = t.before.filter(|_| rows.v.is_none());
+    let earlier = before.and_then(|before| beside_two(obstacles, rows, [before, t.from]));
+    let own = beside_two(obstacles, rows, [t.from, t.to]);
+    match (earlier, own) {
+        (Some(a), Some(b)) => Some(a.max(b)),
+        (a, b) => a.or(b),
+    }
+}
+
+fn beside_two(obstacles: &Obstacles, rows: &Rows, ends: [usize; 2]) -> Option<f64> {
+    let times = ends.map(|k| rows.time(k));
     let seconds = times[1] - times[0];
+    let at = |end: usize| move |particle: usize| three(rows.x(ends[end]), particle);
+    // The way in between is no longer, unless forces are large.
+    let way = |particle: usize| {
+        let speeds = ends.map(|k| rows.v(k).map_or(0.0, |v| norm(three(v, particle))));
+        let moved = norm(minus(at(1)(particle), at(0)(particle)));
+        moved + seconds * (speeds[0] + speeds[1]) + obstacles.close(at(0)(particle))
+    };
     let mut found: Option<f64> = None;
-    for (particle, obstacle) in obstacles.pairs() {
-        let three = |all: &[f64]| [0, 1, 2].map(|axis| all[3 * particle + axis]);
-        let x = [t.from, t.to].map(|k| three(rows.x(k)));
-        let speeds = [t.from, t.to].map(|k| rows.v(k).map_or(0.0, |v| length(three(v), [0.0; 3])));
-        // The way in between is no longer, unless forces are large.
-        let way = length(x[1], x[0]) + seconds * (speeds[0] + speeds[1]);
-        let gaps = [0, 1].map(|end| obstacles.gap(particle, obstacle, times[end], |_| x[end]));
-        let reach = way + obstacles.reach(obstacle, times[0], times[1]) + obstacles.close(x[0]);
+    let mut look = |(particle, against): (usize, Against), reach: f64| {
+        let gaps = [0, 1].map(|end| obstacles.gap(particle, against, times[end], at(end)));
         if gaps[0] <= reach || gaps[1] <= reach {
             let depth = -gaps[0].min(gaps[1]);
             found = Some(found.unwrap_or(0.0).max(depth));
         }
+    };
+    for (particle, against) in obstacles.pairs() {
+        let moved = obstacles.reach(against, times[0], times[1]);
+        look((particle, against), way(particle) + moved);
+    }
+    if obstacles.among_particles() {
+        let near = obstacles.near(times, |particle| (at(0)(particle), way(particle)));
+        for pair in near.pairs() {
+            if let Against::Particle(other) = pair.1 {
+                look(pair, way(pair.0) + way(other));
+            }
+        }
     }
     found
-}
-
-fn length(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
-    squares.sum::<f64>().sqrt()
 }
 
 /// At most `limit` of them, evenly spread, both ends included.

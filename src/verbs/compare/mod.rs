@@ -12,7 +12,7 @@ use crate::verbs::cli::flags::{self, demand, plane};
 use crate::verbs::cli::interrupt;
 use crate::verbs::cli::output::{self, Output};
 use crate::verbs::cli::terminal::{self, Terminal};
-use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity};
+use crate::verbs::run::{Choice, Expectations, Orders, Plan, identity, missed};
 use crate::verbs::scheme::Scheme;
 use crate::verbs::session::Session;
 use crate::verbs::{Body, Report};
@@ -190,8 +190,8 @@ pub(in crate::verbs) fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The exit code. 0: it follows a scheme throughout; 1: it follows a known mistake, or leaves its scheme; 3: no scheme
-/// explains it to rounding.
+/// The exit code. 0: it follows a scheme throughout; 1: it follows a known mistake, leaves its scheme, or misses a law of
+/// contact; 3: no scheme explains it to rounding.
 fn code(report: &Report) -> u8 {
     let left = matches!(report.body, Body::Compare { fault: Some(_), .. });
     let checks = &report.header.checks;
@@ -205,7 +205,12 @@ fn code(report: &Report) -> u8 {
         let left = left && asked.iter().any(|check| check.subject == "--expect");
         return u8::from(failed || left);
     }
-    if left {
+    let misses = |outcome| !missed(outcome).is_empty();
+    let found = report
+        .outcomes()
+        .first()
+        .is_some_and(|outcome| outcome.identified.is_some() && misses(outcome));
+    if left || found {
         return 1;
     }
     let found = report

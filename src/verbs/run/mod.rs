@@ -28,6 +28,7 @@ pub use expect::names;
 pub(super) use figures::FIGURES;
 pub use plan::{Case, Choice, Expectations, Orders, Plan};
 pub use result::{Curves, Outcome, PlotAxis, RunSeries, TruthCurves, WorkSummary};
+pub use text::missed;
 pub(super) use text::{page, view};
 
 use crate::measure::stability::Linearised;

@@ -1,6 +1,9 @@
 //! All treatments without a number.
 
-use super::{Bounce, FRICTIONS, Friction, PLACES, RESTITUTIONS, Restitution, Row, WAYS, Way};
+use super::{
+    Bounce, FRICTIONS, Friction, Lift, PARTNERS, PLACES, Partner, RESTITUTIONS, Restitution, Row,
+    WAYS, Way,
+};
 use crate::physics::constraints::contact::{Hit, Obstacles};
 
 /// Mistakes that are looked for at once.
@@ -9,39 +12,26 @@ const MOST: usize = 2;
 /// The treatments without a number, those with fewer mistakes first, that differ for these obstacles in steps of `h`
 /// seconds.
 pub(in super::super) fn all(obstacles: &Obstacles, h: f64) -> Vec<Bounce> {
-    let hits = |h: f64| {
-        let hits = obstacles.surfaces().flat_map(move |surface| {
-            [[1.3, 0.7], [0.4, 2.1], [3.0, 1e-9]].map(|[approach, sliding]| Hit {
-                approach,
-                sliding,
-                restitution: surface.restitution,
-                friction: surface.friction[0],
-                h,
-            })
-        });
-        hits.collect::<Vec<Hit>>()
-    };
     let mut all = Vec::new();
     for way in WAYS
         .iter()
         .filter(|way| !matches!(way.does, Way::Force { .. }))
     {
-        let hits = hits(if is_event(way) { 0.0 } else { h });
-        let gains = |row: &Row<Restitution>| {
-            let gains = hits.iter().map(|hit| (row.does.gains)(hit).to_bits());
-            (row.does.leaving, gains.collect::<Vec<u64>>())
-        };
-        let slows = |row: &Row<Friction>| {
-            let slows = hits
-                .iter()
-                .map(|hit| (row.does)(hit, (1.0 + hit.restitution) * hit.approach));
-            slows.map(f64::to_bits).collect::<Vec<u64>>()
-        };
-        for place in PLACES {
-            for restitution in &different(RESTITUTIONS, gains) {
-                for friction in &different(FRICTIONS, slows) {
+        let hits = hits(obstacles, way, h);
+        let (restitutions, frictions) = (
+            different(RESTITUTIONS, |row| gains(row, &hits)),
+            different(FRICTIONS, |row| slows(row, &hits)),
+        );
+        let (places, partners) = relevant(obstacles);
+        for (place, partner) in places
+            .iter()
+            .flat_map(|place| partners.iter().map(move |partner| (place, partner)))
+        {
+            for restitution in &restitutions {
+                for friction in &frictions {
                     let bounce = Bounce {
                         place,
+                        partner,
                         restitution,
                         friction,
                         ..Bounce::new(way)
@@ -57,8 +47,90 @@ pub(in super::super) fn all(obstacles: &Obstacles, h: f64) -> Vec<Bounce> {
     all
 }
 
-fn is_event(way: &Row<Way>) -> bool {
-    matches!(way.does, Way::Event)
+/// The places and partners that make a difference beside these obstacles.
+pub(in super::super) fn relevant(
+    obstacles: &Obstacles,
+) -> (Vec<&'static Row<Lift>>, Vec<&'static Row<Partner>>) {
+    let masses = obstacles
+        .particles()
+        .map(|one| obstacles.weight(one).to_bits());
+    let mut masses: Vec<u64> = masses.collect();
+    masses.sort_unstable();
+    masses.dedup();
+    let unequal = obstacles.among_particles() && masses.len() > 1;
+    let place = |row: &&Row<Lift>| unequal || !row.does.halves;
+    let partner = |row: &&Row<Partner>| match row.id {
+        "by_mass" => true,
+        "masses_ignored" => unequal,
+        _ if !row.does.moves => obstacles.any_moves(),
+        // Where there is nothing else, that is all obstacles forgotten.
+        _ if !row.does.meets => obstacles.among_particles() && obstacles.pairs().next().is_some(),
+        _ => obstacles.among_particles(),
+    };
+    (
+        PLACES.iter().filter(place).collect(),
+        PARTNERS.iter().filter(partner).collect(),
+    )
+}
+
+/// Other mistakes that do the same beside these obstacles, in steps of `h` seconds.
+pub(in super::super) fn same_here(obstacles: &Obstacles, h: f64, bounce: &Bounce) -> Vec<Bounce> {
+    let hits = hits(obstacles, bounce.way, h);
+    let (gained, slowed) = (
+        gains(bounce.restitution, &hits),
+        slows(bounce.friction, &hits),
+    );
+    let restitutions = RESTITUTIONS
+        .iter()
+        .filter(|row| row.mistake && gains(row, &hits) == gained);
+    let frictions = FRICTIONS
+        .iter()
+        .filter(|row| row.mistake && slows(row, &hits) == slowed);
+    let restitutions = restitutions.filter(|_| bounce.restitution.mistake);
+    let restitutions = restitutions.map(|restitution| Bounce {
+        restitution,
+        ..*bounce
+    });
+    let frictions = frictions.filter(|_| bounce.friction.mistake);
+    let frictions = frictions.map(|friction| Bounce {
+        friction,
+        ..*bounce
+    });
+    let all = restitutions.chain(frictions);
+    all.filter(|other| other != bounce && other.is_sensible())
+        .collect()
+}
+
+/// Some impacts on each of these obstacles.
+fn hits(obstacles: &Obstacles, way: &Row<Way>, h: f64) -> Vec<Hit> {
+    let h = if matches!(way.does, Way::Event) {
+        0.0
+    } else {
+        h
+    };
+    let hits = obstacles.surfaces().flat_map(move |surface| {
+        [[1.3, 0.7], [0.4, 2.1], [3.0, 1e-9]].map(|[approach, sliding]| Hit {
+            approach,
+            sliding,
+            restitution: surface.restitution,
+            friction: surface.friction[0],
+            h,
+        })
+    });
+    hits.collect()
+}
+
+/// What tells a row of a table from others.
+fn gains(row: &Row<Restitution>, hits: &[Hit]) -> (bool, Vec<u64>) {
+    let gains = hits.iter().map(|hit| (row.does.gains)(hit).to_bits());
+    (row.does.leaving, gains.collect())
+}
+
+fn slows(row: &Row<Friction>, hits: &[Hit]) -> Vec<u64> {
+    let slows = hits
+        .iter()
+        .map(|hit| (row.does)(hit, (1.0 + hit.restitution) * hit.approach));
+    slows.map(f64::to_bits).collect()
 }
 
 /// The rows of a table that are not as one before.

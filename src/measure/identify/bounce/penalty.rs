@@ -11,7 +11,7 @@ pub(in super::super) fn pressed(
     system: &ParticleSystem,
     bounce: &Bounce,
 ) -> Option<ParticleSystem> {
-    let Way::Force { pulls } = bounce.way.does else {
+    let Way::Force { pulls, .. } = bounce.way.does else {
         return None;
     };
     let [stiffness, damping] = bounce.force;
@@ -19,9 +19,10 @@ pub(in super::super) fn pressed(
         stiffness,
         damping,
         pulls,
-        rubs: bounce.friction.id != "friction_forgotten",
+        rubs: bounce.rubs(),
     };
-    let obstacles = system.obstacles()?;
+    let sized = bounce.met_by(system);
+    let obstacles = sized.obstacles()?;
     let pressed = ParticleSystem::with(scene, &|row| match row.id {
         "penalty" => Some(Box::new(Penalty::with(obstacles.copied(), law)) as _),
         _ => (row.build)(scene),

@@ -1,8 +1,9 @@
 //! The tables of what programs do at contact. The first row of each is right.
 
-use super::{Bounce, Free, Friction, Lift, Restitution, Row, Stepped, Way};
+use super::own::NUMBERS;
+use super::{Bounce, Free, Friction, Lift, Partner, Restitution, Row, Shares, Stepped, Way};
 use crate::physics::State;
-use crate::physics::constraints::contact::{Hit, ImpactLaw, Obstacles};
+use crate::physics::constraints::contact::{Against, Beside, Hit, ImpactLaw, Obstacles};
 use crate::vector::axpy;
 
 const fn row<T>(id: &'static str, does: T, says: &'static str) -> Row<T> {
@@ -49,38 +50,72 @@ pub static WAYS: &[Row<Way>] = &[
     ),
     row(
         "penalty",
-        Way::Force { pulls: true },
+        Way::Force {
+            pulls: true,
+            whole: false,
+        },
         "pushes out what is inside by a spring and a damper, which may pull, instead of an impulse at the impact",
     ),
     row(
         "penalty_without_pull",
-        Way::Force { pulls: false },
+        Way::Force {
+            pulls: false,
+            whole: false,
+        },
         "pushes out what is inside by a spring and a damper, which never pull, instead of an impulse at the impact",
+    ),
+    row(
+        "penalty_in_whole_steps",
+        Way::Force {
+            pulls: true,
+            whole: true,
+        },
+        "does not cut steps where a penalty begins and ends, which is of order 1",
+    ),
+    row(
+        "penalty_in_whole_steps_without_pull",
+        Way::Force {
+            pulls: false,
+            whole: true,
+        },
+        "does not cut steps where a penalty begins and ends, which is of order 1, and never pulls",
     ),
     mistake(
         "obstacles_forgotten",
         Way::Never,
-        "does nothing: test every particle against every obstacle in each step",
+        "does nothing: test every particle in each step against every obstacle, and against the others where these collide",
     ),
 ];
 
+const fn lift(by: fn(f64, f64) -> f64) -> Lift {
+    Lift { by, halves: false }
+}
+
 /// Where what is inside is put.
 pub static PLACES: &[Row<Lift>] = &[
-    row("left", |_, _| 0.0, ""),
+    row("left", lift(|_, _| 0.0), ""),
     row(
         "clamped",
-        |gap, _| -gap,
+        lift(|gap, _| -gap),
         "puts what is inside on the surface",
     ),
     row(
         "mirrored",
-        |gap, _| -2.0 * gap,
+        lift(|gap, _| -2.0 * gap),
         "puts what is inside as far outside",
     ),
     row(
         "mirrored_by_e",
-        |gap, e| -(1.0 + e) * gap,
+        lift(|gap, e| -(1.0 + e) * gap),
         "puts what is inside e times as far outside",
+    ),
+    row(
+        "clamped_by_halves",
+        Lift {
+            by: |gap, _| -gap,
+            halves: true,
+        },
+        "puts what is inside on the surface, of two particles each by half of it",
     ),
 ];
 
@@ -164,6 +199,76 @@ pub static FRICTIONS: &[Row<Friction>] = &[
     ),
 ];
 
+const fn partner(shares: Shares) -> Partner {
+    Partner {
+        shares,
+        moves: true,
+        meets: true,
+    }
+}
+
+/// What the other of a contact is.
+pub static PARTNERS: &[Row<Partner>] = &[
+    row("by_mass", partner(by_mass), ""),
+    mistake(
+        "masses_ignored",
+        partner(halves),
+        "gives two particles the same change of velocity: each changes by the impulse over its own mass",
+    ),
+    mistake(
+        "velocities_exchanged",
+        partner(|beside, change, weights| match beside.against {
+            Against::Obstacle(_) => by_mass(beside, change, weights),
+            Against::Particle(_) => halves(beside, beside.velocity.map(|u| -2.0 * u), weights),
+        }),
+        "exchanges the velocities of two particles: an impulse changes their normal parts alone, each by its 1/m",
+    ),
+    mistake(
+        "normal_velocities_exchanged",
+        partner(|beside, change, weights| match beside.against {
+            Against::Obstacle(_) => by_mass(beside, change, weights),
+            Against::Particle(_) => {
+                let parting = beside.parting();
+                halves(beside, beside.normal.map(|n| -2.0 * parting * n), weights)
+            }
+        }),
+        "exchanges the normal velocities of two particles, which is right for equal masses and e = 1 alone",
+    ),
+    mistake(
+        "pairs_forgotten",
+        Partner {
+            meets: false,
+            ..partner(by_mass)
+        },
+        "lets particles pass through each other: test every pair of them in each step",
+    ),
+    mistake(
+        "obstacle_at_rest",
+        Partner {
+            moves: false,
+            ..partner(by_mass)
+        },
+        "takes a moving obstacle to be at rest: velocities at contact are those relative to it",
+    ),
+];
+
+/// Each by its part of both 1/m.
+pub(super) fn by_mass(_: &Beside, change: [f64; 3], [own, other]: [f64; 2]) -> [[f64; 3]; 2] {
+    let whole = own + other;
+    [
+        change.map(|c| own / whole * c),
+        change.map(|c| -(other / whole) * c),
+    ]
+}
+
+/// Each by half, but all of it where the other is an obstacle.
+pub(super) fn halves(beside: &Beside, change: [f64; 3], weights: [f64; 2]) -> [[f64; 3]; 2] {
+    match beside.against {
+        Against::Obstacle(_) => by_mass(beside, change, weights),
+        Against::Particle(_) => [change.map(|c| 0.5 * c), change.map(|c| -0.5 * c)],
+    }
+}
+
 /// Every row that is not right in all respects: id, what it does after "at contact it", and whether it is a mistake.
 pub fn treatments() -> impl Iterator<Item = (&'static str, &'static str, bool)> {
     fn of<T>(table: &'static [Row<T>]) -> impl Iterator<Item = (&'static str, &'static str, bool)> {
@@ -174,6 +279,8 @@ pub fn treatments() -> impl Iterator<Item = (&'static str, &'static str, bool)> 
         .chain(of(PLACES))
         .chain(of(RESTITUTIONS))
         .chain(of(FRICTIONS))
+        .chain(of(PARTNERS))
+        .chain(NUMBERS.map(|(id, says)| (id, says, true)))
 }
 
 /// Inside and approaching at the end.

@@ -1,12 +1,14 @@
 //! Penalty contact, whose stiffness and damping no scene states: they are found from steps inside.
 
-use super::super::bounce::{Bounce, FRICTIONS, WAYS, Way};
+use super::super::bounce::{Bounce, FRICTIONS, Own, WAYS, Way, Wrong};
 use super::super::candidate::Candidate;
 use super::super::transition::Transition;
 use super::super::transition::spread;
 use super::super::words::digits;
-use super::{Search, Told, damped};
+use super::damped;
+use super::search::{Search, Told};
 use crate::physics::System;
+use crate::physics::constraints::contact::Obstacles;
 use rayon::prelude::*;
 
 /// Replays of a treatment that a fit takes, about.
@@ -30,9 +32,11 @@ pub(super) fn found(search: &Search, schemes: &[Candidate]) -> Option<Told> {
     if inside.len() < FEWEST {
         return None;
     }
+    let obstacles = search.question.system.obstacles();
+    let penalty = obstacles.and_then(Obstacles::penalty);
     let forces = WAYS
         .iter()
-        .filter(|way| matches!(way.does, Way::Force { .. }));
+        .filter(|way| matches!(way.does, Way::Force { whole, .. } if whole == penalty.is_some()));
     let mut bounces = Vec::new();
     for friction in FRICTIONS
         .iter()
@@ -67,10 +71,8 @@ pub(super) fn found(search: &Search, schemes: &[Candidate]) -> Option<Told> {
         let fits: Vec<(Bounce, Vec<Candidate>)> = fits.collect();
         let (bounce, _) = fits.first()?.clone();
         let schemes = fits.into_iter().filter(|(other, _)| *other == bounce);
-        Some(Told {
-            bounce,
-            schemes: schemes.flat_map(|(_, schemes)| schemes).collect(),
-        })
+        let schemes = schemes.flat_map(|(_, schemes)| schemes).collect();
+        Some(Told::new(bounce, schemes))
     })
 }
 
@@ -122,10 +124,27 @@ impl Fit<'_> {
                 .chain([[short(stiffness, count), short(damping, count)]])
         });
         let [softest, hardest] = self.bounds();
-        let sensible = |[k, c]: &[f64; 2]| *k >= softest && (0.0..hardest).contains(c);
+        let obstacles = self.search.question.system.obstacles();
+        let penalty = obstacles.and_then(Obstacles::penalty);
+        // A damper that drives is a mistake, which a scene with one may see.
+        let least = if penalty.is_some() { -hardest } else { 0.0 };
+        let sensible = |[k, c]: &[f64; 2]| *k >= softest && (least..hardest).contains(c);
         let all = plain.chain([[stiffness, damping]]).filter(sensible);
         all.into_iter().find_map(|force| {
-            let bounce = Bounce { force, ..bounce };
+            let own = Own {
+                penalty: penalty.map(|asked| {
+                    [0, 1].map(|at| Wrong {
+                        found: force[at],
+                        asked: Some(asked[at]),
+                    })
+                }),
+                ..Own::NONE
+            };
+            let bounce = Bounce {
+                force,
+                own,
+                ..bounce
+            };
             let schemes = self
                 .search
                 .fitting(std::slice::from_ref(self.scheme), &bounce);
@@ -188,27 +207,13 @@ impl Fit<'_> {
         Some(here)
     }
 
-    /// How far the scheme is off, as velocities, m/s.
     fn off(&self, bounce: Bounce) -> Option<Vec<f64>> {
-        let (question, replay) = (self.search.question, self.search.replay);
-        let candidate = self
-            .scheme
-            .bouncing(question.scene, question.system, &bounce)?;
-        let mut replayer = candidate.replayer(&replay.settings);
-        let mut all = Vec::new();
-        for t in self.at {
-            let state = replay.predict(&mut replayer, t).ok()?;
-            let seconds = t.span(replay.rows) as f64 * replay.rows.timestep;
-            let mut units = vec![seconds; replay.rows.dim];
-            units.resize(2 * replay.rows.dim, 1.0);
-            all.extend(replay.off(t, &state, &units));
-        }
-        all.iter().all(|off| off.is_finite()).then_some(all)
+        self.search.off(self.scheme, &bounce, self.at)
     }
 }
 
 /// The least squares of two slopes; None where they are not independent.
-fn solved(slopes: &[Vec<f64>], off: &[f64]) -> Option<[f64; 2]> {
+pub(super) fn solved(slopes: &[Vec<f64>], off: &[f64]) -> Option<[f64; 2]> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (k, c) = (&slopes[0], &slopes[1]);
     let (kk, kc, cc) = (dot(k, k), dot(k, c), dot(c, c));
@@ -220,9 +225,12 @@ fn solved(slopes: &[Vec<f64>], off: &[f64]) -> Option<[f64; 2]> {
             (right[1] * kk - right[0] * kc) / det,
         ]);
     }
-    (kk > 0.0).then(|| [right[0] / kk, 0.0])
+    if kk > 0.0 {
+        return Some([right[0] / kk, 0.0]);
+    }
+    (cc > 0.0).then(|| [0.0, right[1] / cc])
 }
 
-fn norm(values: &[f64]) -> f64 {
+pub(super) fn norm(values: &[f64]) -> f64 {
     values.iter().map(|v| v * v).sum::<f64>().sqrt()
 }

@@ -253,6 +253,15 @@ impl<'a> Spot<'a> {
         }
     }
 
+    /// The fault of a treatment of contact, with the number of steps that show it.
+    pub(super) fn counted(&self, says: String) -> Fault {
+        let steps = match self.departures.len() {
+            1 => "in one step".to_owned(),
+            all => format!("in {all} steps"),
+        };
+        self.throughout(format!("{says}: {steps}"))
+    }
+
     /// The fault with this step and explanation; the number of particles that are off is added.
     pub(super) fn fault(&self, step: u64, says: String) -> Fault {
         let at = 3 * self.worst;

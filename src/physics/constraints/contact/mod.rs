@@ -247,6 +247,33 @@ impl Obstacles {
         }
     }
 
+    /// The same with other coefficients.
+    pub fn resurfaced(&self, change: impl Fn(Surface) -> Surface) -> Self {
+        let mut all = self.copied();
+        for one in &mut all.obstacles {
+            one.surface = change(one.surface);
+        }
+        all.among = all.among.map(change);
+        all
+    }
+
+    /// The same with other radii, m; less than 0 where surfaces are farther away by more than the radius.
+    pub fn resized(&self, change: impl Fn(f64) -> f64) -> Self {
+        let mut all = self.copied();
+        for radius in &mut all.radii {
+            *radius = change(*radius);
+        }
+        all
+    }
+
+    /// The same, but particles do not collide with each other.
+    pub fn apart(&self) -> Self {
+        Self {
+            among: None,
+            ..self.copied()
+        }
+    }
+
     /// The same, which remembers nothing of what was near.
     pub fn copied(&self) -> Self {
         Self {
@@ -332,6 +359,11 @@ impl Obstacles {
         self.close / TOUCHING * CLOSED
     }
 
+    /// The radius of a particle, m.
+    pub fn radius(&self, particle: usize) -> f64 {
+        self.radii[particle]
+    }
+
     /// In words: `collider 0 (plane)` or `particle 1`.
     pub fn name(&self, against: Against) -> String {
         match against {
@@ -373,9 +405,12 @@ impl Obstacles {
         (0..self.obstacles.len()).flat_map(each)
     }
 
-    /// The coefficients of all obstacles.
+    /// The coefficients of all obstacles, and of particles with each other.
     pub fn surfaces(&self) -> impl Iterator<Item = Surface> + '_ {
-        self.obstacles.iter().map(|one| one.surface)
+        self.obstacles
+            .iter()
+            .map(|one| one.surface)
+            .chain(self.among)
     }
 
     /// Whether an obstacle moves; false of particles.

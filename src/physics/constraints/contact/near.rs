@@ -73,7 +73,7 @@ impl Broad {
         let ahead = [from, until + AHEAD * (until - from)];
         let boxed = |particle: usize| {
             let (center, radius) = ball(particle);
-            let wider = WIDER * obstacles.radii[particle] + obstacles.close(center);
+            let wider = WIDER * obstacles.radii[particle].max(0.0) + obstacles.close(center);
             around(center, (1.0 + AHEAD) * radius + wider)
         };
         let boxes: Vec<Aabb> = (0..obstacles.weights.len()).map(boxed).collect();
@@ -100,7 +100,7 @@ fn found(
     times: [f64; 2],
     tree: Option<&(Bvh, Vec<usize>)>,
 ) -> Vec<Vec<Against>> {
-    let wide = |particle: usize| boxes[particle].loosened(obstacles.radii[particle]);
+    let wide = |particle: usize| boxes[particle].loosened(obstacles.radii[particle].max(0.0));
     let mut all: Vec<Vec<Against>> = vec![Vec::new(); boxes.len()];
     let planes = obstacles.obstacles.iter().enumerate();
     let planes: Vec<_> = planes

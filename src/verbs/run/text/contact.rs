@@ -68,7 +68,12 @@ pub fn table(report: &Report) -> String {
     }
     let said: Vec<(String, Vec<String>)> = rows
         .iter()
-        .map(|(outcome, contact)| (super::engine(outcome), laws::sentences(contact)))
+        .map(|(outcome, contact)| {
+            (
+                super::engine(outcome),
+                laws::sentences(&contact.laws, contact.impacts),
+            )
+        })
         .filter(|(_, said)| !said.is_empty())
         .collect();
     if !said.is_empty() {

@@ -1,5 +1,6 @@
 //! Words for a trajectory's identity and its first deviating step.
 
+use super::laws;
 use crate::integrators;
 use crate::measure::identify::{Explained, Fault, Identity, Quantity, TRUTH, Undecided};
 use crate::report::words::{self, listed};
@@ -8,6 +9,8 @@ use crate::solvers::SolverKind;
 use crate::verbs::run::Outcome;
 use crate::verbs::{Body, Report};
 
+/// What is off by less, in parts of what a step moves, is not off at all.
+const NOTHING: f64 = 1e-13;
 /// The number of equivalent schemes named, at most.
 const MAX_NAMED: usize = 6;
 
@@ -56,17 +59,15 @@ fn at_contact(found: &Identity) -> String {
         return String::new();
     };
     if contact.treatment.is_none() {
-        return "; what it does at contact is no known treatment".to_owned();
-    }
-    if contact.says.is_empty() {
-        return String::new();
+        return format!("; {}", words::one_line(&contact.says));
     }
     let mut numbers = Vec::new();
     if let (Some(stiffness), Some(damping)) = (contact.stiffness_n_m, contact.damping_n_s_m) {
         numbers.push(format!("{} N/m", words::short(stiffness)));
         numbers.push(format!("{} N s/m", words::short(damping)));
     }
-    if contact.deepest_m > 0.0 {
+    // What is less deep is there by rounding.
+    if contact.deepest_m > 1e-12 {
         numbers.push(format!("{} m deep", words::short(contact.deepest_m)));
     }
     let numbers = match numbers.is_empty() {
@@ -80,8 +81,12 @@ fn at_contact(found: &Identity) -> String {
             listed_names(others)
         ),
     };
-    let says = words::one_line(&contact.says);
-    format!("; at contact it {says}{numbers}{others}")
+    let says = match contact.says.as_str() {
+        "" if others.is_empty() => return String::new(),
+        "" => "has an impulse at each impact".to_owned(),
+        says => format!("{}{numbers}", words::one_line(says)),
+    };
+    format!("; at contact it {says}{others}")
 }
 
 /// `0.3 % of what a step moves`.
@@ -222,25 +227,58 @@ pub fn verdict(report: &Report) -> Option<String> {
             .as_ref()
             .map_or(String::new(), |says| format!(": {says}"));
         let contact = at_contact(found);
+        let missed = laws::missed(outcome);
+        let missed: String = missed
+            .iter()
+            .map(|missed| format!("; but {missed}"))
+            .collect();
+        let judged = found
+            .contact
+            .as_ref()
+            .is_none_or(|contact| !contact.unjudged);
+        let where_ = match judged && missed.is_empty() {
+            true => "throughout",
+            false => "away from contact",
+        };
         let text = match found.undecided {
-            None => format!("{name} follows {scheme} throughout{says}"),
+            None => format!("{name} follows {scheme} {where_}{says}"),
             Some(Undecided::SameMap) => {
                 let same = listed_names(&found.equivalent);
-                format!("{name} follows {scheme} throughout{says}; here it is the same as {same}")
+                format!("{name} follows {scheme} {where_}{says}; here it is the same as {same}")
             }
             Some(Undecided::DataTooCoarse) => {
                 let others = listed_names(&found.equivalent);
                 format!("{name} follows {scheme}{says}; the data cannot tell it from {others}")
             }
+            Some(Undecided::Near) if found.relative.is_none_or(|off| off < NOTHING) => {
+                format!("{name} follows {scheme} in most steps, and no known scheme in the others")
+            }
             Some(Undecided::Near) => format!("{name} is nearly {scheme}: off by {}", share(found)),
         };
-        return Some(format!("{text}{contact}"));
+        return Some(format!("{text}{contact}{missed}"));
     };
     let (step, says) = (fault.step, words::one_line(&fault.explanation));
     let contact = found.contact.as_ref();
-    if contact.is_some_and(|contact| !contact.mistakes.is_empty()) {
+    if let Some(contact) = contact.filter(|contact| !contact.unjudged)
+        && (contact.treatment.is_none() || !contact.mistakes.is_empty())
+    {
+        // The same mistakes in another way or place are no news.
+        let own = |label: &&String| {
+            let has = |id: &String| label.split('+').any(|part| part == id);
+            !contact.mistakes.iter().all(has)
+        };
+        let others: Vec<String> = contact.equivalent.iter().filter(own).cloned().collect();
+        let others = match others.as_slice() {
+            [] => String::new(),
+            others => format!(
+                " (these steps do not tell it from {})",
+                listed_names(others)
+            ),
+        };
+        let missed = laws::missed(outcome);
+        let missed: String = missed.iter().map(|missed| format!("; {missed}")).collect();
         return Some(format!(
-            "{name} is {scheme}, but {says}, first in step {step}"
+            "{name} follows {scheme} away from contact, but {says}, first in step {step}{others}{missed}"
         ));
     }
     Some(match found.undecided {

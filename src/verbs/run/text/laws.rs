@@ -2,6 +2,7 @@
 
 use crate::measure::{Contact, Laws, Residual};
 use crate::report::words::{self, short};
+use crate::verbs::run::Outcome;
 
 /// What is off by less is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -11,19 +12,19 @@ pub fn cell(law: Option<Residual>) -> Option<String> {
     law.map(|law| short(law.off))
 }
 
-/// A sentence for each law that was judged.
-pub fn sentences(contact: &Contact) -> Vec<String> {
+/// A sentence for each law that was judged, of so many impacts in all.
+pub fn sentences(laws: &Laws, impacts: Option<u64>) -> Vec<String> {
     let Laws {
         separation,
         impact_friction,
         sliding_friction,
         energy_gain,
-    } = contact.laws;
+    } = *laws;
     let mut all = Vec::new();
     all.extend(separation.map(|law| {
         let text = format!(
             "in {} it separates at {} of the speed it came with",
-            judged(law.judged, contact.impacts),
+            judged(law.judged, impacts),
             ratio(law.found)
         );
         if law.off <= ROUNDING {
@@ -58,11 +59,12 @@ pub fn sentences(contact: &Contact) -> Vec<String> {
             return "friction of what slides is µ N against the sliding, and of what sticks no more than it may be".to_owned();
         }
         let found = ratio(law.found);
-        format!(
-            "friction on a surface is {found} of the normal force, where Coulomb's law has µ = {} of it, against the sliding: {}",
-            short(law.asked),
-            verdict(&law)
-        )
+        let asked = ratio(law.asked);
+        let asks = match found == asked {
+            true => "as Coulomb's law asks, but in another direction".to_owned(),
+            false => format!("where Coulomb's law asks {asked}"),
+        };
+        format!("friction on a surface is {found} of the normal force, {asks}: {}", verdict(&law))
     }));
     all.extend(energy_gain.map(|law| {
         if !law.broken() {
@@ -90,6 +92,45 @@ fn judged(judged: u64, impacts: Option<u64>) -> String {
     }
 }
 
+/// A law that is missed by less than this beyond its bound is missed by rounding.
+const CLEARLY: f64 = 1e-6;
+
+/// What a program misses by more than rounding and the forces between its rows explain, where its treatment of contact does
+/// not say it: that is replayed to rounding, but for what the scene asks of things at rest.
+pub fn missed(outcome: &Outcome) -> Vec<String> {
+    let Some(contact) = &outcome.contact else {
+        return Vec::new();
+    };
+    let treated = outcome
+        .identified
+        .as_ref()
+        .and_then(|found| found.contact.as_ref());
+    let treatment = treated.and_then(|treated| treated.treatment.as_deref());
+    let known = treated.is_some_and(|treated| !treated.mistakes.is_empty());
+    let laws = &contact.laws;
+    let friction = laws.sliding_friction;
+    let all = match treatment {
+        _ if known => [None; 4],
+        Some(_) => [None, None, friction, None],
+        None => [
+            laws.separation,
+            laws.impact_friction,
+            friction,
+            laws.energy_gain,
+        ],
+    };
+    let broken = |law: &Residual| law.off > 2.0 * law.bound + CLEARLY;
+    let [separation, impact_friction, sliding_friction, energy_gain] =
+        all.map(|law| law.filter(broken));
+    let laws = Laws {
+        separation,
+        impact_friction,
+        sliding_friction,
+        energy_gain,
+    };
+    sentences(&laws, contact.impacts)
+}
+
 /// For the terminal: the laws that are missed, or else one that is kept.
 pub fn summary(contact: &Contact) -> Vec<String> {
     let laws = [
@@ -98,7 +139,7 @@ pub fn summary(contact: &Contact) -> Vec<String> {
         contact.laws.sliding_friction,
         contact.laws.energy_gain,
     ];
-    let mut all = sentences(contact);
+    let mut all = sentences(&contact.laws, contact.impacts);
     let broken = laws.iter().flatten().map(Residual::broken);
     let missed: Vec<String> = (all.iter().zip(broken))
         .filter(|(_, broken)| *broken)

@@ -10,6 +10,7 @@ mod strain;
 mod table;
 mod verdict;
 
+pub use laws::missed;
 use table::beside;
 pub use table::{engine, several_timesteps};
 

@@ -120,14 +120,17 @@ fn a_position_that_is_clamped_alone_is_named() {
 fn strange_treatments_have_no_name() {
     let (ball, forces) = (Ball::new(0.7, 0.2), Forces::default());
     let scene = scene(&forces, &ball, 0.01);
-    let strange: [Turn; 4] = [
-        |v, e, _, _| [v[0], v[1], -e * e * v[2]],
+    let strange: [Turn; 3] = [
         |v, e, mu, h| {
             let [x, y, z] = bounce(v, e, mu, h);
             [x, y, z + 0.01]
         },
-        |v, e, mu, h| bounce(v, 0.9 * e, mu, h),
-        |v, e, mu, h| bounce(v, e, 1.1 * mu, h),
+        // Restitution that depends on the speed, and a velocity that is turned about the normal.
+        |v, e, mu, h| bounce(v, e / (1.0 + 0.02 * v[2] * v[2]), mu, h),
+        |v, e, mu, h| {
+            let [x, y, z] = bounce(v, e, mu, h);
+            [0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y, z]
+        },
     ];
     for (id, step) in METHODS {
         for (at, turn) in strange.into_iter().enumerate() {
