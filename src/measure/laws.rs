@@ -103,6 +103,8 @@ pub static CONTACT_LAWS: &[(&str, &str)] = &[
 const UNDISTURBED: f64 = 0.25;
 /// Of a normal force this part may be in doubt.
 const DOUBT: f64 = 0.1;
+/// What rests begins to slide if it gains more than this part of what forces give in a row.
+const CREEP: f64 = 1e-3;
 /// Roundings of a number that it may be off.
 const ROUNDINGS: f64 = 16.0;
 /// Places at which the way to an impact is looked at.
@@ -316,9 +318,10 @@ impl Laws {
             let out = dot(a, n);
             [0, 1, 2].map(|c| a[c] - out * n[c])
         };
-        // What rests, and may be held by friction, stays.
+        // What rests, and may be held by friction, stays; a creep is not to begin to slide.
         let load = along(a0);
-        let held = norm(old) <= pair.off_v && norm(load) + doubt <= most * pressed;
+        let begins = norm(old) <= pair.off_v && norm(new) > CREEP * pair.pushes * h;
+        let held = begins && norm(load) + doubt <= most * pressed;
         let (off, turned, asked) = if held {
             let left = [0, 1, 2].map(|c| rubs[c] + load[c]);
             (norm(left), 0.0, norm(load) / pressed)
