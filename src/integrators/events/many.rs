@@ -9,7 +9,7 @@ use crate::physics::constraints::Rods;
 use crate::physics::constraints::contact::{Against, Blows, Near, Obstacles};
 use crate::space::{dot, minus, three};
 use std::cmp::{Ordering, Reverse};
-use std::collections::{BTreeSet, BinaryHeap};
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use std::sync::Arc;
 
 /// After so many impacts within a step a particle that would come to rest by its end does so at once.
@@ -37,37 +37,81 @@ struct Next {
     bent: [u32; 2],
 }
 
+/// The paths that impacts have bent, how often, and how often each particle was struck.
+struct Bent<'a> {
+    h: f64,
+    ends: [&'a State; 2],
+    paths: BTreeMap<usize, (Path, u32)>,
+    hits: BTreeMap<usize, u32>,
+}
+
+impl Bent<'_> {
+    fn path(&self, one: usize) -> Path {
+        let bent = self.paths.get(&one).map(|(path, _)| path.clone());
+        bent.unwrap_or_else(|| Path::new(one, self.h, self.ends[0], self.ends[1]))
+    }
+
+    /// How often the paths of a pair are bent.
+    fn often(&self, (one, against): Pair) -> [u32; 2] {
+        let often = |one: usize| self.paths.get(&one).map_or(0, |(_, often)| *often);
+        match against {
+            Against::Particle(other) => [often(one), often(other)],
+            Against::Obstacle(_) => [often(one), 0],
+        }
+    }
+
+    fn bend(&mut self, one: usize, s: f64, change: [f64; 3]) {
+        let path = self.path(one);
+        let (path, often) = self.paths.entry(one).or_insert((path, 0));
+        path.bend(s, change);
+        *often += 1;
+    }
+
+    /// Counts an impact of these; returns how many the most often struck has.
+    fn hit(&mut self, ends: &[usize]) -> u32 {
+        let each = ends.iter().map(|one| {
+            let hits = self.hits.entry(*one).or_default();
+            *hits += 1;
+            *hits
+        });
+        each.max().unwrap_or_default()
+    }
+}
+
 impl Many<'_> {
     /// Takes these impacts, and those that follow from them, into account at the end of the step; returns their number.
     pub fn strike(&mut self, due: Vec<Due<Pair>>, end: &mut State) -> Result<u64, StepError> {
         let mut impacts = 0;
-        let paths = (0..end.x.len() / 3).map(|one| Path::new(one, self.h, self.start, end));
-        let mut paths: Vec<Path> = paths.collect();
-        let mut bent = vec![0_u32; paths.len()];
-        let mut hits = bent.clone();
-        let mut landed: BTreeSet<Pair> = BTreeSet::new();
-        let mut there = end.clone();
-        let mut queue: BinaryHeap<Reverse<Next>> = BinaryHeap::new();
-        let both = |bent: &[u32], (one, against): Pair| match against {
-            Against::Particle(other) => [bent[one], bent[other]],
-            Against::Obstacle(_) => [bent[one], 0],
+        let before = end.clone();
+        let mut bent = Bent {
+            h: self.h,
+            ends: [self.start, &before],
+            paths: BTreeMap::new(),
+            hits: BTreeMap::new(),
         };
-        queue.extend(due.into_iter().map(|due| {
-            let bent = both(&bent, due.event);
-            Reverse(Next { due, bent })
-        }));
+        let mut landed: BTreeSet<Pair> = BTreeSet::new();
+        let mut there = before.clone();
+        let first = due
+            .into_iter()
+            .map(|due| Reverse(Next { due, bent: [0; 2] }));
+        let mut queue: BinaryHeap<Reverse<Next>> = first.collect();
         while let Some(Reverse(next)) = queue.pop() {
             let pair = next.due.event;
-            if next.bent != both(&bent, pair) {
+            if next.bent != bent.often(pair) {
                 continue;
             }
             let ends = pair.1.with(pair.0);
-            let s = self.instant(&next.due, &paths);
+            let s = self.instant(&next.due, &bent);
             there.t = self.start.t + s * self.h;
             for one in &ends {
-                paths[*one].put(*one, s, &mut there);
+                bent.path(*one).put(*one, s, &mut there);
             }
-            let before = there.v.clone();
+            // Rods pass impulses on to all.
+            let moved: Vec<usize> = match self.rods {
+                Some(_) => (0..there.v.len() / 3).collect(),
+                None => ends.clone(),
+            };
+            let old: Vec<_> = moved.iter().map(|one| three(&there.v, *one)).collect();
             let struck = self.apply(pair, &mut there)?;
             if struck == 0 {
                 // It would rise by less than is seen.
@@ -75,32 +119,22 @@ impl Many<'_> {
                 continue;
             }
             impacts += struck;
-            for one in &ends {
-                hits[*one] += 1;
-            }
-            // Rods pass impulses on to all.
-            let moved: Vec<usize> = match self.rods {
-                Some(_) => (0..paths.len()).collect(),
-                None => ends,
-            };
             let mut turned = BTreeSet::new();
-            for one in moved {
-                let change = minus(three(&there.v, one), three(&before, one));
+            for (one, old) in moved.into_iter().zip(old) {
+                let change = minus(three(&there.v, one), old);
                 if change != [0.0; 3] {
-                    paths[one].bend(s, change);
-                    bent[one] += 1;
+                    bent.bend(one, s, change);
                     turned.insert(one);
                 }
             }
-            let most = pair.1.with(pair.0).into_iter().map(|one| hits[one]).max();
-            let most = most.unwrap_or_default();
+            let most = bent.hit(&ends);
             if most > MOST {
                 return Err(StepError::TooManyEvents { t: there.t });
             }
-            if most >= ENOUGH && self.comes_to_rest(pair, s, most, &paths, &mut there) {
+            if most >= ENOUGH && self.comes_to_rest(pair, s, most, &bent, &mut there) {
                 landed.insert(pair);
             }
-            self.follow(&turned, &paths);
+            self.follow(&turned, &bent);
             for one in turned {
                 for against in self.near.of(one) {
                     let pair = match *against {
@@ -111,10 +145,9 @@ impl Many<'_> {
                         continue;
                     }
                     let times = [self.start.t, self.h];
-                    if let Some(due) =
-                        meeting(self.obstacles, pair, (s, 1.0), times, |one| &paths[one])
-                    {
-                        let bent = both(&bent, pair);
+                    let path = |one| bent.path(one);
+                    if let Some(due) = meeting(self.obstacles, pair, (s, 1.0), times, path) {
+                        let bent = bent.often(pair);
                         queue.push(Reverse(Next { due, bent }));
                     }
                 }
@@ -122,9 +155,9 @@ impl Many<'_> {
         }
         end.work = there.work;
         let mut all = BTreeSet::new();
-        for (one, path) in paths.iter().enumerate().filter(|(one, _)| bent[*one] > 0) {
-            path.put(one, 1.0, end);
-            all.insert(one);
+        for (one, (path, _)) in &bent.paths {
+            path.put(*one, 1.0, end);
+            all.insert(*one);
         }
         self.obstacles.push_out(&self.near, &mut all, end);
         if !landed.is_empty() {
@@ -147,7 +180,7 @@ impl Many<'_> {
         (particle, against): Pair,
         s: f64,
         hits: u32,
-        paths: &[Path],
+        bent: &Bent,
         there: &mut State,
     ) -> bool {
         let given = self.obstacles.surface(against).restitution;
@@ -157,7 +190,7 @@ impl Many<'_> {
         let after = self.obstacles.beside(particle, against, there);
         let left = (1.0 - s) * self.h;
         for one in against.with(particle) {
-            let velocity = paths[one].velocity(1.0);
+            let velocity = bent.path(one).velocity(1.0);
             there.v[3 * one..3 * one + 3].copy_from_slice(&velocity);
         }
         let end = self.obstacles.beside(particle, against, there);
@@ -167,12 +200,14 @@ impl Many<'_> {
     }
 
     /// When an impact is, as a part of the step.
-    fn instant(&self, due: &Due<Pair>, paths: &[Path]) -> f64 {
+    fn instant(&self, due: &Due<Pair>, bent: &Bent) -> f64 {
         let (particle, against) = due.event;
+        let ends = against.with(particle);
+        let paths: Vec<Path> = ends.iter().map(|one| bent.path(*one)).collect();
         let (mut low, mut high) = (due.clear / self.h, due.due / self.h);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            let at = |one: usize| paths[one].at(middle);
+            let at = |one: usize| paths[usize::from(one != particle)].at(middle);
             let t = self.start.t + middle * self.h;
             if self.obstacles.gap(particle, against, t, at) < due.level {
                 high = middle;
@@ -206,11 +241,11 @@ impl Many<'_> {
     }
 
     /// Looks anew for what is near where a path leaves what was searched.
-    fn follow(&mut self, turned: &BTreeSet<usize>, paths: &[Path]) {
-        let within = |one: &usize| self.near.holds(*one, paths[*one].ball());
+    fn follow(&mut self, turned: &BTreeSet<usize>, bent: &Bent) {
+        let within = |one: &usize| self.near.holds(*one, bent.path(*one).ball());
         if !turned.iter().all(within) {
             let times = [self.start.t, self.start.t + self.h];
-            self.near = self.obstacles.near(times, |one| paths[one].ball());
+            self.near = self.obstacles.near(times, |one| bent.path(one).ball());
         }
     }
 }

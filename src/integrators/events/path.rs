@@ -8,6 +8,7 @@ use std::borrow::Borrow;
 use std::sync::Arc;
 
 /// The cubic through both ends of a particle's path, over the part s of a step.
+#[derive(Debug, Clone)]
 pub(super) struct Path {
     h: f64,
     x: [[f64; 3]; 2],
