@@ -27,6 +27,9 @@ const SMOOTH: f64 = 4.0;
 /// A motion on rods that ends before its time in so many levels does so whatever the steps.
 const MOST_OVER: u32 = 5;
 
+/// Of the rate of a penalty no more than this over the whole time is asked for.
+const PRESSED: f64 = 4096.0;
+
 /// Halvings of single steps may go on this many times without bringing the estimates closer: a
 /// collision has to be resolved first.
 const MOST_IDLE: u32 = 16;
@@ -72,6 +75,9 @@ pub(super) fn halve(
 ) -> Result<Halved, NotConverged> {
     let dim = system.dim() as u64;
     let rate = fastest_rate(system, start, size).ok_or_else(not_finite)?;
+    // A penalty is not felt at the start, and comes to act for moments alone: smaller steps there follow by halving.
+    let pressed = system.obstacles().map_or(0.0, Obstacles::fastest);
+    let rate = rate.max(pressed.min(PRESSED / until));
     let start = Precise::from(start);
     let most = instants(system.dim());
     let [per_piece, at_the_end] = Level::costs().map(|cost| cost * dim);

@@ -41,7 +41,7 @@ use std::sync::Arc;
 
 /// Version of the stored form. It changes whenever a scene would get other bits, or they would be
 /// kept otherwise.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// The budget of [`find`] for a scene, in force evaluations times coordinates.
 pub const BUDGET: u64 = 1 << 30;

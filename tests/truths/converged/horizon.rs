@@ -2,7 +2,7 @@
 
 use super::honesty::times;
 use super::problems::{self, Rough, bodies, closure, shot};
-use crate::testkit::scenes::{shipped, spring};
+use crate::testkit::scenes::{parsed, shipped, spring};
 use crate::testkit::swinging_triangle;
 use springcheck::physics::{ParticleSystem, State, System};
 use springcheck::scene::{DampingModel, Scene};
@@ -230,4 +230,22 @@ fn any_times_give_the_same_bits_and_any_number_of_threads() {
             "{k}"
         );
     }
+}
+
+#[test]
+fn a_penalty_that_is_met_on_the_way_does_not_end_the_horizon() {
+    // In after .05 s at 1 m/s, inside for π/(w sqrt(1 - ζ²)) with w = 100/s, ζ = .1, and out at exp(-π ζ/sqrt(1 - ζ²)) of it.
+    let scene = parsed(
+        "solver: {type: rk4, timestep: 0.001, gravity: 0}\nduration: 1\n\
+         particles: [{pos: [0, 0, 0.05], vel: [0, 0, -1], radius: 0, mass: 1}]\n\
+         contact: {penalty: {stiffness: 10000, damping: 20}}\n\
+         colliders: [{plane: {normal: [0, 0, 1]}}]\n",
+    );
+    let found = of(&scene, 1.0).expect("it converges");
+    assert_eq!(found.facts.horizon, 1.0, "{}", found.facts.reason);
+    let across = 0.99_f64.sqrt();
+    let inside = std::f64::consts::PI / (100.0 * across);
+    let right = (-0.1 * std::f64::consts::PI / across).exp() * (1.0 - 0.05 - inside);
+    let off = (found.motion.states(&[1.0]).x(0)[2] - right).abs();
+    assert!(off <= found.facts.error_bound && off < 1e-11, "{off:e}");
 }

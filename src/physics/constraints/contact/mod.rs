@@ -314,6 +314,18 @@ impl Obstacles {
         self.penalty
     }
 
+    /// The fastest rate of a contact by penalty, 1/s: w + c/m, of the lightest that may press each other; 0 without.
+    pub fn fastest(&self) -> f64 {
+        let Some([stiffness, damping]) = self.penalty else {
+            return 0.0;
+        };
+        let mut weights = self.weights.clone();
+        weights.sort_by(|a, b| b.total_cmp(a));
+        let ends = 1 + usize::from(self.among.is_some());
+        let weight: f64 = weights.iter().take(ends).sum();
+        (stiffness * weight).sqrt() + damping * weight
+    }
+
     /// Every contact in which something is inside, in ascending order.
     pub fn inside(&self, state: &State) -> Vec<Beside> {
         let at = |particle| three(&state.x, particle);
