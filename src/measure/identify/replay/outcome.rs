@@ -42,8 +42,11 @@ impl Replay<'_> {
         });
         let mut each = each.collect::<Vec<_>>().into_iter();
         let (mut off, mut units) = each.next().unwrap_or_default();
-        let own =
-            |particle: usize, numbers: usize| (0..numbers).filter(move |i| i % dim / 3 == particle);
+        let own = |particle: usize, numbers: usize| {
+            let each = [0, dim].map(|from| from + 3 * particle);
+            let each = each.into_iter().flat_map(|from| from..from + 3);
+            each.filter(move |i| *i < numbers)
+        };
         let worst = |particle: usize, off: &[f64], units: &[f64]| {
             let own = own(particle, off.len()).filter(|i| off[*i] > 0.0);
             own.fold(0.0, |most, i| f64::max(most, off[i] / units[i]))
