@@ -47,6 +47,7 @@
 pub mod conformance;
 mod gram;
 pub mod integrators;
+mod joined;
 mod krylov;
 pub mod measure;
 pub mod physics;

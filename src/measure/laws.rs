@@ -5,6 +5,7 @@
 //! exact; what else forces may do within the two rows, |a| h, and rounding are the bound.
 
 use crate::integrators::events::LOCATED;
+use crate::joined::least_joined;
 use crate::physics::constraints::contact::{Against, Beside, Obstacles};
 use crate::physics::{ParticleSystem, State, System};
 use crate::space::{dot, minus, norm, three};
@@ -128,7 +129,10 @@ impl Laws {
             system,
             rows,
             pitch,
-            rigid: rigid(system),
+            rigid: {
+                let ends = system.rods().map_or(&[][..], |rods| rods.ends());
+                least_joined(system.dim() / 3, ends.iter().copied())
+            },
             last: VecDeque::new(),
             mixed: None,
         };
@@ -394,7 +398,7 @@ struct Seen<'a> {
     rows: &'a Rows,
     /// Steps between rows that follow each other.
     pitch: u64,
-    /// Of each particle, the least that rods join to it, over any number of them.
+    /// Of each particle, the least that rods join to it, over any number of them: it feels the impacts of all these.
     rigid: Vec<usize>,
     last: VecDeque<Rc<Row>>,
     /// See [`Pair::mixed`], of the last row.
@@ -419,21 +423,14 @@ impl Seen<'_> {
         a
     }
 
-    /// The acceleration in the middle between row k and the next, on the cubic through both, m/s².
+    /// The acceleration in the middle between row k and the next, m/s².
     fn middle(&mut self, k: usize) -> Vec<f64> {
         let [now, next] = [k, k + 1].map(|row| self.row(row));
         let (start, end) = (&now.state, &next.state);
-        let h = end.t - start.t;
-        let each = 0..start.x.len();
-        let x: Vec<f64> = (each.clone())
-            .map(|i| 0.5 * (start.x[i] + end.x[i]) + 0.125 * h * (start.v[i] - end.v[i]))
-            .collect();
-        let v: Vec<f64> = each
-            .map(|i| 1.5 * (end.x[i] - start.x[i]) / h - 0.25 * (start.v[i] + end.v[i]))
-            .collect();
-        let mut a = vec![0.0; x.len()];
-        let t = start.t + 0.5 * h;
-        self.system.acceleration(t, &x, &v, &mut a);
+        let middle = start.middle(end, end.t - start.t);
+        let mut a = vec![0.0; middle.x.len()];
+        self.system
+            .acceleration(middle.t, &middle.x, &middle.v, &mut a);
         a
     }
 
@@ -453,22 +450,6 @@ impl Seen<'_> {
         self.last.push_front(Rc::clone(&row));
         self.last.truncate(4);
         row
-    }
-}
-
-/// Of each particle, the least that rods join to it, over any number of them: it feels the impacts of all these.
-fn rigid(system: &ParticleSystem) -> Vec<usize> {
-    let mut least: Vec<usize> = (0..system.dim() / 3).collect();
-    let ends = system.rods().map_or(&[][..], |rods| rods.ends());
-    loop {
-        let before = least.clone();
-        for [i, j] in ends {
-            let low = least[*i].min(least[*j]);
-            (least[*i], least[*j]) = (low, low);
-        }
-        if before == least {
-            return least;
-        }
     }
 }
 

@@ -27,6 +27,18 @@ impl State {
         }
     }
 
+    /// The middle of the cubic through this state and another `h` seconds later, with the work done there.
+    pub fn middle(&self, end: &Self, h: f64) -> Self {
+        let mut middle = end.clone();
+        middle.t = self.t + 0.5 * h;
+        for at in 0..end.x.len() {
+            let ([x0, x1], [v0, v1]) = ([self.x[at], end.x[at]], [self.v[at], end.v[at]]);
+            middle.x[at] = 0.5 * (x0 + x1) + 0.125 * h * (v0 - v1);
+            middle.v[at] = 1.5 * (x1 - x0) / h - 0.25 * (v0 + v1);
+        }
+        middle
+    }
+
     /// Whether it has no NaN and no infinity.
     pub fn is_finite(&self) -> bool {
         self.x.iter().chain(&self.v).all(|c| c.is_finite())

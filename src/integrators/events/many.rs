@@ -162,10 +162,9 @@ impl Many<'_> {
         self.obstacles.push_out(&self.near, &mut all, end);
         if !landed.is_empty() {
             let blows = Blows {
-                near: &self.near,
-                rods: self.rods,
                 among: true,
                 lands: true,
+                ..self.blows()
             };
             let landed = landed.iter().map(|pair| pair.0).collect();
             self.obstacles.strike(&blows, landed, end)?;
@@ -218,18 +217,23 @@ impl Many<'_> {
         high
     }
 
+    fn blows(&self) -> Blows<'_> {
+        Blows {
+            near: &self.near,
+            rods: self.rods,
+            among: false,
+            lands: false,
+        }
+    }
+
     /// One impact, and those with other obstacles that the particle touches there. Of its own place alone is it known when
     /// it is there.
     fn apply(&self, (particle, against): Pair, there: &mut State) -> Result<u64, StepError> {
         match against {
             Against::Obstacle(_) => {
-                let blows = Blows {
-                    near: &self.near,
-                    rods: self.rods,
-                    among: false,
-                    lands: false,
-                };
-                let struck = self.obstacles.strike(&blows, [particle].into(), there)?;
+                let struck = self
+                    .obstacles
+                    .strike(&self.blows(), [particle].into(), there)?;
                 Ok(struck.impulses)
             }
             Against::Particle(_) => {

@@ -185,7 +185,7 @@ impl Frozen<'_> {
             Path::new(*one, h, start, before).put(*one, due.due / h, there);
         }
         let beside = self.obstacles.beside(particle, against, there);
-        let weight: f64 = ends.iter().map(|one| self.obstacles.weight(*one)).sum();
+        let weight = self.obstacles.lightness(&beside);
         let (rest, u) = (h - due.due, beside.parting());
         // The flow of the damper alone, which turns nothing round however strong it is.
         let acted = u * (-self.law.damping * weight * rest).exp_m1();
@@ -194,13 +194,9 @@ impl Frozen<'_> {
         } else {
             acted
         };
-        for (one, side) in ends.iter().zip([1.0, -1.0]) {
-            let share = side * self.obstacles.weight(*one) / weight;
-            for axis in 0..3 {
-                let change = share * gain * beside.normal[axis];
-                end.v[3 * one + axis] += change;
-                end.x[3 * one + axis] += 0.5 * rest * change;
-            }
+        for (all, by) in [(&mut end.v, gain), (&mut end.x, 0.5 * rest * gain)] {
+            self.obstacles
+                .push(&beside, beside.normal.map(|n| by * n), all);
         }
         end.work.dissipated -= gain * (u + 0.5 * gain) / weight;
     }

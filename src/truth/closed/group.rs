@@ -1,5 +1,6 @@
 //! Groups of particles that move independently of all others: each has a closed form of its own, or none.
 
+use crate::joined::least_joined;
 use crate::physics::State;
 use crate::scene::{DampingModel, Drive, Scene, Spring};
 use nalgebra::Vector3;
@@ -22,6 +23,8 @@ pub(super) struct Body {
     /// Index in the scene.
     pub id: usize,
     pub mass: f64,
+    /// m.
+    pub radius: f64,
     pub drag: f64,
     /// c of its quadratic drag, N s²/m².
     pub quadratic: f64,
@@ -70,14 +73,10 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
         (spring.stiffness > 0.0 || spring.damping > 0.0) && !spring.ends.into_iter().all(fixed)
     };
     let springs: Vec<&Spring> = scene.springs.iter().filter(acts).collect();
-    let mut parent: Vec<usize> = (0..scene.particles.len()).collect();
     let joined = springs.iter().map(|spring| spring.ends);
-    for [a, b] in joined.chain(scene.rods.iter().map(|rod| rod.ends)) {
-        if !fixed(a) && !fixed(b) {
-            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-            parent[a.max(b)] = a.min(b);
-        }
-    }
+    let joined = joined.chain(scene.rods.iter().map(|rod| rod.ends));
+    let free = joined.filter(|ends| !ends.iter().any(|end| fixed(*end)));
+    let first = least_joined(scene.particles.len(), free);
     let gravity = Vector3::from(scene.gravity());
     let wind = scene.wind.as_ref().map_or(Vector3::zeros(), |wind| {
         wind.strength * Vector3::from(wind.direction)
@@ -92,9 +91,9 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
     let drive = |i: usize| drives.iter().find(|drive| drive.particle == i).cloned();
     let size = scene.size();
     let mut groups: Vec<Group> = Vec::new();
-    let mut group_of = vec![usize::MAX; parent.len()];
-    for i in (0..parent.len()).filter(|&i| !fixed(i)) {
-        let root = root(&mut parent, i);
+    let mut group_of = vec![usize::MAX; first.len()];
+    for i in (0..first.len()).filter(|&i| !fixed(i)) {
+        let root = first[i];
         if group_of[root] == usize::MAX {
             group_of[root] = groups.len();
             groups.push(Group {
@@ -109,6 +108,7 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
         groups[group_of[root]].bodies.push(Body {
             id: i,
             mass: particle.mass,
+            radius: particle.radius,
             drag: particle.drag,
             position: position(i),
             velocity: Vector3::from_column_slice(&start.v[3 * i..3 * i + 3]),
@@ -120,7 +120,7 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
     }
     for spring in springs {
         let [a, b] = spring.ends;
-        let root = root(&mut parent, if fixed(a) { b } else { a });
+        let root = first[if fixed(a) { b } else { a }];
         let group = &mut groups[group_of[root]];
         let place = |end| group.bodies.binary_search_by_key(&end, |body| body.id).ok();
         group.links.push(Link {
@@ -136,7 +136,7 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
     }
     for rod in &scene.rods {
         let [a, b] = rod.ends;
-        let root = root(&mut parent, if fixed(a) { b } else { a });
+        let root = first[if fixed(a) { b } else { a }];
         let group = &mut groups[group_of[root]];
         let place = |end| group.bodies.binary_search_by_key(&end, |body| body.id).ok();
         group.rods.push(Held {
@@ -146,15 +146,6 @@ pub(super) fn groups<'a>(scene: &'a Scene, start: &State, until: f64) -> Vec<Gro
         });
     }
     groups
-}
-
-/// The representative of a particle's group, halving the path to it.
-fn root(parent: &mut [usize], mut i: usize) -> usize {
-    while parent[i] != i {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    i
 }
 
 /// The smallest number of which a rounding is still a normal one.

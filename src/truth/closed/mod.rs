@@ -82,14 +82,13 @@ pub fn find(scene: &Scene, system: &ParticleSystem, until: f64) -> Option<Truth>
         drives: scene.drives(),
         parts,
     };
+    let part = |k: u32| until * f64::from(k) / 8.0;
+    let way = motion.states(&[1, 2, 3, 4, 5, 6, 7, 8].map(part));
     // A product on the way to the end may be too large for a double.
-    let end = motion.states(&[until]);
-    let finite = end.x.iter().chain(&end.v).all(|c| c.is_finite());
+    let finite = way.x(7).iter().chain(way.v(7)).all(|c| c.is_finite());
     if !(finite && motion.error_bar(until).is_finite()) {
         return None;
     }
-    let part = |k: u32| until * f64::from(k) / 8.0;
-    let way = motion.states(&[1, 2, 3, 4, 5, 6, 7, 8].map(part));
     let ways = (0..8).map(|k| farthest(way.x(k), &motion.x));
     let size = ways.fold(scene.size(), f64::max);
     let horizon = horizon(&motion, until, HORIZON * size)?;

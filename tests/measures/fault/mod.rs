@@ -3,6 +3,6 @@
 mod anchors;
 mod injected;
 mod mistaken;
-mod record;
+pub mod record;
 mod shipped;
 mod written;

@@ -11,6 +11,7 @@ use super::fitted::{norm, solved};
 use super::search::{Search, Told};
 use crate::physics::State;
 use crate::physics::constraints::contact::{Against, Obstacles, Surface};
+use crate::space::three;
 use rayon::prelude::*;
 
 /// Replays of a treatment that all take, about.
@@ -248,7 +249,7 @@ impl One<'_> {
     fn gap(&self, obstacles: &Obstacles, k: usize) -> f64 {
         let rows = self.search.question.rows;
         let state: State = self.search.replay.state(k, None);
-        let at = |particle: usize| [0, 1, 2].map(|axis| state.x[3 * particle + axis]);
+        let at = |particle: usize| three(&state.x, particle);
         let near = obstacles.near_now(&state);
         let among = near
             .pairs()

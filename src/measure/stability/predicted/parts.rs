@@ -2,6 +2,7 @@
 
 use super::part::{Matrix, Part, SYMMETRIC};
 use super::rods::{OnRods, Row, along, on_rods, stabilised};
+use crate::joined::least_joined;
 use crate::physics::{Jacobian, Linearization, State, System, Triplets};
 
 /// A scene in parts.
@@ -173,27 +174,16 @@ fn separate(
     rows: &[Row],
 ) -> Vec<(Part, Vec<Row>)> {
     let n = inverse_mass.len();
-    let mut parent: Vec<usize> = (0..n).collect();
-    fn root(parent: &mut [usize], mut i: usize) -> usize {
-        while parent[i] != i {
-            parent[i] = parent[parent[i]];
-            i = parent[i];
-        }
-        i
-    }
     let forces = whole.iter().flat_map(Matrix::entries);
-    let forces = forces.map(|(row, column, _)| (row, column));
+    let forces = forces.map(|(row, column, _)| [row, column]);
     let rods = rows
         .iter()
-        .flat_map(|row| row.windows(2).map(|two| (two[0].0, two[1].0)));
-    for (row, column) in forces.chain(rods) {
-        let (a, b) = (root(&mut parent, row), root(&mut parent, column));
-        parent[a.max(b)] = a.min(b);
-    }
+        .flat_map(|row| row.windows(2).map(|two| [two[0].0, two[1].0]));
+    let least = least_joined(n, forces.chain(rods));
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); n];
     let mut place = vec![0; n];
     for i in (0..n).filter(|&i| inverse_mass[i] > 0.0) {
-        let at = root(&mut parent, i);
+        let at = least[i];
         place[i] = members[at].len();
         members[at].push(i);
     }
@@ -202,7 +192,7 @@ fn separate(
     for row in rows {
         if let Some((first, _)) = row.first() {
             let of = |&(at, entry): &(usize, f64)| (place[at], entry);
-            held[root(&mut parent, *first)].push(row.iter().map(of).collect());
+            held[least[*first]].push(row.iter().map(of).collect());
         }
     }
     let part = |(coordinates, rows): (&Vec<usize>, Vec<Row>)| {

@@ -240,13 +240,7 @@ impl<'s> Held<'s> {
         if !self.obstacles.any_moves() && !slides && self.groups.is_empty() {
             return;
         }
-        let mut middle = end.clone();
-        middle.t = start.t + 0.5 * h;
-        for at in 0..end.x.len() {
-            let ([x0, x1], [v0, v1]) = ([start.x[at], end.x[at]], [start.v[at], end.v[at]]);
-            middle.x[at] = 0.5 * (x0 + x1) + 0.125 * h * (v0 - v1);
-            middle.v[at] = 1.5 * (x1 - x0) / h - 0.25 * (v0 + v1);
-        }
+        let middle = start.middle(end, h);
         let parts = [
             self.powers(start, &self.begins),
             self.powers(&middle, &self.free(&middle)),

@@ -300,7 +300,7 @@ impl Obstacles {
     }
 
     /// Changes what two have relative to each other, each by its 1/m.
-    pub(super) fn push(&self, beside: &Beside, change: [f64; 3], all: &mut [f64]) {
+    pub fn push(&self, beside: &Beside, change: [f64; 3], all: &mut [f64]) {
         let whole = self.lightness(beside);
         for (end, sign) in beside.particles().into_iter().zip([1.0, -1.0]) {
             let share = sign * (self.weights[end] / whole);
@@ -311,7 +311,7 @@ impl Obstacles {
     }
 
     /// The sum of both 1/m, 1/kg.
-    fn lightness(&self, beside: &Beside) -> f64 {
+    pub fn lightness(&self, beside: &Beside) -> f64 {
         beside
             .particles()
             .iter()

@@ -89,11 +89,11 @@ impl Pieces {
         let mut now = lone.start()?;
         let mut spread = Spread::new(lone.spread());
         let (mut pieces, mut joints) = (Vec::new(), Joints::default());
+        let (mut phase, mut piece) = lone.piece(&mut now)?;
         loop {
             if pieces.len() == MOST {
                 return None;
             }
-            let (phase, mut piece) = lone.piece(&mut now)?;
             let left = group.until - now.t;
             let end = lone.end(phase, &piece, &now, left)?;
             let lasts = end.map_or(left, |end| end.0);
@@ -129,6 +129,7 @@ impl Pieces {
                         spread.press(wall.normal);
                     }
                     spread.stop(then);
+                    (phase, piece) = (then, next);
                 }
                 (Phase::Sliding(at, Some(along)), None) => {
                     now.gaps[at] = 0.0;
@@ -137,6 +138,7 @@ impl Pieces {
                     let (then, next) = lone.piece(&mut now)?;
                     spread.turn(along, [before, next.acceleration(0.0)]);
                     spread.stop(then);
+                    (phase, piece) = (then, next);
                 }
                 _ => return None,
             }
@@ -262,7 +264,7 @@ impl<'a> Lone<'a> {
     fn start(&self) -> Option<Now> {
         let body = &self.group.bodies[0];
         let gap = |wall: &Wall| {
-            let (gap, from) = wall.gap(body.id, body.position);
+            let (gap, from) = wall.gap(body.radius, body.position);
             let touches = gap.abs() <= SAME * from;
             (touches || gap > 0.0).then_some(if touches { 0.0 } else { gap })
         };

@@ -16,8 +16,6 @@ pub(in crate::truth::closed) struct Wall {
     restitution: f64,
     /// µ of what slides, and of what sticks.
     pub friction: [f64; 2],
-    /// Of each particle, m.
-    radii: Vec<f64>,
 }
 
 /// The obstacles of a scene, where all are such planes and no two particles collide.
@@ -39,16 +37,15 @@ pub(in crate::truth::closed) fn walls(scene: &Scene) -> Option<Vec<Wall>> {
             velocity: velocity.into(),
             restitution: collider.restitution,
             friction: [collider.friction, collider.static_friction],
-            radii: scene.particles.iter().map(|p| p.radius).collect(),
         })
     });
     walls.collect()
 }
 
 impl Wall {
-    /// The gap of a particle at the start, and the size of what it comes from, m.
-    pub fn gap(&self, particle: usize, x: Vector3<f64>) -> (f64, f64) {
-        let (along, radius) = (self.normal.dot(&x), self.radii[particle]);
+    /// The gap of a particle of this radius at the start, and the size of what it comes from, m.
+    pub fn gap(&self, radius: f64, x: Vector3<f64>) -> (f64, f64) {
+        let along = self.normal.dot(&x);
         let from = x.abs().dot(&self.normal.abs()) + self.offset.abs() + radius;
         (along - self.offset - radius, from)
     }

@@ -2,9 +2,9 @@
 
 use super::programs::{Ball, Forces, METHODS, RADIUS, Rule, Turn, bounce, rows};
 use super::{Rows, Scene, contact, found, scene};
+use crate::fault::record::question;
 use crate::testkit::scenes::parsed;
-use springcheck::integrators::Settings;
-use springcheck::measure::identify::{Found, Question, first_fault, identify};
+use springcheck::measure::identify::{Found, first_fault, identify};
 use springcheck::physics::ParticleSystem;
 
 /// The treatment that a program is found to have, and what is wrong about it.
@@ -183,18 +183,6 @@ fn friction_of_what_slides_throughout_is_not_gravity() {
     assert!(said.contains("friction of 0.4, not 0.3"), "{said}");
     let (_, mistakes, said) = wrongs(&scene, &slides(|v, _, _, _| [v[0], v[1], 0.0], 50));
     assert_eq!(mistakes, ["friction_forgotten"], "{said}");
-}
-
-fn question<'a>(scene: &'a Scene, system: &'a ParticleSystem, rows: &'a Rows) -> Question<'a> {
-    Question {
-        scene,
-        system,
-        rows,
-        settings: Settings::default(),
-        transitions: None,
-        budget: u64::MAX,
-        hint: None,
-    }
 }
 
 /// The explanation of the first fault.

@@ -2,6 +2,7 @@
 
 use super::super::{Against, Beside, Obstacles};
 use super::Group;
+use crate::joined::least_joined;
 use crate::physics::State;
 use crate::physics::constraints::Rods;
 use std::collections::BTreeMap;
@@ -62,24 +63,15 @@ pub(in super::super) fn grouped(
 
 /// The sets of particles that pairs join, each ascending.
 fn sets(count: usize, pairs: &[[usize; 2]], alone: impl Iterator<Item = usize>) -> Vec<Vec<usize>> {
-    let mut root: Vec<usize> = (0..count).collect();
-    fn find(root: &mut [usize], mut at: usize) -> usize {
-        while root[at] != at {
-            root[at] = root[root[at]];
-            at = root[at];
-        }
-        at
-    }
     let mut within = vec![false; count];
     alone.for_each(|at| within[at] = true);
     for [i, j] in pairs {
         (within[*i], within[*j]) = (true, true);
-        let (i, j) = (find(&mut root, *i), find(&mut root, *j));
-        root[i.max(j)] = i.min(j);
     }
+    let least = least_joined(count, pairs.iter().copied());
     let mut sets: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for at in (0..count).filter(|at| within[*at]) {
-        sets.entry(find(&mut root, at)).or_default().push(at);
+        sets.entry(least[at]).or_default().push(at);
     }
     sets.into_values().collect()
 }
