@@ -17,7 +17,7 @@ pub use jacobian::{Derivative, Jacobian, Linearization, Triplets};
 pub use kinds::{ForceKinds, Refused};
 pub use particles::{Effects, ParticleSystem};
 pub use state::{Injected, Power, State, Work};
-pub use sweep::{Dampers, Sweep};
+pub use sweep::{Bound, Dampers, Sweep};
 pub(crate) use sweep::{phi1, phi2};
 
 use constraints::contact::Obstacles;
@@ -116,6 +116,12 @@ pub trait System {
     /// As [`acceleration`](Self::acceleration), without the forces of rods.
     fn free_acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
         self.acceleration(t, x, v, a)
+    }
+
+    /// As [`free_acceleration`](Self::free_acceleration), at the end of a step or where one begins: a system may remember it
+    /// for the next step.
+    fn remembered_acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
+        self.free_acceleration(t, x, v, a);
     }
 
     /// Potential energy, J.

@@ -7,9 +7,13 @@
 //! order in h elsewhere; a sweep in the reverse order is then the adjoint.
 
 mod bend;
+mod bound;
 mod turn;
 
+pub use bound::Bound;
+
 use crate::physics::System;
+use crate::space::norm;
 
 /// How a system's dampers can be applied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +43,8 @@ pub struct Sweep<'a> {
     moved: Option<&'a mut [f64]>,
     /// The factor of all coefficients.
     scale: f64,
+    /// The directions that particles cannot move in, where there are some.
+    bound: Option<&'a Bound>,
     /// What the dampers have taken out, J.
     dissipated: f64,
     decay: Decay,
@@ -77,6 +83,7 @@ impl<'a> Sweep<'a> {
             a: None,
             moved: None,
             scale: 1.0,
+            bound: None,
             dissipated: 0.0,
             decay: Decay::default(),
         }
@@ -114,6 +121,7 @@ impl<'a> Sweep<'a> {
             a: self.a,
             moved: self.moved.as_deref_mut(),
             scale: self.scale,
+            bound: self.bound,
             dissipated: self.dissipated,
             decay: self.decay,
         };
@@ -135,6 +143,17 @@ impl<'a> Sweep<'a> {
         let Some([i, j]) = self.pair([i, j]) else {
             return;
         };
+        if let Some(bound) = self.bound(&[i, j]) {
+            let size = norm(d);
+            if size * size >= f64::MIN_POSITIVE {
+                self.rate(
+                    bound,
+                    c,
+                    [(i, d.map(|d| -d / size)), (j, d.map(|d| d / size))],
+                );
+            }
+            return;
+        }
         let (wi, wj) = (self.inverse_mass[i], self.inverse_mass[j]);
         if !self.relaxes(c, wi + wj) {
             return;
@@ -179,6 +198,12 @@ impl<'a> Sweep<'a> {
         let Some([i, j]) = self.pair([i, j]) else {
             return;
         };
+        if let Some(bound) = self.bound(&[i, j]) {
+            for d in self.axes() {
+                self.rate(bound, c, [(i, d.map(|d| -d)), (j, d)]);
+            }
+            return;
+        }
         let (wi, wj) = (self.inverse_mass[i], self.inverse_mass[j]);
         if !self.relaxes(c, wi + wj) {
             return;
@@ -211,6 +236,12 @@ impl<'a> Sweep<'a> {
         let Some([i, _]) = self.pair([i, i]) else {
             return;
         };
+        if let Some(bound) = self.bound(&[i]) {
+            for d in self.axes() {
+                self.rate(bound, b, [(i, d)]);
+            }
+            return;
+        }
         if !self.relaxes(b, self.inverse_mass[i]) {
             return;
         }

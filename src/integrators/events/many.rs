@@ -4,15 +4,16 @@
 use super::path::{Path, meeting};
 use super::root::Due;
 use crate::integrators::StepError;
-use crate::physics::State;
 use crate::physics::constraints::Rods;
-use crate::physics::constraints::contact::{Against, Blows, Near, Obstacles};
+use crate::physics::constraints::contact::{Against, Blows, Held, Near, Obstacles};
+use crate::physics::{State, System};
 use crate::space::{dot, minus, three};
 use std::cmp::{Ordering, Reverse};
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use std::sync::Arc;
 
-/// After so many impacts within a step a particle that would come to rest by its end does so at once.
+/// After so many impacts within a step a particle that would come to rest by its end does so at once; what gives nothing
+/// back, after the first.
 const ENOUGH: u32 = 32;
 /// And after so many between what does not give everything back, whatever comes of it.
 const ANYHOW: u32 = 256;
@@ -24,8 +25,9 @@ type Pair = (usize, Against);
 
 /// The impacts of a step of `h` seconds from `start`, of which these are known.
 pub(super) struct Many<'a> {
+    pub system: &'a dyn System,
     pub obstacles: &'a Obstacles,
-    pub rods: Option<&'a Rods>,
+    pub held: Option<&'a Held<'a>>,
     pub near: Arc<Near>,
     pub h: f64,
     pub start: &'a State,
@@ -43,6 +45,8 @@ struct Bent<'a> {
     ends: [&'a State; 2],
     paths: BTreeMap<usize, (Path, u32)>,
     hits: BTreeMap<usize, u32>,
+    /// The changes of velocity, each times the part of the step that is left after it, and times the root of that, m/s.
+    turned: [Vec<f64>; 2],
 }
 
 impl Bent<'_> {
@@ -65,6 +69,11 @@ impl Bent<'_> {
         let (path, often) = self.paths.entry(one).or_insert((path, 0));
         path.bend(s, change);
         *often += 1;
+        for (all, weight) in self.turned.iter_mut().zip([1.0 - s, (1.0 - s).sqrt()]) {
+            for axis in 0..3 {
+                all[3 * one + axis] += weight * change[axis];
+            }
+        }
     }
 
     /// Counts an impact of these; returns how many the most often struck has.
@@ -88,6 +97,7 @@ impl Many<'_> {
             ends: [self.start, &before],
             paths: BTreeMap::new(),
             hits: BTreeMap::new(),
+            turned: [vec![0.0; before.v.len()], vec![0.0; before.v.len()]],
         };
         let mut landed: BTreeSet<Pair> = BTreeSet::new();
         let mut there = before.clone();
@@ -107,7 +117,7 @@ impl Many<'_> {
                 bent.path(*one).put(*one, s, &mut there);
             }
             // Rods pass impulses on to all.
-            let moved: Vec<usize> = match self.rods {
+            let moved: Vec<usize> = match self.rods() {
                 Some(_) => (0..there.v.len() / 3).collect(),
                 None => ends.clone(),
             };
@@ -131,7 +141,8 @@ impl Many<'_> {
             if most > MOST {
                 return Err(StepError::TooManyEvents { t: there.t });
             }
-            if most >= ENOUGH && self.comes_to_rest(pair, s, most, &bent, &mut there) {
+            let dead = self.obstacles.surface(pair.1).restitution == 0.0;
+            if (dead || most >= ENOUGH) && self.comes_to_rest(pair, s, most, &bent, &mut there) {
                 landed.insert(pair);
             }
             self.follow(&turned, &bent);
@@ -159,6 +170,7 @@ impl Many<'_> {
             path.put(*one, 1.0, end);
             all.insert(*one);
         }
+        self.damp(&bent, &landed, end)?;
         self.obstacles.push_out(&self.near, &mut all, end);
         if !landed.is_empty() {
             let blows = Blows {
@@ -170,6 +182,56 @@ impl Many<'_> {
             self.obstacles.strike(&blows, landed, end)?;
         }
         Ok(impacts)
+    }
+
+    fn rods(&self) -> Option<&'_ Rods> {
+        self.system.rods()
+    }
+
+    /// What forces that depend on velocity do otherwise from impacts on to the end of the step, as far as velocities go: to
+    /// second order where they are linear in it. Without it dampers would act as if nothing had been struck, and each
+    /// impact cost an error of first order.
+    fn damp(&self, bent: &Bent, landed: &BTreeSet<Pair>, end: &mut State) -> Result<(), StepError> {
+        let system = self.system;
+        if !system.kinds().depends_on_velocity() {
+            return Ok(());
+        }
+        let before = bent.ends[1];
+        let [mean, root] = &bent.turned;
+        let v: Vec<f64> = before.v.iter().zip(mean).map(|(v, w)| v + w).collect();
+        let (mut was, mut change) = (vec![0.0; v.len()], vec![0.0; v.len()]);
+        let from = system.free_acceleration(before.t, &before.x, &before.v, &mut was);
+        let to = system.free_acceleration(before.t, &before.x, &v, &mut change);
+        for (change, was) in change.iter_mut().zip(&was) {
+            *change = self.h * (*change - was);
+        }
+        if let Some(held) = self.held {
+            held.left(&mut change);
+        }
+        if let Some(rods) = self.rods() {
+            rods.at(&before.x)?.still(&mut change);
+        }
+        for (particle, against) in landed {
+            let beside = self.obstacles.beside(*particle, *against, end);
+            let away = dot(beside.normal, self.obstacles.relative(&beside, &change));
+            if away > 0.0 {
+                let back = beside.normal.map(|n| -away * n);
+                self.obstacles.push(&beside, back, &mut change);
+            }
+        }
+        for (v, change) in end.v.iter_mut().zip(&change) {
+            *v += change;
+        }
+        // The power is quadratic in the velocity: that of a change which lasts for a part of the step is not that of its mean.
+        let [whole, of_mean] = [root, mean].map(|w| {
+            system.damping(before.t, &before.x, w, &mut was);
+            let each = w.iter().zip(&was).zip(system.inverse_mass());
+            let each = each.filter(|(_, inverse)| **inverse > 0.0);
+            -each.map(|((w, a), inverse)| w * a / inverse).sum::<f64>()
+        });
+        end.work.dissipated += self.h * (to.dissipated - from.dissipated + whole - of_mean);
+        end.work.injected += self.h * (to.injected - from.injected);
+        Ok(())
     }
 
     /// Whether what bounces ends its bounces within the step, after 2 V/((1 - e) a) for the speed V and the acceleration a
@@ -220,7 +282,7 @@ impl Many<'_> {
     fn blows(&self) -> Blows<'_> {
         Blows {
             near: &self.near,
-            rods: self.rods,
+            rods: self.rods(),
             among: false,
             lands: false,
         }
@@ -238,7 +300,7 @@ impl Many<'_> {
             }
             Against::Particle(_) => {
                 let beside = self.obstacles.beside(particle, against, there);
-                let struck = self.obstacles.apply(self.rods, &beside, false, there)?;
+                let struck = self.obstacles.apply(self.rods(), &beside, false, there)?;
                 Ok(u64::from(struck))
             }
         }

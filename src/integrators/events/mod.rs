@@ -195,7 +195,7 @@ impl Walk<'_> {
         self.integrator.forget();
         let mut end = self.sub_step(held, left, &start)?;
         self.near = path::near(obstacles, left, &start, &end);
-        let a = held.map(|held| held.free(&end));
+        let a = held.map(|held| held.free_at_end(&end));
         let mut due = Self::changes(held, left, &end, a.as_deref());
         due.extend(self.impacts(held, left, &start, &end));
         self.involved
@@ -244,10 +244,10 @@ impl Walk<'_> {
         };
         let mut begin = start.clone();
         held.slow_down(0.5 * h, &mut begin);
-        let mut own = held.inward(&begin);
+        let mut own = held.inward(begin);
         self.integrator.step(held, h, &mut own)?;
         held.place(start.t + h, &mut own.x, &mut own.v);
-        let mut end = held.outward(&own);
+        let mut end = held.outward(own);
         held.slow_down(0.5 * h, &mut end);
         Ok(end)
     }
@@ -312,8 +312,9 @@ impl Walk<'_> {
             return Ok(());
         }
         let mut many = Many {
+            system: self.system,
             obstacles: self.obstacles,
-            rods: self.system.rods(),
+            held,
             near: Arc::clone(&self.near),
             h,
             start,

@@ -10,6 +10,10 @@ impl Sweep<'_> {
         if places.iter().any(|place| place + 2 >= self.v.len()) {
             return;
         }
+        if let Some(bound) = self.bound(&places) {
+            let [a, b, d] = [0, 1, 2].map(|at| (places[at], gradients[at]));
+            return self.rate(bound, c, [a, b, d]);
+        }
         let inverse_mass = self.inverse_mass;
         let rows = || places.into_iter().zip(gradients);
         let weight = |(at, g): (usize, [f64; 3])| inverse_mass[at] * dot(&g, &g);

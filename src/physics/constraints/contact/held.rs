@@ -18,7 +18,8 @@ use super::group::{Group, TooManyTouch, grouped};
 use super::member::{Contact, Member, approach, multipliers};
 use super::{Against, Beside, Obstacles};
 use crate::physics::{
-    Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, State, System, Triplets,
+    Bound, Dampers, Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, State, Sweep,
+    System, Triplets,
 };
 use crate::space::{dot, minus, norm, three};
 
@@ -35,6 +36,8 @@ pub struct Held<'s> {
     begins: Vec<f64>,
     /// When it begins, s.
     since: f64,
+    /// What dampers cannot move, where they act one after the other.
+    bound: Option<Bound>,
     /// Whether friction acts among the forces. Where it turns, a method whose forces must not depend on velocity takes it
     /// apart: see [`slow_down`](Self::slow_down).
     friction: bool,
@@ -65,14 +68,14 @@ impl<'s> Held<'s> {
         taken: ForceKinds,
     ) -> Result<Option<Self>, TooManyTouch> {
         let any_velocity = taken.has(ForceKinds::NON_LINEAR);
-        let follow = taken.has(ForceKinds::CONSTRAINED);
+        let follow = any_velocity && taken.has(ForceKinds::CONSTRAINED);
         let resting = touching.iter().filter(|beside| beside.rests());
         let mut all: Vec<Beside> = resting.copied().collect();
         if all.is_empty() {
             return Ok(None);
         }
         let mut a = vec![0.0; state.x.len()];
-        system.free_acceleration(state.t, &state.x, &state.v, &mut a);
+        system.remembered_acceleration(state.t, &state.x, &state.v, &mut a);
         let groups = grouped(obstacles, system.rods(), &mut all, state, &a)?;
         let mut members: Vec<Member> = Vec::new();
         for own in all.chunk_by(|one, other| one.particle == other.particle) {
@@ -99,6 +102,21 @@ impl<'s> Held<'s> {
         let turns = members
             .iter()
             .any(|member| member.slides && !member.straight);
+        let friction = any_velocity || !turns;
+        let apart = groups.is_empty()
+            && !obstacles.any_moves()
+            && !system.kinds().has(ForceKinds::GYROSCOPIC)
+            && !members
+                .iter()
+                .any(|member| member.follows || (friction && member.slides));
+        let bound = (apart && system.dampers() != Dampers::Whole).then(|| {
+            Bound::new(
+                state.x.len() / 3,
+                members
+                    .iter()
+                    .map(|member| (member.particle, &member.axes[member.given..])),
+            )
+        });
         Ok(Some(Self {
             system,
             obstacles,
@@ -107,22 +125,21 @@ impl<'s> Held<'s> {
             inverse_mass,
             begins: a,
             since: state.t,
-            friction: any_velocity || !turns,
+            bound,
+            friction,
         }))
     }
 
     /// The state in the particles' own axes.
-    pub fn inward(&self, state: &State) -> State {
-        let mut own = state.clone();
+    pub fn inward(&self, mut own: State) -> State {
         self.turn(&mut own.x);
         self.turn(&mut own.v);
-        self.place(state.t, &mut own.x, &mut own.v);
+        self.place(own.t, &mut own.x, &mut own.v);
         own
     }
 
     /// The state in the axes of space, on surfaces that bend too.
-    pub fn outward(&self, own: &State) -> State {
-        let mut state = own.clone();
+    pub fn outward(&self, mut state: State) -> State {
         self.turn_back(&mut state.x);
         self.turn_back(&mut state.v);
         let (rods, h) = (self.system.rods(), state.t - self.since);
@@ -164,11 +181,11 @@ impl<'s> Held<'s> {
             self.free(state)
         };
         for member in self.members.iter().filter(|member| member.slides) {
-            let member = member.now(self.obstacles, state);
-            let pressed = member.pressed(self.obstacles, state.t, three(&a, member.particle));
-            let along = member.outer_sliding(self.obstacles, state);
+            let now = member.contacts.now(self.obstacles, state);
+            let pressed = now.pressed(self.obstacles, state.t, three(&a, member.particle));
+            let along = now.outer_sliding(self.obstacles, state);
             let fast = norm(along);
-            let lost = (h * member.resistance(&pressed, 0)).min(fast);
+            let lost = (h * now.resistance(&pressed, 0)).min(fast);
             if fast > 0.0 {
                 for axis in 0..3 {
                     state.v[3 * member.particle + axis] -= lost / fast * along[axis];
@@ -185,9 +202,30 @@ impl<'s> Held<'s> {
         a
     }
 
+    /// The same where the next step may begin.
+    pub fn free_at_end(&self, state: &State) -> Vec<f64> {
+        let mut a = vec![0.0; state.x.len()];
+        self.system
+            .remembered_acceleration(state.t, &state.x, &state.v, &mut a);
+        a
+    }
+
+    /// The part of a change that contacts leave, in the axes of space.
+    pub fn left(&self, change: &mut [f64]) {
+        self.turn(change);
+        for member in &self.members {
+            let at = 3 * member.particle;
+            change[at..at + member.given].fill(0.0);
+        }
+        for at in self.groups.iter().flat_map(Group::given) {
+            change[at] = 0.0;
+        }
+        self.turn_back(change);
+    }
+
     /// The acceleration with contact at a state in the axes of space, m/s², but for that of moving obstacles.
     pub fn whole(&self, state: &State) -> Vec<f64> {
-        let own = self.inward(state);
+        let own = self.inward(state.clone());
         let mut a = vec![0.0; state.x.len()];
         self.acceleration(state.t, &own.x, &own.v, &mut a);
         self.turn_back(&mut a);
@@ -197,20 +235,21 @@ impl<'s> Held<'s> {
     /// What has changed at a state in the axes of space, with the acceleration `a` without contact there, by how much: the
     /// largest violation, negative where none is. Each is a continuous function of time, and 0 where the change is due.
     pub fn changes(&self, state: &State, a: &[f64]) -> Vec<(usize, Change, f64)> {
-        let mut found = Vec::new();
+        let mut found = Vec::with_capacity(2 * self.members.len());
         for member in &self.members {
-            let member = member.now(self.obstacles, state);
-            let pressed = member.pressed(self.obstacles, state.t, three(a, member.particle));
+            let now = member.contacts.now(self.obstacles, state);
+            let free = three(a, member.particle);
+            let pressed = now.pressed(self.obstacles, state.t, free);
             for n in &pressed {
                 found.push((member.particle, Change::Leaves, -n));
             }
             if member.slides {
-                let along = member.outer_sliding(self.obstacles, state);
+                let along = now.outer_sliding(self.obstacles, state);
                 let forward = dot(member.forward(), along);
                 found.push((member.particle, Change::Stops, -forward));
             } else if member.sticks() {
-                let pull = member.pull(self.obstacles, state.t, three(a, member.particle));
-                let most = member.resistance(&pressed, 1);
+                let pull = now.pull(self.obstacles, state.t, free);
+                let most = now.resistance(&pressed, 1);
                 found.push((member.particle, Change::Slips, norm(pull) - most));
             }
         }
@@ -223,7 +262,7 @@ impl<'s> Held<'s> {
     /// Gives what has stopped the velocity of its obstacle.
     pub fn stop(&self, particle: usize, state: &mut State) {
         if let Some(member) = self.member(particle).filter(|member| member.slides) {
-            let along = member.outer_sliding(self.obstacles, state);
+            let along = member.contacts.outer_sliding(self.obstacles, state);
             for axis in 0..3 {
                 state.v[3 * particle + axis] -= along[axis];
             }
@@ -257,22 +296,21 @@ impl<'s> Held<'s> {
     fn powers(&self, state: &State, a: &[f64]) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for member in &self.members {
-            let member = member.now(self.obstacles, state);
+            let now = member.contacts.now(self.obstacles, state);
             let mass = 1.0 / self.system.inverse_mass()[3 * member.particle];
             let free = three(a, member.particle);
-            let pressed = member.pressed(self.obstacles, state.t, free);
-            let moved = member.contacts[0].beside.against;
-            let [_, along, pushed] = self.obstacles.moved(moved, state.t);
+            let pressed = now.pressed(self.obstacles, state.t, free);
+            let [_, along, pushed] = self.obstacles.moved(now[0].beside.against, state.t);
             let mut force = [0.0; 3];
-            for (n, contact) in pressed.iter().zip(&member.contacts) {
+            for (n, contact) in pressed.iter().zip(now.iter()) {
                 for axis in 0..3 {
                     force[axis] += n * contact.beside.normal[axis];
                 }
             }
             if member.slides {
-                let sliding = member.outer_sliding(self.obstacles, state);
+                let sliding = now.outer_sliding(self.obstacles, state);
                 let direction = member.rubbed(sliding);
-                let lost = member.resistance(&pressed, 0);
+                let lost = now.resistance(&pressed, 0);
                 sums[0] += mass * lost * dot(direction, sliding);
                 for axis in 0..3 {
                     force[axis] -= lost * direction[axis];
@@ -311,8 +349,8 @@ impl<'s> Held<'s> {
             }
             if member.slides && self.friction {
                 let free = member.outward(own);
-                let pressed = member.pressed(self.obstacles, t, free);
-                let lost = member.resistance(&pressed, 0);
+                let pressed = member.contacts.pressed(self.obstacles, t, free);
+                let lost = member.contacts.resistance(&pressed, 0);
                 let along = v.map_or([1.0, 0.0], |v| member.direction(self.obstacles, t, v));
                 a[at + member.given] -= lost * along[0];
                 if member.given == 1 {
@@ -494,6 +532,27 @@ impl System for Held<'_> {
         self.system.jumps()
     }
 
+    fn dampers(&self) -> Dampers {
+        match self.bound {
+            Some(_) => Dampers::Shared,
+            None => Dampers::Whole,
+        }
+    }
+
+    fn sweep(&self, sweep: &mut Sweep) {
+        let Some(bound) = &self.bound else {
+            return;
+        };
+        let mut x = sweep.x().to_vec();
+        self.turn_back(&mut x);
+        sweep.seen(
+            self.system,
+            &x,
+            bound,
+            [&|v| self.turn_back(v), &|v| self.turn(v)],
+        );
+    }
+
     fn damping(&self, t: f64, x: &[f64], w: &[f64], a: &mut [f64]) {
         self.seen(x, w, |x, w| self.system.damping(t, x, w, a));
         self.turn(a);
@@ -504,7 +563,7 @@ impl System for Held<'_> {
                 let free = member.outward(three(a, member.particle));
                 let none = multipliers(self.obstacles, &member.contacts, t, [0.0; 3]);
                 let some = multipliers(self.obstacles, &member.contacts, t, free);
-                let each = some.iter().zip(&none).zip(&member.contacts);
+                let each = some.iter().zip(&none).zip(member.contacts.iter());
                 let lost: f64 = each.map(|((n, o), c)| c.friction[0] * (n - o)).sum();
                 a[at + member.given] -= lost;
             }

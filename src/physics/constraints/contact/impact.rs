@@ -320,7 +320,7 @@ impl Obstacles {
     }
 
     /// A vector at the particle relative to the other; to an obstacle as if that was at rest.
-    fn relative(&self, beside: &Beside, all: &[f64]) -> [f64; 3] {
+    pub fn relative(&self, beside: &Beside, all: &[f64]) -> [f64; 3] {
         let own = three(all, beside.particle);
         match beside.against {
             Against::Obstacle(_) => own,

@@ -4,7 +4,9 @@ use super::{Beside, Obstacles};
 use crate::physics::State;
 use crate::shape::Bend;
 use crate::space::{cross, dot, minus, norm, three};
+use smallvec::{SmallVec, smallvec};
 use std::borrow::Cow;
+use std::ops::Deref;
 
 /// Newton's steps onto a surface.
 const ITERATIONS: usize = 20;
@@ -13,7 +15,7 @@ const ITERATIONS: usize = 20;
 #[derive(Debug, Clone)]
 pub(super) struct Member {
     pub(super) particle: usize,
-    pub(super) contacts: Vec<Contact>,
+    pub(super) contacts: Pressing,
     /// Rows: unit vectors, the given ones first.
     pub(super) axes: [[f64; 3]; 3],
     /// How many coordinates are given: those along normals, or all where it sticks.
@@ -37,6 +39,13 @@ pub(super) struct Contact {
     pub(super) turning: f64,
 }
 
+/// N/m of each contact, m/s².
+pub(super) type Forces = SmallVec<[f64; 3]>;
+
+/// The contacts of one particle that press; at least one. Most have one, and are many.
+#[derive(Debug, Clone)]
+pub(super) struct Pressing(SmallVec<[Contact; 1]>);
+
 impl Contact {
     pub(super) fn new(obstacles: &Obstacles, beside: Beside) -> Self {
         Self {
@@ -55,6 +64,69 @@ impl Contact {
     }
 }
 
+impl Deref for Pressing {
+    type Target = [Contact];
+
+    fn deref(&self) -> &[Contact] {
+        &self.0
+    }
+}
+
+impl Pressing {
+    /// The same contacts at another state, where surfaces bend.
+    pub(super) fn now(&self, obstacles: &Obstacles, state: &State) -> Cow<'_, Self> {
+        if self.iter().all(|one| one.beside.bend == Bend::Flat) {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(Self(
+            self.iter().map(|one| one.now(obstacles, state)).collect(),
+        ))
+    }
+
+    /// The part of a vector along all surfaces it touches.
+    pub(super) fn along(&self, vector: [f64; 3]) -> [f64; 3] {
+        match &self[..] {
+            [one] => {
+                let n = one.beside.normal;
+                let part = dot(n, vector);
+                [0, 1, 2].map(|c| vector[c] - part * n[c])
+            }
+            [one, other] => {
+                let edge = unit(cross(one.beside.normal, other.beside.normal));
+                edge.map_or([0.0; 3], |edge| {
+                    let part = dot(edge, vector);
+                    edge.map(|c| part * c)
+                })
+            }
+            _ => [0.0; 3],
+        }
+    }
+
+    /// Along the surfaces, in the axes of space, relative to the obstacle.
+    pub(super) fn outer_sliding(&self, obstacles: &Obstacles, state: &State) -> [f64; 3] {
+        let moved = obstacles.moved(self[0].beside.against, state.t)[1];
+        self.along(minus(three(&state.v, self[0].beside.particle), moved))
+    }
+
+    /// N/m of each contact, m/s²; negative where it would have to pull.
+    pub(super) fn pressed(&self, obstacles: &Obstacles, t: f64, a: [f64; 3]) -> Forces {
+        multipliers(obstacles, self, t, a)
+    }
+
+    /// The acceleration along the surfaces, relative to the obstacle, m/s², that friction has to hold.
+    pub(super) fn pull(&self, obstacles: &Obstacles, t: f64, a: [f64; 3]) -> [f64; 3] {
+        let pushed = obstacles.moved(self[0].beside.against, t)[2];
+        self.along(minus(a, pushed))
+    }
+
+    /// The deceleration by friction, m/s²: of what slides (0) or the most of what sticks (1).
+    pub(super) fn resistance(&self, pressed: &[f64], which: usize) -> f64 {
+        let each = pressed.iter().zip(&self.0);
+        each.map(|(n, contact)| contact.friction[which] * n.max(0.0))
+            .sum()
+    }
+}
+
 impl Member {
     /// None where nothing presses. `a` is the acceleration without contact, m/s².
     pub(super) fn new(
@@ -64,13 +136,13 @@ impl Member {
         [x, a]: [[f64; 3]; 2],
         follow: bool,
     ) -> Option<Self> {
-        let contacts: Vec<Contact> = resting
-            .iter()
+        let contacts = resting.iter();
+        let contacts: SmallVec<[Contact; 1]> = contacts
             .map(|beside| Contact::new(obstacles, *beside))
             .collect();
-        let contacts = pressing(obstacles, &contacts, t, a)?;
-        let mut axes = Vec::new();
-        for contact in &contacts {
+        let contacts = pressing(obstacles, contacts, t, a)?;
+        let mut axes: SmallVec<[[f64; 3]; 3]> = SmallVec::new();
+        for contact in contacts.iter() {
             let n = contact.beside.normal;
             let along = axes.iter().fold(n, |left, axis| {
                 let part = dot(*axis, n);
@@ -91,19 +163,19 @@ impl Member {
             follows: false,
         };
         let first = &member.contacts[0];
-        let sliding = member.along(first.beside.velocity);
+        let sliding = member.contacts.along(first.beside.velocity);
         let mut direction = None;
         if normals < 3 && norm(sliding) > first.beside.slow {
             direction = unit(sliding);
         } else if normals < 3 {
-            let pull = member.pull(obstacles, t, a);
-            let pressed = member.pressed(obstacles, t, a);
+            let pull = member.contacts.pull(obstacles, t, a);
+            let pressed = member.contacts.pressed(obstacles, t, a);
             let rubs = member
                 .contacts
                 .iter()
                 .any(|contact| contact.friction[1] > 0.0);
             // At the instant at which it begins to slip it slides.
-            if rubs && norm(pull) < member.resistance(&pressed, 1) {
+            if rubs && norm(pull) < member.contacts.resistance(&pressed, 1) {
                 member.given = 3;
             } else {
                 direction = unit(pull);
@@ -112,8 +184,8 @@ impl Member {
         member.slides = member.given < 3 && member.contacts.iter().any(|c| c.friction[0] > 0.0);
         if let (true, Some(direction)) = (normals < 3, direction) {
             axes.push(direction);
-            let pull = member.pull(obstacles, t, a);
-            let aside = norm(cross(direction, member.along(pull)));
+            let pull = member.contacts.pull(obstacles, t, a);
+            let aside = norm(cross(direction, member.contacts.along(pull)));
             member.straight = normals == 2 || aside <= 1e-12 * norm(a).max(f64::MIN_POSITIVE);
         }
         complete(&mut axes);
@@ -145,53 +217,12 @@ impl Member {
         unit(sliding).filter(|_| turns).unwrap_or(forward)
     }
 
-    /// The same at another state, where surfaces bend.
-    pub(super) fn now(&self, obstacles: &Obstacles, state: &State) -> Cow<'_, Self> {
-        if self
-            .contacts
-            .iter()
-            .all(|one| one.beside.bend == Bend::Flat)
-        {
-            return Cow::Borrowed(self);
-        }
-        let contacts = self.contacts.iter();
-        Cow::Owned(Self {
-            contacts: contacts.map(|one| one.now(obstacles, state)).collect(),
-            ..self.clone()
-        })
-    }
-
     pub(super) fn inward(&self, out: [f64; 3]) -> [f64; 3] {
         self.axes.map(|axis| dot(axis, out))
     }
 
     pub(super) fn outward(&self, own: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|c| (0..3).map(|axis| own[axis] * self.axes[axis][c]).sum())
-    }
-
-    /// The part of a vector along all surfaces it touches.
-    pub(super) fn along(&self, vector: [f64; 3]) -> [f64; 3] {
-        match &self.contacts[..] {
-            [one] => {
-                let n = one.beside.normal;
-                let part = dot(n, vector);
-                [0, 1, 2].map(|c| vector[c] - part * n[c])
-            }
-            [one, other] => {
-                let edge = unit(cross(one.beside.normal, other.beside.normal));
-                edge.map_or([0.0; 3], |edge| {
-                    let part = dot(edge, vector);
-                    edge.map(|c| part * c)
-                })
-            }
-            _ => [0.0; 3],
-        }
-    }
-
-    /// Along the surfaces, in the axes of space, relative to the obstacle.
-    pub(super) fn outer_sliding(&self, obstacles: &Obstacles, state: &State) -> [f64; 3] {
-        let moved = obstacles.moved(self.contacts[0].beside.against, state.t)[1];
-        self.along(minus(three(&state.v, self.particle), moved))
     }
 
     /// The direction of sliding in the plane of the last two axes, at velocities in its own axes. Beyond a standstill it
@@ -208,24 +239,6 @@ impl Member {
         } else {
             [1.0, 0.0]
         }
-    }
-
-    /// N/m of each contact, m/s²; negative where it would have to pull.
-    pub(super) fn pressed(&self, obstacles: &Obstacles, t: f64, a: [f64; 3]) -> Vec<f64> {
-        multipliers(obstacles, &self.contacts, t, a)
-    }
-
-    /// The acceleration along the surfaces, relative to the obstacle, m/s², that friction has to hold.
-    pub(super) fn pull(&self, obstacles: &Obstacles, t: f64, a: [f64; 3]) -> [f64; 3] {
-        let pushed = obstacles.moved(self.contacts[0].beside.against, t)[2];
-        self.along(minus(a, pushed))
-    }
-
-    /// The deceleration by friction, m/s²: of what slides (0) or the most of what sticks (1).
-    pub(super) fn resistance(&self, pressed: &[f64], which: usize) -> f64 {
-        let each = pressed.iter().zip(&self.contacts);
-        each.map(|(n, contact)| contact.friction[which] * n.max(0.0))
-            .sum()
     }
 
     /// Given coordinates, and their velocities, at a time.
@@ -284,7 +297,7 @@ impl Member {
                 state.v[3 * self.particle + axis] += back * n[axis];
             }
         }
-        for contact in &self.contacts {
+        for contact in self.contacts.iter() {
             let now = obstacles.beside(self.particle, contact.beside.against, state);
             let parting = now.parting();
             for axis in 0..3 {
@@ -317,14 +330,17 @@ impl Member {
 /// is pressed into. None where none does.
 fn pressing(
     obstacles: &Obstacles,
-    touching: &[Contact],
+    touching: SmallVec<[Contact; 1]>,
     t: f64,
     a: [f64; 3],
-) -> Option<Vec<Contact>> {
+) -> Option<Pressing> {
+    if let [one] = &touching[..] {
+        return (approach(obstacles, one, t, a) < 0.0).then_some(Pressing(touching));
+    }
     let count = touching.len().min(8);
-    let mut best: Option<(f64, Vec<Contact>)> = None;
+    let mut best: Option<(f64, SmallVec<[Contact; 1]>)> = None;
     for set in 1_u32..1 << count {
-        let members: Vec<Contact> = (0..count)
+        let members: SmallVec<[Contact; 1]> = (0..count)
             .filter(|at| set & (1 << at) != 0)
             .map(|at| touching[at])
             .collect();
@@ -349,7 +365,10 @@ fn pressing(
     }
     // Free where no contact would be pressed into; at the instant at which one leaves nothing presses.
     let free = touching.iter().all(|c| approach(obstacles, c, t, a) >= 0.0);
-    if free { None } else { best.map(|(_, set)| set) }
+    if free {
+        return None;
+    }
+    best.map(|(_, set)| Pressing(set))
 }
 
 /// How a contact would open, m/s², under an acceleration.
@@ -365,8 +384,8 @@ pub(super) fn multipliers(
     contacts: &[Contact],
     t: f64,
     a: [f64; 3],
-) -> Vec<f64> {
-    let right: Vec<f64> = contacts
+) -> Forces {
+    let right: Forces = contacts
         .iter()
         .map(|contact| -approach(obstacles, contact, t, a))
         .collect();
@@ -376,7 +395,7 @@ pub(super) fn multipliers(
         2 => {
             let c = dot(n(0), n(1));
             let det = (1.0 - c) * (1.0 + c);
-            vec![
+            smallvec![
                 (right[0] - c * right[1]) / det,
                 (right[1] - c * right[0]) / det,
             ]
@@ -386,7 +405,7 @@ pub(super) fn multipliers(
             let solved = gram
                 .lu()
                 .solve(&nalgebra::Vector3::from_fn(|i, _| right[i]));
-            solved.map_or(vec![f64::NAN; 3], |n| n.as_slice().to_vec())
+            solved.map_or(smallvec![f64::NAN; 3], |n| n.as_slice().into())
         }
     }
 }
@@ -397,7 +416,7 @@ pub(super) fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
 }
 
 /// Adds axes until there are three.
-fn complete(axes: &mut Vec<[f64; 3]>) {
+fn complete(axes: &mut SmallVec<[[f64; 3]; 3]>) {
     while axes.len() < 3 {
         let next = match axes[..] {
             [one, other] => cross(one, other),

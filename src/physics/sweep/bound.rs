@@ -1,0 +1,113 @@
+//! Dampers on particles that cannot move in all directions, as those that stay on a surface.
+
+use super::Sweep;
+use crate::physics::System;
+use crate::space::{dot, three};
+
+/// The directions in which particles are free.
+#[derive(Debug, Default)]
+pub struct Bound {
+    /// Of each particle its place among the projections, or that of none.
+    at: Vec<u32>,
+    /// Onto what is free: the rows of a symmetric matrix.
+    free: Vec<[[f64; 3]; 3]>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl Bound {
+    /// Of so many particles these are free along these orthonormal directions alone.
+    pub fn new<'a>(
+        particles: usize,
+        bound: impl IntoIterator<Item = (usize, &'a [[f64; 3]])>,
+    ) -> Self {
+        let mut all = Self {
+            at: vec![NONE; particles],
+            free: Vec::new(),
+        };
+        for (particle, along) in bound {
+            all.at[particle] = u32::try_from(all.free.len()).unwrap_or(NONE);
+            let entry = |i: usize, j: usize| along.iter().map(|d| d[i] * d[j]).sum();
+            all.free
+                .push([0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))));
+        }
+        all
+    }
+
+    fn has(&self, particle: usize) -> bool {
+        self.at[particle] != NONE
+    }
+
+    /// The part of a vector at a particle that is free.
+    fn part(&self, particle: usize, d: [f64; 3]) -> [f64; 3] {
+        let at = self.at[particle] as usize;
+        self.free
+            .get(at)
+            .map_or(d, |rows| rows.map(|row| dot(row, d)))
+    }
+}
+
+impl<'a> Sweep<'a> {
+    /// Sweeps over a system in other axes, with the particles at positions `x`, m, and bound there: turns velocities into
+    /// these axes, and back.
+    pub fn seen(
+        &mut self,
+        system: &dyn System,
+        x: &[f64],
+        bound: &Bound,
+        [out, back]: [&dyn Fn(&mut [f64]); 2],
+    ) {
+        out(self.v);
+        let mut there = Sweep {
+            backward: self.backward,
+            midpoint: self.midpoint,
+            scale: self.scale,
+            bound: Some(bound),
+            dissipated: self.dissipated,
+            ..Sweep::new(system, x, self.v, self.h)
+        };
+        system.sweep(&mut there);
+        self.dissipated = there.dissipated;
+        back(self.v);
+    }
+
+    /// The bound directions, if one of the particles with these places has some.
+    pub(super) fn bound(&self, places: &[usize]) -> Option<&'a Bound> {
+        self.bound
+            .filter(|bound| places.iter().any(|at| bound.has(at / 3)))
+    }
+
+    /// The axes of space, one after the other as the sweep goes.
+    pub(super) fn axes(&self) -> [[f64; 3]; 3] {
+        let order = if self.backward { [2, 1, 0] } else { [0, 1, 2] };
+        order.map(|axis| [0, 1, 2].map(|c| if c == axis { 1.0 } else { 0.0 }))
+    }
+
+    /// A damper c on the rate at which velocities change a number, by its gradients at particles with these places: as
+    /// between two ends, with of each gradient the part that is free for the response.
+    pub(super) fn rate<const N: usize>(
+        &mut self,
+        bound: &Bound,
+        c: f64,
+        gradients: [(usize, [f64; 3]); N],
+    ) {
+        let inverse_mass = self.inverse_mass;
+        let reach = gradients.map(|(at, g)| bound.part(at / 3, g).map(|g| inverse_mass[at] * g));
+        let each = || gradients.iter().zip(&reach);
+        let w = each().map(|((_, g), reach)| dot(*g, *reach)).sum();
+        if !self.relaxes(c, w) {
+            return;
+        }
+        let u: f64 = gradients
+            .iter()
+            .map(|(at, g)| dot(*g, three(self.v, at / 3)))
+            .sum();
+        let change = -self.decay.lost * u;
+        self.dissipated -= 0.5 * change * (u + self.decay.kept * u);
+        for ((at, _), reach) in gradients.iter().zip(reach) {
+            for axis in 0..3 {
+                self.v[at + axis] += change * reach[axis];
+            }
+        }
+    }
+}
