@@ -30,6 +30,7 @@ struct Known {
     x: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
+    power: Power,
 }
 
 impl<S: System> Counting<S> {
@@ -67,18 +68,19 @@ impl<S: System> System for Counting<S> {
         self.counted.set(counted);
         self.inner.free_acceleration(t, x, v, a)
     }
-    fn remembered_acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
+    fn remembered_acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
         let known = &mut *self.known.borrow_mut();
         if known.t == t && known.x == x && known.v == v {
             a.copy_from_slice(&known.a);
-            return;
+            return known.power;
         }
-        self.free_acceleration(t, x, v, a);
+        known.power = self.free_acceleration(t, x, v, a);
         known.t = t;
         for (to, from) in [(&mut known.x, x), (&mut known.v, v), (&mut known.a, &*a)] {
             to.clear();
             to.extend_from_slice(from);
         }
+        known.power
     }
     fn rods(&self) -> Option<&Rods> {
         self.inner.rods()

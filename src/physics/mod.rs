@@ -120,8 +120,8 @@ pub trait System {
 
     /// As [`free_acceleration`](Self::free_acceleration), at the end of a step or where one begins: a system may remember it
     /// for the next step.
-    fn remembered_acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
-        self.free_acceleration(t, x, v, a);
+    fn remembered_acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
+        self.free_acceleration(t, x, v, a)
     }
 
     /// Potential energy, J.

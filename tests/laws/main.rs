@@ -9,6 +9,7 @@ mod coincidence;
 mod collisions;
 mod conformance;
 mod contact;
+mod damped_contact;
 mod damping_flow;
 mod driven;
 mod effects;

@@ -200,13 +200,13 @@ impl Many<'_> {
         let [mean, root] = &bent.turned;
         let v: Vec<f64> = before.v.iter().zip(mean).map(|(v, w)| v + w).collect();
         let (mut was, mut change) = (vec![0.0; v.len()], vec![0.0; v.len()]);
-        let from = system.free_acceleration(before.t, &before.x, &before.v, &mut was);
+        let from = system.remembered_acceleration(before.t, &before.x, &before.v, &mut was);
         let to = system.free_acceleration(before.t, &before.x, &v, &mut change);
         for (change, was) in change.iter_mut().zip(&was) {
             *change = self.h * (*change - was);
         }
         if let Some(held) = self.held {
-            held.left(&mut change);
+            held.left(end, &mut change);
         }
         if let Some(rods) = self.rods() {
             rods.at(&before.x)?.still(&mut change);
@@ -308,10 +308,10 @@ impl Many<'_> {
 
     /// Looks anew for what is near where a path leaves what was searched.
     fn follow(&mut self, turned: &BTreeSet<usize>, bent: &Bent) {
-        let within = |one: &usize| self.near.holds(*one, bent.path(*one).ball());
+        let within = |one: &usize| self.near.holds(*one, bent.path(*one).cube());
         if !turned.iter().all(within) {
             let times = [self.start.t, self.start.t + self.h];
-            self.near = self.obstacles.near(times, |one| bent.path(one).ball());
+            self.near = self.obstacles.near(times, |one| bent.path(one).cube());
         }
     }
 }

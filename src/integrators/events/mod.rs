@@ -24,7 +24,8 @@ pub const LOCATED: f64 = 1e-12;
 /// Where more particles than these have events in one step, the rest of these are found each on its particle's own path.
 const MANY: usize = 4;
 
-/// With more particles than these one is enough: a sub-step costs as much as a step, and an event takes a dozen.
+/// With more particles than these one is enough, and none where more than [`MANY`] are in contact: a sub-step costs as
+/// much as a step, and an event takes a dozen.
 const LARGE: usize = 32;
 
 /// What happens to a particle.
@@ -81,16 +82,16 @@ fn step(
         near: obstacles.near_now(state),
     };
     let advance = |left: f64, located: usize, state: &mut State| walk.advance(left, located, state);
-    root::cut(h, most_located(obstacles), state, advance)?;
+    root::cut(h, MANY, state, advance)?;
     Ok(walk.impacts)
 }
 
-/// The most particles whose events are located on sub-steps.
-fn most_located(obstacles: &Obstacles) -> usize {
-    if obstacles.particles().count() > LARGE {
-        1
-    } else {
-        MANY
+/// The most particles whose events are located on sub-steps, where so many contacts are closed.
+fn most_located(obstacles: &Obstacles, closed: usize) -> usize {
+    match (obstacles.particles().count() > LARGE, closed > MANY) {
+        (false, _) => MANY,
+        (true, false) => 1,
+        (true, true) => 0,
     }
 }
 
@@ -189,6 +190,7 @@ impl Walk<'_> {
         let touching = self.settled(state)?;
         let start = state.clone();
         let (system, obstacles) = (self.system, self.obstacles);
+        let located = located.min(most_located(obstacles, touching.len()));
         let taken = self.integrator.takes();
         let held = Held::at(system, obstacles, &touching, &start, taken)?;
         let held = held.as_ref();

@@ -60,10 +60,15 @@ impl Path {
         }
     }
 
-    /// A ball that it keeps within: its centre, and its radius, m.
-    pub fn ball(&self) -> ([f64; 3], f64) {
+    /// A cube that it keeps within: its centre, and half a side, m.
+    pub fn cube(&self) -> ([f64; 3], f64) {
         let center = [0, 1, 2].map(|c| 0.5 * (self.x[0][c] + self.x[1][c]));
-        (center, 0.5 * self.length())
+        let long = [0, 1, 2].map(|c| {
+            let way = self.x[1][c] - self.x[0][c];
+            let off = |v: [f64; 3]| (self.h * v[c] - way).abs();
+            way.abs() + off(self.v[0]) + off(self.v[1])
+        });
+        (center, 0.5 * long.into_iter().fold(0.0, f64::max))
     }
 
     /// It is not longer, m.
@@ -77,7 +82,7 @@ impl Path {
 /// What may touch on the paths of all through a sub-step of `h` seconds.
 pub(super) fn near(obstacles: &Obstacles, h: f64, start: &State, end: &State) -> Arc<Near> {
     obstacles.near([start.t, start.t + h], |particle| {
-        Path::new(particle, h, start, end).ball()
+        Path::new(particle, h, start, end).cube()
     })
 }
 

@@ -1,9 +1,9 @@
 //! Contact by penalty: a step is cut where a particle enters what it collides with, and where it leaves it. Within a
 //! sub-step the same contacts press, whatever stages look ahead: so the force is smooth there, and a method keeps its order.
 
-use super::most_located;
 use super::path::{self, Path, meeting};
 use super::root::{self, Due};
+use super::{MANY, most_located};
 use crate::integrators::{Integrator, StepError};
 use crate::physics::constraints::contact::{Against, Beside, Obstacles};
 use crate::physics::constraints::{Rods, StrainLimiter};
@@ -39,7 +39,7 @@ pub(super) fn step(
         },
     };
     let advance = |left: f64, located: usize, state: &mut State| walk.advance(left, located, state);
-    root::cut(h, most_located(obstacles), state, advance)?;
+    root::cut(h, MANY, state, advance)?;
     Ok(walk.entered)
 }
 
@@ -79,6 +79,8 @@ impl Walk<'_> {
     /// One sub-step of at most `left` seconds, to the next contact that begins or ends, if no more particles than `located`
     /// have some. Returns its length.
     fn advance(&mut self, left: f64, located: usize, state: &mut State) -> Result<f64, StepError> {
+        let closed = self.frozen.pressed.len();
+        let located = located.min(most_located(self.frozen.obstacles, closed));
         let start = state.clone();
         self.integrator.forget();
         let end = self.frozen.step(self.integrator, left, &start)?;

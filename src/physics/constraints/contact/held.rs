@@ -170,7 +170,7 @@ impl<'s> Held<'s> {
     }
 
     /// Where the friction of sliding particles is not among the forces: its flow over `h`, s, at a state in the axes of
-    /// space, which takes µ N h / m off the speed and leaves its direction.
+    /// space, which takes µ N h / m off the speed and leaves its direction. Books what it takes.
     pub fn slow_down(&self, h: f64, state: &mut State) {
         if self.friction {
             return;
@@ -187,9 +187,11 @@ impl<'s> Held<'s> {
             let fast = norm(along);
             let lost = (h * now.resistance(&pressed, 0)).min(fast);
             if fast > 0.0 {
+                let mass = 1.0 / self.system.inverse_mass()[3 * member.particle];
                 for axis in 0..3 {
                     state.v[3 * member.particle + axis] -= lost / fast * along[axis];
                 }
+                state.work.friction += mass * lost * (fast - 0.5 * lost);
             }
         }
     }
@@ -210,17 +212,25 @@ impl<'s> Held<'s> {
         a
     }
 
-    /// The part of a change that contacts leave, in the axes of space.
-    pub fn left(&self, change: &mut [f64]) {
-        self.turn(change);
+    /// The part of a change of velocities that contacts leave at a state, in the axes of space.
+    pub fn left(&self, state: &State, change: &mut [f64]) {
         for member in &self.members {
-            let at = 3 * member.particle;
-            change[at..at + member.given].fill(0.0);
+            let own = 3 * member.particle..3 * member.particle + 3;
+            let now = member.contacts.now(self.obstacles, state);
+            let left = if member.sticks() {
+                [0.0; 3]
+            } else {
+                now.along(three(change, member.particle))
+            };
+            change[own].copy_from_slice(&left);
         }
-        for at in self.groups.iter().flat_map(Group::given) {
-            change[at] = 0.0;
+        for group in &self.groups {
+            group.turn(change);
+            for at in group.given() {
+                change[at] = 0.0;
+            }
+            group.turn_back(change);
         }
-        self.turn_back(change);
     }
 
     /// The acceleration with contact at a state in the axes of space, m/s², but for that of moving obstacles.
@@ -272,10 +282,10 @@ impl<'s> Held<'s> {
         }
     }
 
-    /// Adds the work of friction and of moving obstacles over `h` seconds from a state to another, at which the
-    /// acceleration without contact is `a`: by Simpson's rule, with the middle of the cubic through both.
+    /// Adds the work of friction among the forces, and of moving obstacles, over `h` seconds from a state to another, at
+    /// which the acceleration without contact is `a`: by Simpson's rule, with the middle of the cubic through both.
     pub fn book(&self, h: f64, start: &State, end: &mut State, a: &[f64]) {
-        let slides = self.members.iter().any(|member| member.slides);
+        let slides = self.friction && self.members.iter().any(|member| member.slides);
         if !self.obstacles.any_moves() && !slides && self.groups.is_empty() {
             return;
         }
@@ -291,7 +301,7 @@ impl<'s> Held<'s> {
         }
     }
 
-    /// The power lost to friction, and that of the obstacles' motions, W, at a state in the axes of space with the
+    /// The power lost to friction among the forces, and that of the obstacles' motions, W, at a state in the axes of space with the
     /// acceleration `a` without contact.
     fn powers(&self, state: &State, a: &[f64]) -> [f64; 2] {
         let mut sums = [0.0; 2];
@@ -311,7 +321,9 @@ impl<'s> Held<'s> {
                 let sliding = now.outer_sliding(self.obstacles, state);
                 let direction = member.rubbed(sliding);
                 let lost = now.resistance(&pressed, 0);
-                sums[0] += mass * lost * dot(direction, sliding);
+                if self.friction {
+                    sums[0] += mass * lost * dot(direction, sliding);
+                }
                 for axis in 0..3 {
                     force[axis] -= lost * direction[axis];
                 }

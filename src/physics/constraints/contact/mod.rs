@@ -286,12 +286,12 @@ impl Obstacles {
         }
     }
 
-    /// What may touch while each particle keeps within a ball, given by its centre and its radius, m, between two times: in
+    /// What may touch while each particle keeps within a cube, given by its centre and half a side, m, between two times: in
     /// ascending order.
-    pub fn near(&self, times: [f64; 2], ball: impl Fn(usize) -> ([f64; 3], f64)) -> Arc<Near> {
+    pub fn near(&self, times: [f64; 2], cube: impl Fn(usize) -> ([f64; 3], f64)) -> Arc<Near> {
         let broad = self.broad.lock();
         let mut broad = broad.unwrap_or_else(PoisonError::into_inner);
-        broad.near(self, times, &ball)
+        broad.near(self, times, &cube)
     }
 
     /// What may touch at a state, as [`near`](Self::near).

@@ -36,9 +36,9 @@ impl Near {
         })
     }
 
-    /// Whether a ball that a particle keeps within, its centre and radius in metres, is within its box.
-    pub fn holds(&self, particle: usize, (center, radius): ([f64; 3], f64)) -> bool {
-        self.boxes[particle].contains(&around(center, radius))
+    /// Whether a cube that a particle keeps within, its centre and half a side in metres, is within its box.
+    pub fn holds(&self, particle: usize, (center, half): ([f64; 3], f64)) -> bool {
+        self.boxes[particle].contains(&around(center, half))
     }
 
     /// What a particle may touch, ascending.
@@ -60,21 +60,21 @@ impl Broad {
         &mut self,
         obstacles: &Obstacles,
         times: [f64; 2],
-        ball: &impl Fn(usize) -> ([f64; 3], f64),
+        cube: &impl Fn(usize) -> ([f64; 3], f64),
     ) -> Arc<Near> {
         let last = &self.last;
         let lasting =
             !obstacles.any_moves() || (last.times[0] <= times[0] && times[1] <= last.times[1]);
-        let within = |particle: usize| last.holds(particle, ball(particle));
+        let within = |particle: usize| last.holds(particle, cube(particle));
         if lasting && !last.boxes.is_empty() && obstacles.particles().all(within) {
             return Arc::clone(last);
         }
         let [from, until] = times;
         let ahead = [from, until + AHEAD * (until - from)];
         let boxed = |particle: usize| {
-            let (center, radius) = ball(particle);
+            let (center, half) = cube(particle);
             let wider = WIDER * obstacles.radii[particle].max(0.0) + obstacles.close(center);
-            around(center, (1.0 + AHEAD) * radius + wider)
+            around(center, (1.0 + AHEAD) * half + wider)
         };
         let boxes: Vec<Aabb> = (0..obstacles.weights.len()).map(boxed).collect();
         if self.still.is_none() || obstacles.any_moves() {
@@ -141,9 +141,9 @@ fn found(
     all
 }
 
-/// A box around a ball.
-fn around(center: [f64; 3], radius: f64) -> Aabb {
-    Aabb::from_half_extents(center.into(), Vector::splat(radius))
+/// A cube.
+fn around(center: [f64; 3], half: f64) -> Aabb {
+    Aabb::from_half_extents(center.into(), Vector::splat(half))
 }
 
 /// The box around all places of an obstacle between two times; None of a plane.
