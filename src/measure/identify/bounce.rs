@@ -48,6 +48,8 @@ pub enum Way {
         /// Whether the scene's contact is such a force, and steps are not cut where it begins and ends.
         whole: bool,
     },
+    /// By rapier's step, in the substeps of the scheme, which keeps impulses from one step to the next.
+    Soft,
     /// Not at all.
     Never,
 }
@@ -202,7 +204,7 @@ impl Bounce {
             }
             Way::Force { .. } => left,
             Way::Once(_) => !left || id != "velocity_kept",
-            Way::Never => *self == Self::new(self.way),
+            Way::Soft | Way::Never => *self == Self::new(self.way),
         }
     }
 
@@ -224,7 +226,7 @@ impl Bounce {
     ) -> Stepped {
         match self.way.does {
             Way::Once(once) => once(self, obstacles, h, state, free),
-            Way::Event | Way::Force { .. } | Way::Never => free(state),
+            Way::Event | Way::Force { .. } | Way::Soft | Way::Never => free(state),
         }
     }
 

@@ -6,7 +6,8 @@ use super::bounce::{Bounce, Touching, Way, pressed};
 use super::keeping::{Keeping, Kept, keep};
 use super::step::Step;
 use crate::integrators::{
-    Coefficients, Integrator, Method, PerStep, Settings, StepError, Velocities, events, fixed,
+    Coefficients, Integrator, Method, PerStep, RapierContact, Remembered, Settings, StepError,
+    Velocities, events, fixed,
 };
 use crate::physics::constraints::contact::Obstacles;
 use crate::physics::constraints::limit;
@@ -14,6 +15,11 @@ use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{Scene, Stabilisation};
 use std::borrow::Cow;
 use std::sync::Arc;
+
+/// The schemes that the soft step is where nothing touches: the second under constant forces alone.
+pub(super) const SOFT_SCHEMES: [&str; 2] = ["linearized_implicit_material", "symplectic_euler"];
+/// Sweeps of a soft step, most of which nothing is left for, and those after the drift.
+const SWEEPS: [u32; 2] = [64, 1];
 
 /// Forces that candidates share.
 pub type Forces = Arc<dyn System + Send + Sync>;
@@ -47,6 +53,8 @@ pub struct Candidate {
     keeping: Option<Keeping>,
     /// What it does about obstacles, where that is beside its step.
     bounce: Option<Box<Bounce>>,
+    /// Of steps that keep impulses of contact: what they keep at each row of a trajectory.
+    remembered: Arc<Vec<Vec<Remembered>>>,
 }
 
 /// A factor on velocities, from a rate in 1/s and the length of a step in s.
@@ -99,6 +107,7 @@ impl Candidate {
             scaling: None,
             keeping: None,
             bounce: None,
+            remembered: Arc::default(),
         }
     }
 
@@ -176,6 +185,11 @@ impl Candidate {
                 self.under(&struck.with_obstacles(|all| Some(all.struck_by(law))))
             }
             Way::Force { .. } => self.under(&pressed(scene, system, bounce)?),
+            Way::Soft if !self.has_soft(system) => return None,
+            Way::Soft => Self {
+                bounce: Some(Box::new(*bounce)),
+                ..self.clone()
+            },
             Way::Once(_) | Way::Never => {
                 let forced = if alters {
                     self.under(&bounce.met_by(system))
@@ -196,6 +210,31 @@ impl Candidate {
         }
         let kept = !alters && (right || same.bounce.is_some());
         (own || kept).then_some(same)
+    }
+
+    /// Whether the soft step is this scheme where nothing touches.
+    fn has_soft(&self, system: &ParticleSystem) -> bool {
+        let constant = system.effects().iter().all(|(row, _)| row.constant);
+        let schemes = &SOFT_SCHEMES[..if constant { 2 } else { 1 }];
+        let plain = self.says.is_none() && !self.remembers() && self.stretch == 1.0;
+        let method = self.step.method().filter(|_| plain);
+        method.is_some_and(|method| schemes.contains(&method.id))
+    }
+
+    /// Whether its steps keep impulses of contact.
+    pub(super) fn is_soft(&self) -> bool {
+        let bounce = self.bounce.as_ref();
+        bounce.is_some_and(|bounce| matches!(bounce.way.does, Way::Soft))
+    }
+
+    /// The same, with what its steps keep at each row.
+    pub(super) fn remembering(self, remembered: Arc<Vec<Vec<Remembered>>>) -> Self {
+        Self { remembered, ..self }
+    }
+
+    /// What its steps keep at row `k`.
+    pub(super) fn remembered(&self, k: usize) -> &[Remembered] {
+        self.remembered.get(k).map_or(&[], Vec::as_slice)
     }
 
     /// The same scheme under another candidate's forces, in its steps, with rods kept as that does.
@@ -274,7 +313,7 @@ impl Candidate {
 
     /// Whether its steps solve linear systems, which costs as much as many that do not.
     pub fn solves(&self) -> bool {
-        self.step.solves()
+        self.step.solves() || self.is_soft()
     }
 
     /// Whether it is a tableau that takes forces at several times.
@@ -366,10 +405,14 @@ impl Candidate {
     /// A replayer that takes its steps. Each thread has its own.
     pub fn replayer(&self, settings: &Settings) -> Replayer<'_> {
         let kept = self.around.is_none() && !self.remembers();
+        let [sweeps, relaxing] = SWEEPS;
+        let soft = || RapierContact::new(self.substeps, sweeps, relaxing);
         Replayer {
             candidate: self,
             settings: *settings,
             kept: kept.then(|| self.step.build(settings, None)),
+            soft: self.is_soft().then(soft),
+            recalled: Vec::new(),
             pattern: None,
             passes: false,
             touching: Touching::Exactly,
@@ -391,6 +434,9 @@ pub struct Replayer<'a> {
     settings: Settings,
     /// The integrator of steps that do not depend on those before.
     kept: Option<Box<dyn Integrator>>,
+    /// The integrator of soft steps, and what the next of them begins with.
+    soft: Option<RapierContact>,
+    recalled: Vec<Remembered>,
     pattern: Option<u64>,
     /// Whether it passes through obstacles.
     passes: bool,
@@ -407,6 +453,17 @@ impl<'a> Replayer<'a> {
     /// From now on moves every force by its rounding in the direction of a pattern, or by nothing.
     pub(super) fn nudge(&mut self, pattern: Option<u64>) {
         self.pattern = pattern;
+    }
+
+    /// Begins what is advanced next with what a step before it has kept.
+    pub(super) fn recall(&mut self, kept: &[Remembered]) {
+        self.recalled.clear();
+        self.recalled.extend_from_slice(kept);
+    }
+
+    /// What the last step keeps.
+    pub(super) fn kept(&self) -> &[Remembered] {
+        self.soft.as_ref().map_or(&[], RapierContact::kept)
     }
 
     /// Does something in the other ways that rounding may decide where something touches: without the impact of a located
@@ -442,11 +499,20 @@ impl<'a> Replayer<'a> {
         state: &mut State,
     ) -> Result<(), StepError> {
         let candidate = self.candidate;
-        // Substeps of a step that is applied in another way are the way's own.
-        let n = match candidate.around {
-            Some(_) => 1,
-            None => candidate.substeps,
+        // Substeps of a step that is applied in another way are the way's own, as those of a soft step are.
+        let n = if candidate.around.is_some() || self.soft.is_some() {
+            1
+        } else {
+            candidate.substeps
         };
+        if let Some(soft) = &mut self.soft {
+            soft.recall(&std::mem::take(&mut self.recalled), state);
+            soft.closes_at(match self.touching {
+                Touching::Inside => -1.0,
+                Touching::Exactly => 0.0,
+                Touching::Near => 1.0,
+            });
+        }
         let part_of_h = h / f64::from(n);
         let inner = part_of_h * candidate.stretch;
         let mut previous = before.cloned();
@@ -479,6 +545,11 @@ impl<'a> Replayer<'a> {
             let mut free = |state: &mut State| {
                 let x = candidate.scaling.is_some().then(|| state.x.clone());
                 match (candidate.around, &mut self.kept) {
+                    _ if self.soft.is_some() => {
+                        if let Some(soft) = &mut self.soft {
+                            taken(soft, system, inner, state)?;
+                        }
+                    }
                     (Some(around), _) => {
                         let one =
                             |f: &dyn System, h, s: &mut State| taken(fresh(None).as_mut(), f, h, s);

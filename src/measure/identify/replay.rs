@@ -1,6 +1,7 @@
 //! One replay: the row a candidate makes from a row, and how far that is from the next row in units
 //! of rounding.
 
+mod memory;
 mod outcome;
 
 use super::altered::sign;
@@ -209,12 +210,16 @@ impl<'a> Replay<'a> {
         let far = most(&off) > FAR * most(&moved);
         let numbers = off.len();
         let mut outcomes = vec![Outcome::new(predicted, numbers)];
-        if far && self.touches(replayer, transition) {
-            // What touches at a row may be struck in the step before it, or after it.
+        let soft = replayer.candidate().is_soft();
+        if far && (soft || self.touches(replayer, transition)) {
+            // What touches at a row may be struck in the step before it, or after it. A soft step meets it in every substep.
             let others = replayer.otherwise(|other| self.predict(other, transition));
             for other in others.into_iter().flatten() {
-                if outcomes.iter().all(|one| self.jumps(&one.state, &other)) {
-                    outcomes.push(Outcome::new(other, numbers));
+                let mut known = outcomes.iter_mut();
+                match known.find(|one| !self.jumps(&one.state, &other)) {
+                    Some(one) if soft => grow(&one.state, &other, &mut one.grown),
+                    Some(_) => {}
+                    None => outcomes.push(Outcome::new(other, numbers)),
                 }
             }
         }
@@ -238,7 +243,7 @@ impl<'a> Replay<'a> {
             let clear = defect <= CLEAR || (defect > HOPELESS && pattern >= enough);
             if clear || pattern == NUDGES {
                 let motion = largest_ratio(&moved, &units);
-                let digits = self.digits(transition);
+                let digits = self.digits(replayer, transition);
                 if defect <= FIT && defect > motion && largest_ratio(&off, &digits) > FIT {
                     // Rounding would explain anything here.
                     return Ok(Defect::IMPOSSIBLE);
@@ -326,13 +331,11 @@ impl<'a> Replay<'a> {
         let late = self.late(replayer, transition);
         let substeps = f64::from(replayer.candidate().substeps.max(1));
         let differences = replayer.candidate().differences();
-        let from = self.from(transition);
-        let own = self.recorded(transition).zip(from).enumerate();
-        let own = own.map(|(i, (value, from))| {
+        let bits = self.bits(replayer, transition);
+        let own = self.recorded(transition).zip(bits).enumerate();
+        let own = own.map(|(i, (value, bit))| {
             let solve = if i < dim { seconds * solve } else { solve };
             let located = if i < dim { late.0 } else { late.1 };
-            // A number that ends near 0 was larger in between.
-            let bit = f64::EPSILON * from.abs();
             let bit = match i.checked_sub(dim).filter(|_| differences) {
                 Some(at) => {
                     let x = self.rows.x(transition.to)[at].abs().max(self.length);
@@ -383,13 +386,22 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// The rounding of each recorded number, and of the number it came from.
-    fn digits(&self, transition: &Transition) -> Vec<f64> {
-        let pairs = self.recorded(transition).zip(self.from(transition));
-        let digits = pairs.enumerate().map(|(i, (to, from))| {
-            self.half_unit(transition.to, i, to) + f64::EPSILON * from.abs()
-        });
+    /// The rounding of each recorded number, and of what it came from.
+    fn digits(&self, replayer: &Replayer, transition: &Transition) -> Vec<f64> {
+        let bits = self.bits(replayer, transition);
+        let pairs = self.recorded(transition).zip(bits).enumerate();
+        let digits = pairs.map(|(i, (to, bit))| self.half_unit(transition.to, i, to) + bit);
         digits.collect()
+    }
+
+    /// The roundings of the numbers that it came from: what ends near 0 was larger in between, a velocity also in the
+    /// substeps of a soft step.
+    fn bits(&self, replayer: &Replayer, transition: &Transition) -> Vec<f64> {
+        let pressed = self.pressed(replayer);
+        let from = self.from(transition).enumerate();
+        let between = |i: usize| i.checked_sub(self.rows.dim).and_then(|at| pressed.get(at));
+        from.map(|(i, from)| f64::EPSILON * (from.abs() + between(i).unwrap_or(&0.0)))
+            .collect()
     }
 
     /// How far each recorded number moves.
@@ -434,6 +446,7 @@ impl<'a> Replay<'a> {
         let one_back = before
             .filter(|(k, _)| rows.steps[*k] + 1 == step)
             .map(|(_, state)| state);
+        replayer.recall(replayer.candidate().remembered(transition.from));
         replayer.advance(step, span, rows.timestep, one_back.as_ref(), &mut state)?;
         let not_finite = |c: &f64| !c.is_finite();
         let lost = |values: &[f64]| values.iter().position(not_finite);

@@ -80,6 +80,12 @@ pub static WAYS: &[Row<Way>] = &[
         },
         "does not cut steps where a penalty begins and ends, which is of order 1, and never pulls",
     ),
+    row(
+        "soft_step",
+        Way::Soft,
+        "steps as rapier's contact does (a soft step: a spring of 60 Hz once a gap is closed, 30 Hz where the obstacle moves, \
+         and restitution once a step), instead of by an impulse at the impact",
+    ),
     mistake(
         "obstacles_forgotten",
         Way::Never,

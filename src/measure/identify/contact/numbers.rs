@@ -96,7 +96,7 @@ fn bases(obstacles: &Obstacles, mistakes: usize) -> Vec<Bounce> {
     let ways = WAYS.iter().filter(|way| match way.does {
         Way::Event | Way::Once(_) => force.is_none(),
         Way::Force { whole, .. } => whole && force.is_some(),
-        Way::Never => false,
+        Way::Soft | Way::Never => false,
     });
     let mut all = Vec::new();
     for way in ways {

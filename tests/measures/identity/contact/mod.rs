@@ -6,6 +6,7 @@ mod mistakes;
 mod numbers;
 mod pairs;
 mod programs;
+mod soft;
 
 use super::{Precision, Rows, Scene, every, found, run};
 use crate::testkit::scenes::parsed;
