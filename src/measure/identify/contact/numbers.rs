@@ -94,7 +94,7 @@ fn bases(obstacles: &Obstacles, mistakes: usize) -> Vec<Bounce> {
         .filter(|row| frictions.contains(&row.id) && (rubs || row.id == "coulomb"));
     let force = obstacles.penalty();
     let ways = WAYS.iter().filter(|way| match way.does {
-        Way::Event | Way::Once(_) => force.is_none(),
+        Way::Event | Way::Once(_) | Way::Of(..) | Way::Within(_) => force.is_none(),
         Way::Force { whole, .. } => whole && force.is_some(),
         Way::Soft | Way::Never => false,
     });

@@ -167,10 +167,10 @@ impl Search<'_> {
     /// beside other schemes where no step away from contact tells these apart.
     fn equivalent(&self, told: &Told) -> Vec<String> {
         let own = &told.bounce;
+        let beside = |way: &Way| !matches!(way, Way::Force { .. } | Way::Soft | Way::Never);
         let alike = |way: &&Row<Way>| match (own.way.does, way.does) {
             (Way::Force { whole: a, .. }, Way::Force { whole: b, .. }) => a == b,
-            (Way::Event | Way::Once(_), Way::Event | Way::Once(_)) => true,
-            _ => false,
+            (a, b) => beside(&a) && beside(&b),
         };
         let obstacles = self.question.system.obstacles();
         let places = obstacles.map_or_else(Vec::new, |all| relevant(all).0);

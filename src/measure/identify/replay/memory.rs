@@ -3,13 +3,14 @@
 use super::Replay;
 use crate::integrators::{RapierContact, Remembered};
 use crate::measure::identify::candidate::{Candidate, Replayer};
+use crate::measure::identify::transition::Transition;
 use crate::physics::constraints::contact::Obstacles;
-use crate::space::norm;
+use crate::space::{norm, three};
 use std::sync::Arc;
 
-/// Steps after which impulses are those of the rows, whatever they were taken to be before: those of lone contacts after one,
-/// of a particle in a corner after four or five (tests/measures/identity/contact/soft.rs).
-const SETTLED: usize = 8;
+/// Steps after which impulses are those of the rows, whatever they were taken to be before: one, of lone contacts, and one more.
+/// Of a particle between two that rub they never are (tests/laws/rapier_contact.rs).
+const SETTLED: usize = 2;
 
 impl Replay<'_> {
     /// The candidate with what its steps keep at each row, where they keep something; else as it is.
@@ -42,15 +43,18 @@ impl Replay<'_> {
         candidate.remembering(Arc::new(kept))
     }
 
-    /// How much impulses that steps keep change each velocity in a substep, m/s; empty where none do.
-    pub(super) fn pressed(&self, replayer: &Replayer) -> Vec<f64> {
+    /// How large the velocities are that each one is computed from where impulses that steps keep press, m/s: what they change
+    /// it by in a substep, and the coordinates of gaps over that; empty where none press.
+    pub(super) fn pressed(&self, replayer: &Replayer, transition: &Transition) -> Vec<f64> {
         let kept = replayer.kept();
         let mut all = vec![0.0; if kept.is_empty() { 0 } else { self.rows.dim }];
         let obstacles = replayer.candidate().meets();
+        let part = self.rows.timestep / f64::from(replayer.candidate().substeps.max(1));
         for one in kept {
             let weight = obstacles.map_or(0.0, |all| all.weight(one.particle));
             let own = 3 * one.particle..3 * one.particle + 3;
-            let change = weight * one.normal.hypot(norm(one.tangent));
+            let x = three(self.rows.x(transition.to), one.particle);
+            let change = weight * one.normal.hypot(norm(one.tangent)) + norm(x) / part;
             all[own].iter_mut().for_each(|sum| *sum += change);
         }
         all
