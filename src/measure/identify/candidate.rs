@@ -45,7 +45,7 @@ pub struct Candidate {
     alone: bool,
     /// The step it begins with, where that is another.
     first: Option<Box<Step>>,
-    scaling: Option<Scaling>,
+    scaling: Option<Box<Scaling>>,
     /// How it keeps rods, where not as the scene says.
     keeping: Option<Keeping>,
     /// What it does about obstacles, where that is beside its step.
@@ -258,7 +258,7 @@ impl Candidate {
     /// The same with velocities multiplied beside it.
     pub fn scaled(self, scaling: Scaling) -> Self {
         Self {
-            scaling: Some(scaling),
+            scaling: Some(Box::new(scaling)),
             ..self
         }
     }

@@ -1,12 +1,13 @@
 //! Steps of the ways in which programs meet obstacles beside or within the step of a method.
 
 use super::{Bounce, Free, Stepped};
+use crate::integrators::StepError;
 use crate::physics::State;
 use crate::physics::constraints::contact::{Against, Obstacles};
 use crate::vector::axpy;
 
-/// Impacts in a step, at most.
-const IMPACTS: u32 = 16;
+/// Impacts in a step, at most: programs that find each are of a few particles.
+const IMPACTS: usize = 4;
 /// Bisections that find an impact to rounding.
 const BISECTIONS: u32 = 60;
 
@@ -138,9 +139,9 @@ pub(super) fn interpolated(
     let (end, mut left) = (state.t + h, h);
     for _ in 0..IMPACTS {
         let ended = ended(left, end, state, free)?;
-        let met = pairs(obstacles, &ended).filter_map(|pair| {
+        let met = inside(obstacles, &ended)?.into_iter().filter_map(|pair| {
             let [from, to] = [&*state, &ended].map(|one| gap(obstacles, pair, one));
-            (to < 0.0 && from > 0.0).then(|| (from / (from - to), pair))
+            (from > 0.0).then(|| (from / (from - to), pair))
         });
         let Some((part, pair)) = met.min_by(|a, b| a.0.total_cmp(&b.0)) else {
             *state = ended;
@@ -164,19 +165,16 @@ pub(super) fn to_impact(
 ) -> Stepped {
     let (start, end) = (state.clone(), state.t + h);
     let whole = ended(h, end, &start, free)?;
-    let inside = |state: &State| {
-        let mut pairs = pairs(obstacles, state);
-        pairs.find(|pair| gap(obstacles, *pair, state) < 0.0)
-    };
-    let Some(mut pair) = inside(&whole) else {
+    let first = |state: &State| Ok::<_, StepError>(inside(obstacles, state)?.first().copied());
+    let Some(mut pair) = first(&whole)? else {
         *state = whole;
         return Ok(());
     };
     let [mut low, mut high] = [0.0, h];
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
-        match inside(&ended(middle, start.t + middle, &start, free)?) {
-            Some(first) => (high, pair) = (middle, first),
+        match first(&ended(middle, start.t + middle, &start, free)?)? {
+            Some(struck) => (high, pair) = (middle, struck),
             None => low = middle,
         }
     }
@@ -187,12 +185,7 @@ pub(super) fn to_impact(
 }
 
 /// The state after `h` seconds without obstacles, at the time `t`.
-fn ended(
-    h: f64,
-    t: f64,
-    state: &State,
-    free: &mut Free,
-) -> Result<State, crate::integrators::StepError> {
+fn ended(h: f64, t: f64, state: &State, free: &mut Free) -> Result<State, StepError> {
     let mut ended = state.clone();
     free(h, &mut ended)?;
     ended.t = t;
@@ -201,6 +194,19 @@ fn ended(
 
 fn gap(obstacles: &Obstacles, (particle, against): (usize, Against), state: &State) -> f64 {
     obstacles.beside(particle, against, state).gap
+}
+
+/// What is inside.
+///
+/// # Errors
+/// [`StepError::TooManyEvents`] where more is than a program would find one by one.
+fn inside(obstacles: &Obstacles, state: &State) -> Result<Vec<(usize, Against)>, StepError> {
+    let inside = pairs(obstacles, state).filter(|pair| gap(obstacles, *pair, state) < 0.0);
+    let few: Vec<(usize, Against)> = inside.take(IMPACTS + 1).collect();
+    match few.len() > IMPACTS {
+        true => Err(StepError::TooManyEvents { t: state.t }),
+        false => Ok(few),
+    }
 }
 
 /// All that may touch.

@@ -13,7 +13,7 @@ impl Replay<'_> {
     /// (none where there are none). `predicted` is what [`predict`](Self::predict) gave.
     ///
     /// Half a unit of the recorded number; what half units of the inputs, the rounding of every force
-    /// ([`System::rounding`]) and that of the step's sums become, measured by replays that are moved by as
+    /// ([`System::rounding`](crate::physics::System::rounding)) and that of the step's sums become, measured by replays that are moved by as
     /// much in `nudges` random directions; and for iterative schemes the tolerance of their solve.
     ///
     /// # Errors
