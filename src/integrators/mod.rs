@@ -18,7 +18,7 @@ pub(crate) use amplification::{bisect, map};
 pub use facts::MethodRow;
 pub(crate) use facts::is_exact;
 pub use implicit::{Implicit, ImplicitScheme};
-pub use rapier_contact::{RapierContact, Softness, Ties};
+pub use rapier_contact::{RapierContact, Remembered, Softness, Ties};
 pub use rattle::{Rattle, Velocities};
 pub use runge_kutta::{RungeKutta, Tableau};
 pub use splitting::{DampingTreatment, Splitting, Stage};

@@ -77,6 +77,17 @@ struct Row {
     total: f64,
 }
 
+/// What a step leaves of a contact that pressed in it: the impulses of its last substep, with which the next step begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Remembered {
+    pub particle: usize,
+    pub obstacle: usize,
+    /// N s.
+    pub normal: f64,
+    /// N s.
+    pub tangent: [f64; 3],
+}
+
 impl Row {
     /// The gap, m, `t` seconds into the step.
     fn gap(&self, x: &[f64], t: f64) -> f64 {
@@ -107,9 +118,9 @@ impl Row {
 
     /// The row before a drift: velocities that close the gap and no more, or the spring of what is inside. Returns the
     /// impulse before it is softened, N s.
-    fn press(&mut self, gap: f64, h: f64, v: &mut [f64]) -> (f64, bool) {
+    fn press(&mut self, gap: f64, open: bool, h: f64, v: &mut [f64]) -> (f64, bool) {
         let parting = dot(self.normal, self.velocity(v));
-        let (bias, share) = if gap > 0.0 {
+        let (bias, share) = if open {
             (gap / h, 1.0)
         } else {
             ((gap * self.soft.push).max(-PUSH_OUT), self.soft.share)
@@ -153,9 +164,10 @@ pub struct RapierContact {
     sweeps: u32,
     relaxing: u32,
     newton: Newton,
-    /// The rows of the last step, by obstacle and particle, and where it ended.
-    kept: Vec<Row>,
+    /// Of the last step, by obstacle and particle, and where it ended.
+    kept: Vec<Remembered>,
     ended: Option<(Vec<f64>, Vec<f64>)>,
+    closed: f64,
     ties: Ties,
 }
 
@@ -179,6 +191,7 @@ impl RapierContact {
             newton: Newton::new(Settings::default()),
             kept: Vec::new(),
             ended: None,
+            closed: 0.0,
             ties: Ties::default(),
         }
     }
@@ -193,9 +206,27 @@ impl RapierContact {
         self.ended = Some((state.x.clone(), state.v.clone()));
     }
 
-    /// The number of contacts that had an impulse in the last step.
-    pub fn pressing(&self) -> usize {
-        self.kept.iter().filter(|row| row.total > 0.0).count()
+    /// Takes a state as the end of a step that has left this.
+    pub fn recall(&mut self, kept: &[Remembered], state: &State) {
+        self.kept.clear();
+        self.kept.extend_from_slice(kept);
+        self.resume(state);
+    }
+
+    /// Takes a gap for closed up to so many of its roundings; 0 is rapier's.
+    pub fn closes_at(&mut self, roundings: f64) {
+        self.closed = roundings;
+    }
+
+    /// The contacts that had an impulse in the last step, by obstacle and particle.
+    pub fn kept(&self) -> &[Remembered] {
+        &self.kept
+    }
+
+    /// Whether something is so near that a step has a contact.
+    pub fn is_near(obstacles: &Obstacles, state: &State) -> bool {
+        let mut pairs = obstacles.pairs();
+        pairs.any(|(particle, against)| obstacles.beside(particle, against, state).gap < PREDICTION)
     }
 
     /// The contacts of a step, with what is left of them from the last.
@@ -231,15 +262,14 @@ impl RapierContact {
             let old = found.ok().map(|at| &self.kept[at]);
             let restitution = obstacles.surface(against).restitution;
             // What bore a load in the last step rests, unless it bounces for ever.
-            let new = old.is_none_or(|old| old.total == 0.0);
-            if new || restitution >= 1.0 {
+            if old.is_none() || restitution >= 1.0 {
                 row.seed = restitution * dot(row.normal, row.velocity(&state.v));
             }
             if let Some(old) = old {
-                row.normal_impulse = old.normal_impulse;
-                let along = dot(old.tangent_impulse, row.normal);
+                row.normal_impulse = old.normal;
+                let along = dot(old.tangent, row.normal);
                 row.tangent_impulse =
-                    [0, 1, 2].map(|axis| old.tangent_impulse[axis] - along * row.normal[axis]);
+                    [0, 1, 2].map(|axis| old.tangent[axis] - along * row.normal[axis]);
             }
             Some(row)
         };
@@ -294,9 +324,11 @@ impl RapierContact {
             changed = false;
             for row in &mut *rows {
                 let gap = row.gap(&state.x, start.t - begin);
-                let (rigid, moved) = row.press(gap, h, &mut v);
+                let rounding = row.rounding(&state.x);
+                let open = gap > self.closed * rounding;
+                let (rigid, moved) = row.press(gap, open, h, &mut v);
                 changed |= moved;
-                if gap.abs() <= row.rounding(&state.x) {
+                if gap.abs() <= rounding {
                     lost = lost.max((1.0 - row.soft.share) * rigid * row.weight);
                 }
             }
@@ -362,7 +394,14 @@ impl Integrator for RapierContact {
         next.t = begin + h;
         system.place(next.t, &mut next.x, &mut next.v);
         self.ended = Some((next.x.clone(), next.v.clone()));
-        self.kept = rows;
+        let pressed = rows.iter().filter(|row| row.total > 0.0);
+        let kept = pressed.map(|row| Remembered {
+            particle: row.particle,
+            obstacle: row.obstacle,
+            normal: row.normal_impulse,
+            tangent: row.tangent_impulse,
+        });
+        self.kept = kept.collect();
         *state = next;
         Ok(())
     }

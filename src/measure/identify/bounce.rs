@@ -5,6 +5,7 @@ mod list;
 mod own;
 mod penalty;
 mod rows;
+mod ways;
 
 pub(super) use list::{all, relevant, same_here};
 pub use own::{Own, Size, Wrong};
@@ -14,14 +15,14 @@ pub use rows::{FRICTIONS, PARTNERS, PLACES, RESTITUTIONS, WAYS, treatments};
 use crate::integrators::StepError;
 use crate::physics::State;
 use crate::physics::constraints::contact::{Against, Beside, Hit, ImpactLaw, Obstacles};
-use crate::space::three;
+use crate::space::{minus, three};
 use crate::vector::axpy;
 use std::borrow::Cow;
 use std::fmt;
 
 type Stepped = Result<(), StepError>;
-/// The step of a method as if there were no obstacles.
-pub(super) type Free<'a> = dyn FnMut(&mut State) -> Stepped + 'a;
+/// The step of a method as if there were no obstacles, of so many seconds.
+pub(super) type Free<'a> = dyn FnMut(f64, &mut State) -> Stepped + 'a;
 
 /// One row of a table: what a program does in one respect.
 #[derive(Debug)]
@@ -40,7 +41,11 @@ pub enum Way {
     /// At the instant of each impact, within the step.
     Event,
     /// Once a step, beside it.
-    Once(fn(&Bounce, &Obstacles, f64, &mut State, &mut Free) -> Stepped),
+    Once(Treating),
+    /// Within the step of this method, whatever its forces.
+    Of(&'static str, Treating),
+    /// Within any step, which leaves nothing inside.
+    Within(Treating),
     /// By a force while a particle is inside.
     Force {
         /// Whether a damper may pull it back while it leaves.
@@ -48,9 +53,14 @@ pub enum Way {
         /// Whether the scene's contact is such a force, and steps are not cut where it begins and ends.
         whole: bool,
     },
+    /// By rapier's step, in the substeps of the scheme, which keeps impulses from one step to the next.
+    Soft,
     /// Not at all.
     Never,
 }
+
+/// A step of a treatment, with the method's own and so many seconds long.
+pub type Treating = fn(&Bounce, &Obstacles, f64, &mut State, &mut Free) -> Stepped;
 
 /// Where what is inside is put.
 #[derive(Debug, Clone, Copy)]
@@ -59,6 +69,8 @@ pub struct Lift {
     pub by: fn(f64, f64) -> f64,
     /// Whether two particles move by half of it each; else each by its part of both 1/m.
     pub halves: bool,
+    /// Whether it is put where the step began instead.
+    pub back: bool,
 }
 
 /// What the normal velocity gains.
@@ -80,10 +92,12 @@ pub type Shares = fn(&Beside, [f64; 3], [f64; 2]) -> [[f64; 3]; 2];
 #[derive(Debug, Clone, Copy)]
 pub struct Partner {
     pub shares: Shares,
-    /// Whether obstacles have the velocity that the scene gives them; else they are at rest.
-    pub moves: bool,
+    /// Obstacles have so many times the velocity that the scene gives them.
+    pub speed: f64,
     /// Whether particles collide with each other.
     pub meets: bool,
+    /// Whether velocities are turned about the normal; else about the axis nearest to it.
+    pub slopes: bool,
 }
 
 /// A treatment of contact.
@@ -198,12 +212,20 @@ impl Bounce {
         match self.way.does {
             Way::Event => {
                 let parts = matches!(id, "newton" | "restitution_as_one" | "restitution_as_zero");
-                left && parts && self.partner.does.moves && !self.partner.mistake
+                left && parts && self.partner.does.speed == 1.0 && !self.partner.mistake
             }
             Way::Force { .. } => left,
+            Way::Within(_) => left && id != "velocity_kept",
+            Way::Once(_) if self.place.does.back => self.way.id == "flip_at_end",
+            Way::Of(..) => !self.place.does.back && (!left || id != "velocity_kept"),
             Way::Once(_) => !left || id != "velocity_kept",
-            Way::Never => *self == Self::new(self.way),
+            Way::Soft | Way::Never => *self == Self::new(self.way),
         }
+    }
+
+    /// Whether it is one of the first things that a program does: others are looked for with fewer mistakes.
+    pub(super) fn is_usual(&self) -> bool {
+        !self.place.does.back && !matches!(self.way.does, Way::Of(..) | Way::Within(_))
     }
 
     /// Its law of impacts.
@@ -223,47 +245,65 @@ impl Bounce {
         free: &mut Free,
     ) -> Stepped {
         match self.way.does {
-            Way::Once(once) => once(self, obstacles, h, state, free),
-            Way::Event | Way::Force { .. } | Way::Never => free(state),
+            Way::Once(does) | Way::Of(_, does) | Way::Within(does) => {
+                does(self, obstacles, h, state, free)
+            }
+            Way::Event | Way::Force { .. } | Way::Soft | Way::Never => free(h, state),
         }
     }
 
     /// Turns velocities of particles that are inside obstacles, and of those in each other, and moves these out, one pair
-    /// after the other. Returns the particles that it acts on.
-    fn meet(&self, obstacles: &Obstacles, h: f64, state: &mut State) -> Vec<usize> {
+    /// after the other. Returns the particles that it acts on. `from` are the positions at the start of the step.
+    fn meet(&self, obstacles: &Obstacles, h: f64, from: &[f64], state: &mut State) -> Vec<usize> {
         let mut met = Vec::new();
-        for (particle, obstacle) in obstacles.pairs() {
-            self.act(obstacles, (particle, obstacle), h, state, &mut met);
+        let inside = |pair: (usize, Against), state: &State| {
+            let beside = obstacles.beside(pair.0, pair.1, state);
+            beside.gap <= self.within(&beside)
+        };
+        for pair in obstacles.pairs() {
+            if inside(pair, state) {
+                self.act(obstacles, pair, (h, from), state, &mut met);
+            }
         }
         if obstacles.among_particles() && self.partner.does.meets {
             let near = obstacles.near_now(state);
             let among = |(_, against): &(usize, Against)| matches!(against, Against::Particle(_));
             for pair in near.pairs().filter(among) {
-                self.act(obstacles, pair, h, state, &mut met);
+                if inside(pair, state) {
+                    self.act(obstacles, pair, (h, from), state, &mut met);
+                }
             }
         }
         met
+    }
+
+    /// The largest gap that counts as inside, m.
+    fn within(&self, beside: &Beside) -> f64 {
+        match self.touching {
+            Touching::Inside => -beside.close,
+            Touching::Exactly => 0.0,
+            Touching::Near => beside.close,
+        }
     }
 
     fn act(
         &self,
         obstacles: &Obstacles,
         (particle, against): (usize, Against),
-        h: f64,
+        (h, from): (f64, &[f64]),
         state: &mut State,
         met: &mut Vec<usize>,
     ) {
         let mut beside = obstacles.beside(particle, against, state);
-        let within = match self.touching {
-            Touching::Inside => -beside.close,
-            Touching::Exactly => 0.0,
-            Touching::Near => beside.close,
-        };
-        if beside.gap > within {
-            return;
+        if let Against::Obstacle(_) = against {
+            let v = three(&state.v, particle);
+            let slower = 1.0 - self.partner.does.speed;
+            let surface = minus(v, beside.velocity);
+            beside.velocity = [0, 1, 2].map(|axis| beside.velocity[axis] + slower * surface[axis]);
         }
-        if !self.partner.does.moves {
-            beside.velocity = three(&state.v, particle);
+        let outward = beside.normal;
+        if !self.partner.does.slopes {
+            beside.normal = axis(beside.normal);
         }
         let surface = obstacles.surface(against);
         let with = against.with(particle);
@@ -273,7 +313,7 @@ impl Bounce {
             gap if gap < 0.0 => (place.by)(gap, surface.restitution),
             _ => 0.0,
         };
-        let lifted = beside.normal.map(|n| out * n);
+        let lifted = outward.map(|n| out * n);
         let lifted = match place.halves && with.len() > 1 {
             true => rows::halves(&beside, lifted, weights),
             false => rows::by_mass(&beside, lifted, weights),
@@ -284,12 +324,28 @@ impl Bounce {
         for (end, one) in with.into_iter().enumerate() {
             let own = 3 * one..3 * one + 3;
             axpy(&mut state.x[own.clone()], 1.0, &lifted[end]);
+            if let Some(old) = from.get(own.clone()).filter(|_| place.back) {
+                state.x[own.clone()].copy_from_slice(old);
+            }
             if let Some(change) = &change {
                 axpy(&mut state.v[own], 1.0, &change[end]);
                 met.push(one);
             }
         }
     }
+}
+
+/// The axis that is nearest to a direction, either way round.
+fn axis(n: [f64; 3]) -> [f64; 3] {
+    let largest = n.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+    let first = n.iter().position(|c| c.abs() == largest);
+    [0, 1, 2].map(|at| {
+        if Some(at) == first {
+            n[at].signum()
+        } else {
+            0.0
+        }
+    })
 }
 
 impl fmt::Debug for Bounce {

@@ -1,20 +1,23 @@
 //! A scheme that a trajectory may follow: a step under certain forces, whole or in substeps, or applied in another
 //! way than to all particles at once.
 
-use super::altered::{Altered, Altering, Around};
-use super::bounce::{Bounce, Touching, Way, pressed};
-use super::keeping::{Keeping, Kept, keep};
+mod replayer;
+
+pub use replayer::Replayer;
+
+use super::altered::Around;
+use super::bounce::{Bounce, Way, pressed};
+use super::keeping::Keeping;
 use super::step::Step;
-use crate::integrators::{
-    Coefficients, Integrator, Method, PerStep, Settings, StepError, Velocities, events, fixed,
-};
+use crate::integrators::{Coefficients, Method, PerStep, Remembered, Velocities, fixed};
 use crate::physics::constraints::contact::Obstacles;
-use crate::physics::constraints::limit;
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{Scene, Stabilisation};
 use std::borrow::Cow;
 use std::sync::Arc;
 
+/// The schemes that the soft step is where nothing touches: the second under constant forces alone.
+pub(super) const SOFT_SCHEMES: [&str; 2] = ["linearized_implicit_material", "symplectic_euler"];
 /// Forces that candidates share.
 pub type Forces = Arc<dyn System + Send + Sync>;
 
@@ -42,11 +45,13 @@ pub struct Candidate {
     alone: bool,
     /// The step it begins with, where that is another.
     first: Option<Box<Step>>,
-    scaling: Option<Scaling>,
+    scaling: Option<Box<Scaling>>,
     /// How it keeps rods, where not as the scene says.
     keeping: Option<Keeping>,
     /// What it does about obstacles, where that is beside its step.
     bounce: Option<Box<Bounce>>,
+    /// Of steps that keep impulses of contact: what they keep at each row of a trajectory.
+    remembered: Arc<Vec<Vec<Remembered>>>,
 }
 
 /// A factor on velocities, from a rate in 1/s and the length of a step in s.
@@ -99,6 +104,7 @@ impl Candidate {
             scaling: None,
             keeping: None,
             bounce: None,
+            remembered: Arc::default(),
         }
     }
 
@@ -176,7 +182,13 @@ impl Candidate {
                 self.under(&struck.with_obstacles(|all| Some(all.struck_by(law))))
             }
             Way::Force { .. } => self.under(&pressed(scene, system, bounce)?),
-            Way::Once(_) | Way::Never => {
+            Way::Soft if !self.has_soft(system) => return None,
+            Way::Soft => Self {
+                bounce: Some(Box::new(*bounce)),
+                ..self.clone()
+            },
+            Way::Of(method, _) if self.meant != method => return None,
+            Way::Once(_) | Way::Of(..) | Way::Within(_) | Way::Never => {
                 let forced = if alters {
                     self.under(&bounce.met_by(system))
                 } else {
@@ -196,6 +208,32 @@ impl Candidate {
         }
         let kept = !alters && (right || same.bounce.is_some());
         (own || kept).then_some(same)
+    }
+
+    /// Whether the soft step is this scheme where nothing touches. Contact of particles with each other is not written here.
+    fn has_soft(&self, system: &ParticleSystem) -> bool {
+        let constant = system.effects().iter().all(|(row, _)| row.constant);
+        let schemes = &SOFT_SCHEMES[..if constant { 2 } else { 1 }];
+        let plain = self.says.is_none() && !self.remembers() && self.stretch == 1.0;
+        let among = system.obstacles().is_some_and(Obstacles::among_particles);
+        let method = self.step.method().filter(|_| plain && !among);
+        method.is_some_and(|method| schemes.contains(&method.id))
+    }
+
+    /// Whether its steps keep impulses of contact.
+    pub(super) fn is_soft(&self) -> bool {
+        let bounce = self.bounce.as_ref();
+        bounce.is_some_and(|bounce| matches!(bounce.way.does, Way::Soft))
+    }
+
+    /// The same, with what its steps keep at each row.
+    pub(super) fn remembering(self, remembered: Arc<Vec<Vec<Remembered>>>) -> Self {
+        Self { remembered, ..self }
+    }
+
+    /// What its steps keep at row `k`.
+    pub(super) fn remembered(&self, k: usize) -> &[Remembered] {
+        self.remembered.get(k).map_or(&[], Vec::as_slice)
     }
 
     /// The same scheme under another candidate's forces, in its steps, with rods kept as that does.
@@ -220,7 +258,7 @@ impl Candidate {
     /// The same with velocities multiplied beside it.
     pub fn scaled(self, scaling: Scaling) -> Self {
         Self {
-            scaling: Some(scaling),
+            scaling: Some(Box::new(scaling)),
             ..self
         }
     }
@@ -274,7 +312,7 @@ impl Candidate {
 
     /// Whether its steps solve linear systems, which costs as much as many that do not.
     pub fn solves(&self) -> bool {
-        self.step.solves()
+        self.step.solves() || self.is_soft()
     }
 
     /// Whether it is a tableau that takes forces at several times.
@@ -362,19 +400,6 @@ impl Candidate {
     pub fn label(&self) -> String {
         label(&self.id, self.substeps)
     }
-
-    /// A replayer that takes its steps. Each thread has its own.
-    pub fn replayer(&self, settings: &Settings) -> Replayer<'_> {
-        let kept = self.around.is_none() && !self.remembers();
-        Replayer {
-            candidate: self,
-            settings: *settings,
-            kept: kept.then(|| self.step.build(settings, None)),
-            pattern: None,
-            passes: false,
-            touching: Touching::Exactly,
-        }
-    }
 }
 
 /// An id, and after a slash the substeps if there are several.
@@ -382,163 +407,5 @@ pub(super) fn label(id: &str, substeps: u32) -> String {
     match substeps {
         0 | 1 => id.to_owned(),
         n => format!("{id}/{n}"),
-    }
-}
-
-/// Takes a candidate's steps.
-pub struct Replayer<'a> {
-    candidate: &'a Candidate,
-    settings: Settings,
-    /// The integrator of steps that do not depend on those before.
-    kept: Option<Box<dyn Integrator>>,
-    pattern: Option<u64>,
-    /// Whether it passes through obstacles.
-    passes: bool,
-    /// What counts as inside, beside its step.
-    touching: Touching,
-}
-
-impl<'a> Replayer<'a> {
-    /// The candidate whose steps it takes.
-    pub fn candidate(&self) -> &'a Candidate {
-        self.candidate
-    }
-
-    /// From now on moves every force by its rounding in the direction of a pattern, or by nothing.
-    pub(super) fn nudge(&mut self, pattern: Option<u64>) {
-        self.pattern = pattern;
-    }
-
-    /// Does something in the other ways that rounding may decide where something touches: without the impact of a located
-    /// one, else with what touches inside or not.
-    pub(super) fn otherwise<T>(&mut self, mut what: impl FnMut(&mut Self) -> T) -> Vec<T> {
-        if self.candidate.bounce.is_none() {
-            self.passes = true;
-            let done = what(self);
-            self.passes = false;
-            return vec![done];
-        }
-        let mut with = |touching| {
-            self.touching = touching;
-            let done = what(self);
-            self.touching = Touching::Exactly;
-            done
-        };
-        vec![with(Touching::Inside), with(Touching::Near)]
-    }
-
-    /// Advances `state`, which is at step `step`, by `span` steps of `h` seconds. `before` is the
-    /// state one step earlier, where it is known.
-    ///
-    /// # Errors
-    /// [`StepError`] as the integrator's; [`StepError::NotFinite`] where a candidate that remembers
-    /// has no state before.
-    pub fn advance(
-        &mut self,
-        step: u64,
-        span: u64,
-        h: f64,
-        before: Option<&State>,
-        state: &mut State,
-    ) -> Result<(), StepError> {
-        let candidate = self.candidate;
-        // Substeps of a step that is applied in another way are the way's own.
-        let n = match candidate.around {
-            Some(_) => 1,
-            None => candidate.substeps,
-        };
-        let part_of_h = h / f64::from(n);
-        let inner = part_of_h * candidate.stretch;
-        let mut previous = before.cloned();
-        if candidate.remembers() && before.is_none() && step > 0 {
-            // No particle is to blame for it.
-            return Err(StepError::NotFinite { particle: 0 });
-        }
-        for part in step * u64::from(n)..(step + span) * u64::from(n) {
-            // As solvers count time: n h, not a running sum.
-            state.t = part as f64 * part_of_h;
-            let start = state.clone();
-            let forces = candidate.forces.as_ref();
-            let rounded = self.pattern.map(|pattern| {
-                Altered::new(forces, Altering::rounded(pattern, part, candidate.solves()))
-            });
-            let system = rounded
-                .as_ref()
-                .map_or(forces as &dyn System, |rounded| rounded);
-            candidate.scale(ScaledAt::Start, inner, &start.x, state);
-            let first = candidate.first.as_deref().filter(|_| previous.is_none());
-            let step = first.unwrap_or(&candidate.step);
-            let before = previous.as_ref();
-            let fresh = |before| step.build(&self.settings, before);
-            let beside = candidate.beside(system);
-            let passes = self.passes || beside.is_some();
-            let taken = |by: &mut dyn Integrator, f: &dyn System, h, s: &mut State| match passes {
-                true => by.step(f, h, s),
-                false => events::through(by, f, h, s).map(|_| ()),
-            };
-            let mut free = |state: &mut State| {
-                let x = candidate.scaling.is_some().then(|| state.x.clone());
-                match (candidate.around, &mut self.kept) {
-                    (Some(around), _) => {
-                        let one =
-                            |f: &dyn System, h, s: &mut State| taken(fresh(None).as_mut(), f, h, s);
-                        around(&one, system, inner, candidate.substeps, state)?;
-                    }
-                    (None, Some(kept)) => taken(kept.as_mut(), system, inner, state)?,
-                    (None, None) => taken(fresh(before).as_mut(), system, inner, state)?,
-                }
-                if let Some(x) = x {
-                    candidate.scale(ScaledAt::Kick, inner, &x, state);
-                    candidate.scale(ScaledAt::End, inner, &x, state);
-                }
-                Ok(())
-            };
-            match beside {
-                Some((bounce, obstacles)) => {
-                    let bounce = Bounce {
-                        touching: self.touching,
-                        ..*bounce
-                    };
-                    bounce.step(obstacles, inner, state, &mut free)?;
-                }
-                None => free(state)?,
-            }
-            state.t = (part + 1) as f64 * part_of_h;
-            system.place(state.t, &mut state.x, &mut state.v);
-            self.keep(inner, part, &start, state)?;
-            if let Some(limiter) = system.strain_limiter() {
-                limit(system, limiter, state)?;
-            }
-            previous = Some(start);
-        }
-        Ok(())
-    }
-
-    /// Moves a state onto rods after a step of `h` seconds from `start`, as the candidate does.
-    fn keep(&self, h: f64, part: u64, start: &State, state: &mut State) -> Result<(), StepError> {
-        let candidate = self.candidate;
-        let nudge = self.pattern.map(|pattern| (!part, pattern));
-        match (&candidate.keeping, candidate.forces.rods()) {
-            (Some(Keeping::By(kept, rods)), _) => keep(rods, *kept, h, start, state, nudge),
-            (_, Some(rods)) if rods.stabilisation() == Stabilisation::Project => {
-                if candidate.keeps_rods() {
-                    return Ok(());
-                }
-                keep(rods, Kept::PROJECTED, h, start, state, nudge)
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Takes the velocity along rods out of a state whose velocities the candidate has without it.
-    pub(super) fn still(&self, state: &mut State) -> Result<(), StepError> {
-        let candidate = self.candidate;
-        let rods = match (&candidate.keeping, candidate.forces.rods()) {
-            (Some(Keeping::By(kept, rods)), _) if kept.stills() => rods.as_ref(),
-            (Some(Keeping::By(..)), _) => return Ok(()),
-            (_, Some(rods)) if candidate.ends_still(rods.stabilisation()) => rods,
-            _ => return Ok(()),
-        };
-        Ok(rods.still(&state.x, &mut state.v)?)
     }
 }

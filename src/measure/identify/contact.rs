@@ -231,10 +231,10 @@ pub(super) fn together(question: &Question, race: &Race, apart: &Apart) -> Optio
     let schemes: Vec<Candidate> = usual(question).chain(treated(question.system)).collect();
     let budget = race.budget.max(question.budget / 4);
     let found = order::found(&search, &schemes, obstacles, budget).0?;
-    let Question { scene, system, .. } = question;
     let all: Vec<Transition> = apart.away.iter().map(|w| w.transition).collect();
     let defects = |scheme: &Candidate| {
-        let candidate = scheme.bouncing(scene, system, &found.bounce)?;
+        let candidate = search.bouncing(scheme, &found.bounce)?;
+        let all = search.known(&candidate, &all);
         let defects = defects_of_all(race.replay, &candidate, &all);
         defects.iter().all(Defect::fits).then_some(defects)
     };

@@ -9,7 +9,7 @@ use super::mistakes::{self, MISTAKES, Mistake, Wrong};
 use super::near;
 use super::race::{Race, defects_of_all};
 use super::replay::FIT;
-use super::result::{Deviation, Explained};
+use super::result::{Deviation, Explained, Treated};
 use super::rods::restabilised;
 use super::transition::{Transition, spread};
 use super::treated::treated;
@@ -64,6 +64,21 @@ pub(super) fn of_none(question: &Question, race: &Race, all: &[Transition]) -> F
             .or_else(|| rough.map(|fit| fit.found(race, all).unnamed()))
             .unwrap_or_else(|| unexplained(race, all)),
     }
+}
+
+/// Numbers that a person would write and that explain all, where a treatment of contact does so with a number that nobody
+/// would: along a surface the data cannot tell one from the other.
+pub(super) fn sooner(
+    question: &Question,
+    race: &Race,
+    all: &[Transition],
+    treated: &Treated,
+) -> Option<Found> {
+    let odd = treated.bounce.is_some_and(|bounce| !bounce.own.is_plain());
+    let fitted = odd.then(|| fitted(question, race)).flatten();
+    let exact = fitted.filter(|fit| fit.is_exact() && fit.plain)?;
+    let other = format!("a program that at contact {}", treated.says);
+    Some(exact.or(&[other]).found(race, all))
 }
 
 impl Found {

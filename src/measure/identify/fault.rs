@@ -139,7 +139,9 @@ fn departure(
     } else {
         followed.begun_before()
     };
-    let transitions: Vec<Transition> = neighbours(rows).filter(|t| some(t)).collect();
+    let followed = replay.remembering(followed);
+    let known = |t: &Transition| some(t) && replay.knows(&followed, t.from);
+    let transitions: Vec<Transition> = neighbours(rows).filter(known).collect();
     let departures = departures(&replay, &followed, &transitions);
     // A closer look at one may find that rounding explains it after all.
     let spot = (0..departures.len())

@@ -144,7 +144,9 @@ fn found(question: &Question) -> Option<Found> {
     if !race.decided()
         && let Some(found) = together(&race)
     {
-        return Some(found);
+        let treated = found.identity.as_ref().and_then(|one| one.contact.as_ref());
+        let sooner = treated.and_then(|treated| explain::sooner(question, &race, &all, treated));
+        return Some(sooner.unwrap_or(found));
     }
     // Digits that are few tell fewer schemes apart, and that is to be said.
     let coarse = rows.precision != Precision::Double;

@@ -1,13 +1,14 @@
 //! One replay: the row a candidate makes from a row, and how far that is from the next row in units
 //! of rounding.
 
+mod memory;
 mod outcome;
+mod units;
 
 use super::altered::sign;
 use super::candidate::{Candidate, Replayer};
-use super::transition::{Transition, beside};
+use super::transition::Transition;
 use super::velocity;
-use crate::integrators::events::LOCATED;
 use crate::integrators::{Settings, StepError};
 use crate::physics::{ParticleSystem, State, System};
 use crate::scene::{Drive, Scene};
@@ -159,32 +160,6 @@ impl<'a> Replay<'a> {
         self.predict_nudged(replayer, transition, None)
     }
 
-    /// What rounding explains of each coordinate at `transition.to`: positions, then velocities
-    /// (none where there are none). `predicted` is what [`predict`](Self::predict) gave.
-    ///
-    /// Half a unit of the recorded number; what half units of the inputs, the rounding of every force
-    /// ([`System::rounding`]) and that of the step's sums become, measured by replays that are moved by as
-    /// much in `nudges` random directions; and for iterative schemes the tolerance of their solve.
-    ///
-    /// # Errors
-    /// As [`predict`](Self::predict).
-    pub fn units(
-        &self,
-        replayer: &mut Replayer,
-        transition: &Transition,
-        predicted: &State,
-        nudges: u64,
-    ) -> Result<Vec<f64>, StepError> {
-        let mut grown = vec![0.0; self.recorded(transition).count()];
-        for pattern in 0..nudges {
-            let nudged = self.predict_nudged(replayer, transition, Some(pattern))?;
-            if !self.jumps(predicted, &nudged) {
-                grow(predicted, &nudged, &mut grown);
-            }
-        }
-        Ok(self.with_own(replayer, transition, predicted, &grown))
-    }
-
     /// The defect of a candidate at a transition.
     pub fn defect(&self, replayer: &mut Replayer, transition: &Transition) -> Defect {
         self.try_defect(replayer, transition)
@@ -209,12 +184,16 @@ impl<'a> Replay<'a> {
         let far = most(&off) > FAR * most(&moved);
         let numbers = off.len();
         let mut outcomes = vec![Outcome::new(predicted, numbers)];
-        if far && self.touches(replayer, transition) {
-            // What touches at a row may be struck in the step before it, or after it.
+        let soft = replayer.candidate().is_soft();
+        if far && (soft || self.touches(replayer, transition)) {
+            // What touches at a row may be struck in the step before it, or after it. A soft step meets it in every substep.
             let others = replayer.otherwise(|other| self.predict(other, transition));
             for other in others.into_iter().flatten() {
-                if outcomes.iter().all(|one| self.jumps(&one.state, &other)) {
-                    outcomes.push(Outcome::new(other, numbers));
+                let mut known = outcomes.iter_mut();
+                match known.find(|one| !self.jumps(&one.state, &other)) {
+                    Some(one) if soft => grow(&one.state, &other, &mut one.grown),
+                    Some(_) => {}
+                    None => outcomes.push(Outcome::new(other, numbers)),
                 }
             }
         }
@@ -238,7 +217,7 @@ impl<'a> Replay<'a> {
             let clear = defect <= CLEAR || (defect > HOPELESS && pattern >= enough);
             if clear || pattern == NUDGES {
                 let motion = largest_ratio(&moved, &units);
-                let digits = self.digits(transition);
+                let digits = self.digits(replayer, transition);
                 if defect <= FIT && defect > motion && largest_ratio(&off, &digits) > FIT {
                     // Rounding would explain anything here.
                     return Ok(Defect::IMPOSSIBLE);
@@ -302,65 +281,6 @@ impl<'a> Replay<'a> {
         self.drives.iter().any(|drive| drive.particle == particle)
     }
 
-    /// What inputs have grown to, plus the rounding of the recorded number and the solve's
-    /// tolerance.
-    fn with_own(
-        &self,
-        replayer: &Replayer,
-        transition: &Transition,
-        predicted: &State,
-        grown: &[f64],
-    ) -> Vec<f64> {
-        let seconds = transition.span(self.rows) as f64 * self.rows.timestep;
-        let dim = self.rows.dim;
-        let solve = if self.iterated || replayer.candidate().iterates() {
-            let kick = |(i, v): (usize, &f64)| match self.rows.v(transition.from) {
-                Some(from) => (v - from[i]).abs(),
-                None => v.abs(),
-            };
-            let kicks = predicted.v.iter().enumerate().map(kick);
-            self.settings.tolerance * kicks.fold(0.0, f64::max)
-        } else {
-            0.0
-        };
-        let late = self.late(replayer, transition);
-        let substeps = f64::from(replayer.candidate().substeps.max(1));
-        let differences = replayer.candidate().differences();
-        let from = self.from(transition);
-        let own = self.recorded(transition).zip(from).enumerate();
-        let own = own.map(|(i, (value, from))| {
-            let solve = if i < dim { seconds * solve } else { solve };
-            let located = if i < dim { late.0 } else { late.1 };
-            // A number that ends near 0 was larger in between.
-            let bit = f64::EPSILON * from.abs();
-            let bit = match i.checked_sub(dim).filter(|_| differences) {
-                Some(at) => {
-                    let x = self.rows.x(transition.to)[at].abs().max(self.length);
-                    bit + f64::EPSILON * x * substeps / self.rows.timestep
-                }
-                None => bit,
-            };
-            self.half_unit(transition.to, i, value) + bit + solve + located
-        });
-        grown.iter().zip(own).map(|(g, own)| g + own).collect()
-    }
-
-    /// What an impact that is located a little off does to positions, m, and to velocities, m/s.
-    fn late(&self, replayer: &Replayer, transition: &Transition) -> (f64, f64) {
-        let rows = self.rows;
-        let [Some(from), Some(to)] = [transition.from, transition.to].map(|k| rows.v(k)) else {
-            return (0.0, 0.0);
-        };
-        let obstacles = replayer.candidate().locates();
-        if obstacles.is_none_or(|all| beside(all, rows, transition).is_none()) {
-            return (0.0, 0.0);
-        }
-        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-        let fastest = largest(&mut from.iter().chain(to).map(|v| v.abs()));
-        let turned = largest(&mut from.iter().zip(to).map(|(a, b)| (b - a).abs()));
-        (LOCATED * rows.timestep * 2.0 * fastest, LOCATED * turned)
-    }
-
     /// What is recorded at the end: positions, then velocities where there are any.
     pub(super) fn recorded(&self, transition: &Transition) -> impl Iterator<Item = f64> + '_ {
         let v = self.rows.v(transition.to).unwrap_or(&[]);
@@ -371,25 +291,6 @@ impl<'a> Replay<'a> {
     fn from(&self, transition: &Transition) -> impl Iterator<Item = f64> + '_ {
         let v = self.rows.v(transition.from).unwrap_or(&[]);
         self.rows.x(transition.from).iter().chain(v).copied()
-    }
-
-    /// Half a unit of the last digit that a number of row `k` is given to, or computed to.
-    fn half_unit(&self, k: usize, i: usize, value: f64) -> f64 {
-        let rows = self.rows;
-        let half = rows.half_unit(i, value);
-        match i.checked_sub(rows.dim).filter(|_| self.differenced) {
-            Some(at) => half + f64::EPSILON * rows.x(k)[at].abs() / rows.timestep,
-            None => half,
-        }
-    }
-
-    /// The rounding of each recorded number, and of the number it came from.
-    fn digits(&self, transition: &Transition) -> Vec<f64> {
-        let pairs = self.recorded(transition).zip(self.from(transition));
-        let digits = pairs.enumerate().map(|(i, (to, from))| {
-            self.half_unit(transition.to, i, to) + f64::EPSILON * from.abs()
-        });
-        digits.collect()
     }
 
     /// How far each recorded number moves.
@@ -434,6 +335,7 @@ impl<'a> Replay<'a> {
         let one_back = before
             .filter(|(k, _)| rows.steps[*k] + 1 == step)
             .map(|(_, state)| state);
+        replayer.recall(replayer.candidate().remembered(transition.from));
         replayer.advance(step, span, rows.timestep, one_back.as_ref(), &mut state)?;
         let not_finite = |c: &f64| !c.is_finite();
         let lost = |values: &[f64]| values.iter().position(not_finite);

@@ -67,8 +67,8 @@ impl Identity {
 /// How a trajectory's program treats contact with obstacles, by replay of steps beside them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Treated {
-    /// `impulse` at the impact, `flip_at_end`, `flip_at_start`, `flip_after_kick`, `flip_before_kick`, `penalty`, or
-    /// another id, and after each + what else is not as usual: `flip_at_end+clamped`; null where no known treatment
+    /// `impulse` at the impact, `flip_at_end`, `flip_at_start`, `flip_after_kick`, `flip_before_kick`, `penalty`,
+    /// `soft_step`, or another id, and after each + what else is not as usual: `flip_at_end+clamped`; null where no known treatment
     /// explains the steps.
     pub treatment: Option<String>,
     /// Whether nothing can be said of it: without velocities, and where there are too many treatments to try.

@@ -113,7 +113,7 @@ impl Shown {
             world.step().map_err(|error| error.to_string())?;
             let ties = contact.ties();
             shown.steps += 1;
-            shown.pressing += u32::from(contact.pressing() > 0);
+            shown.pressing += u32::from(!contact.kept().is_empty());
             shown.ties += u32::from(ties != Default::default());
             // A spring pulls otherwise where its end is elsewhere.
             let pulled = ties.position / settings.substep(h);

@@ -4,6 +4,7 @@ use super::{
     Bounce, FRICTIONS, Friction, Lift, PARTNERS, PLACES, Partner, RESTITUTIONS, Restitution, Row,
     WAYS, Way,
 };
+use crate::physics::State;
 use crate::physics::constraints::contact::{Hit, Obstacles};
 
 /// Mistakes that are looked for at once.
@@ -36,7 +37,8 @@ pub(in super::super) fn all(obstacles: &Obstacles, h: f64) -> Vec<Bounce> {
                         friction,
                         ..Bounce::new(way)
                     };
-                    if bounce.is_sensible() && bounce.mistakes().count() <= MOST {
+                    let most = if bounce.is_usual() { MOST } else { MOST - 1 };
+                    if bounce.is_sensible() && bounce.mistakes().count() <= most {
                         all.push(bounce);
                     }
                 }
@@ -58,11 +60,13 @@ pub(in super::super) fn relevant(
     masses.sort_unstable();
     masses.dedup();
     let unequal = obstacles.among_particles() && masses.len() > 1;
+    let slants = slants(obstacles);
     let place = |row: &&Row<Lift>| unequal || !row.does.halves;
     let partner = |row: &&Row<Partner>| match row.id {
         "by_mass" => true,
         "masses_ignored" => unequal,
-        _ if !row.does.moves => obstacles.any_moves(),
+        _ if row.does.speed != 1.0 => obstacles.any_moves(),
+        _ if !row.does.slopes => slants,
         // Where there is nothing else, that is all obstacles forgotten.
         _ if !row.does.meets => obstacles.among_particles() && obstacles.pairs().next().is_some(),
         _ => obstacles.among_particles(),
@@ -71,6 +75,19 @@ pub(in super::super) fn relevant(
         PLACES.iter().filter(place).collect(),
         PARTNERS.iter().filter(partner).collect(),
     )
+}
+
+/// Whether some obstacle has normals that are along no axis.
+fn slants(obstacles: &Obstacles) -> bool {
+    let numbers = obstacles.particles().max().map_or(0, |last| 3 * last + 3);
+    let origin = State::new(vec![0.0; numbers], vec![0.0; numbers]);
+    let first = obstacles.particles().next();
+    let mut own = obstacles.pairs().filter(|(one, _)| Some(*one) == first);
+    obstacles.bend()
+        || own.any(|(particle, against)| {
+            let normal = obstacles.beside(particle, against, &origin).normal;
+            normal.iter().all(|c| c.abs() < 1.0 - 1e-9)
+        })
 }
 
 /// Other mistakes that do the same beside these obstacles, in steps of `h` seconds.

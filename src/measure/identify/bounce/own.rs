@@ -23,6 +23,9 @@ pub(super) const NUMBERS: [(&str, &str); 5] = [
     ),
 ];
 
+/// Most digits of a coefficient that a person writes.
+const WRITTEN: usize = 4;
+
 /// A number of the program's own, and the scene's where that is one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wrong {
@@ -87,6 +90,13 @@ impl Own {
     /// Whether one of them is not the scene's.
     pub(in super::super) fn any(&self) -> bool {
         *self != Self::NONE
+    }
+
+    /// Whether a person would write its coefficients.
+    pub(in super::super) fn is_plain(&self) -> bool {
+        let written = |one: Wrong| digits(one.found, WRITTEN).parse() == Ok(one.found);
+        let mut all = self.restitution.into_iter().chain(self.friction);
+        all.all(written)
     }
 
     /// An id and a clause for each.

@@ -1,10 +1,11 @@
 //! The tables of what programs do at contact. The first row of each is right.
 
 use super::own::NUMBERS;
-use super::{Bounce, Free, Friction, Lift, Partner, Restitution, Row, Shares, Stepped, Way};
-use crate::physics::State;
-use crate::physics::constraints::contact::{Against, Beside, Hit, ImpactLaw, Obstacles};
-use crate::vector::axpy;
+use super::ways::{
+    after_kick, ahead, at_end, at_start, before_kick, between_kicks, interpolated, to_impact,
+};
+use super::{Friction, Lift, Partner, Restitution, Row, Shares, Way};
+use crate::physics::constraints::contact::{Against, Beside, Hit, ImpactLaw};
 
 const fn row<T>(id: &'static str, does: T, says: &'static str) -> Row<T> {
     Row {
@@ -49,6 +50,21 @@ pub static WAYS: &[Row<Way>] = &[
          at the impact",
     ),
     row(
+        "flip_between_kicks",
+        Way::Of("velocity_verlet", between_kicks),
+        "reverses the velocity between the two kicks of a step, instead of by an impulse at the impact",
+    ),
+    row(
+        "flip_before_drift",
+        Way::Of("symplectic_euler", ahead),
+        "reverses the velocity before the drift where this would end inside, instead of by an impulse at the impact",
+    ),
+    row(
+        "impact_by_interpolation",
+        Way::Within(interpolated),
+        "takes gaps to change evenly over the step to find the impact, and not to rounding",
+    ),
+    row(
         "penalty",
         Way::Force {
             pulls: true,
@@ -80,6 +96,17 @@ pub static WAYS: &[Row<Way>] = &[
         },
         "does not cut steps where a penalty begins and ends, which is of order 1, and never pulls",
     ),
+    row(
+        "soft_step",
+        Way::Soft,
+        "steps as rapier's contact does (a soft step: a spring of 60 Hz once a gap is closed, 30 Hz where the obstacle moves, \
+         and restitution once a step), instead of by an impulse at the impact",
+    ),
+    mistake(
+        "rest_of_step_dropped",
+        Way::Within(to_impact),
+        "ends the step at the impact: what is left of the step has to follow it",
+    ),
     mistake(
         "obstacles_forgotten",
         Way::Never,
@@ -88,7 +115,11 @@ pub static WAYS: &[Row<Way>] = &[
 ];
 
 const fn lift(by: fn(f64, f64) -> f64) -> Lift {
-    Lift { by, halves: false }
+    Lift {
+        by,
+        halves: false,
+        back: false,
+    }
 }
 
 /// Where what is inside is put.
@@ -112,10 +143,18 @@ pub static PLACES: &[Row<Lift>] = &[
     row(
         "clamped_by_halves",
         Lift {
-            by: |gap, _| -gap,
             halves: true,
+            ..lift(|gap, _| -gap)
         },
         "puts what is inside on the surface, of two particles each by half of it",
+    ),
+    row(
+        "moved_back",
+        Lift {
+            back: true,
+            ..lift(|_, _| 0.0)
+        },
+        "puts what is inside back where the step began",
     ),
 ];
 
@@ -202,8 +241,9 @@ pub static FRICTIONS: &[Row<Friction>] = &[
 const fn partner(shares: Shares) -> Partner {
     Partner {
         shares,
-        moves: true,
+        speed: 1.0,
         meets: true,
+        slopes: true,
     }
 }
 
@@ -245,10 +285,26 @@ pub static PARTNERS: &[Row<Partner>] = &[
     mistake(
         "obstacle_at_rest",
         Partner {
-            moves: false,
+            speed: 0.0,
             ..partner(by_mass)
         },
         "takes a moving obstacle to be at rest: velocities at contact are those relative to it",
+    ),
+    mistake(
+        "obstacle_backwards",
+        Partner {
+            speed: -1.0,
+            ..partner(by_mass)
+        },
+        "takes a moving obstacle to move the other way: subtract its velocity from the particle's",
+    ),
+    mistake(
+        "normal_along_axis",
+        Partner {
+            slopes: false,
+            ..partner(by_mass)
+        },
+        "turns the velocity about the axis nearest to the normal of a slanting surface: turn its part along the normal",
     ),
 ];
 
@@ -281,76 +337,4 @@ pub fn treatments() -> impl Iterator<Item = (&'static str, &'static str, bool)> 
         .chain(of(FRICTIONS))
         .chain(of(PARTNERS))
         .chain(NUMBERS.map(|(id, says)| (id, says, true)))
-}
-
-/// Inside and approaching at the end.
-fn at_end(
-    bounce: &Bounce,
-    obstacles: &Obstacles,
-    h: f64,
-    state: &mut State,
-    free: &mut Free,
-) -> Stepped {
-    let end = state.t + h;
-    free(state)?;
-    state.t = end;
-    bounce.meet(obstacles, h, state);
-    Ok(())
-}
-
-/// Inside and approaching at the start.
-fn at_start(
-    bounce: &Bounce,
-    obstacles: &Obstacles,
-    h: f64,
-    state: &mut State,
-    free: &mut Free,
-) -> Stepped {
-    bounce.meet(obstacles, h, state);
-    free(state)
-}
-
-/// Inside at the start and approaching after the kick: v1 = v0 + h a, turned, x1 = x0 + h v1.
-fn after_kick(
-    bounce: &Bounce,
-    obstacles: &Obstacles,
-    h: f64,
-    state: &mut State,
-    free: &mut Free,
-) -> Stepped {
-    let start = state.clone();
-    free(state)?;
-    let mut kicked = State {
-        v: state.v.clone(),
-        ..start.clone()
-    };
-    bounce.meet(obstacles, h, &mut kicked);
-    for at in 0..state.x.len() {
-        let moved = kicked.x[at] - start.x[at];
-        let turned = kicked.v[at] - state.v[at];
-        state.x[at] += moved + h * turned;
-        state.v[at] = kicked.v[at];
-    }
-    Ok(())
-}
-
-/// Inside and approaching at the start: turned, and no force, x1 = x0 + h v1; else the free step (SimBenchmark's ODE).
-fn before_kick(
-    bounce: &Bounce,
-    obstacles: &Obstacles,
-    h: f64,
-    state: &mut State,
-    free: &mut Free,
-) -> Stepped {
-    let mut turned = state.clone();
-    let met = bounce.meet(obstacles, h, &mut turned);
-    free(state)?;
-    for particle in met {
-        let own = 3 * particle..3 * particle + 3;
-        let v = &turned.v[own.clone()];
-        state.v[own.clone()].copy_from_slice(v);
-        state.x[own.clone()].copy_from_slice(&turned.x[own.clone()]);
-        axpy(&mut state.x[own], h, v);
-    }
-    Ok(())
 }

@@ -94,9 +94,9 @@ fn bases(obstacles: &Obstacles, mistakes: usize) -> Vec<Bounce> {
         .filter(|row| frictions.contains(&row.id) && (rubs || row.id == "coulomb"));
     let force = obstacles.penalty();
     let ways = WAYS.iter().filter(|way| match way.does {
-        Way::Event | Way::Once(_) => force.is_none(),
+        Way::Event | Way::Once(_) | Way::Of(..) | Way::Within(_) => force.is_none(),
         Way::Force { whole, .. } => whole && force.is_some(),
-        Way::Never => false,
+        Way::Soft | Way::Never => false,
     });
     let mut all = Vec::new();
     for way in ways {

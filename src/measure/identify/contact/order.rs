@@ -1,9 +1,11 @@
 //! The search for a treatment: what is right before what is wrong, few mistakes before more.
 
 use super::super::bounce::{self, Bounce, Row, WAYS, Way};
-use super::super::candidate::Candidate;
+use super::super::candidate::{Candidate, SOFT_SCHEMES};
 use super::search::{Search, Told};
 use super::{fitted, numbers};
+use crate::integrators;
+use crate::measure::identify::MOST_SUBSTEPS;
 use crate::physics::constraints::contact::Obstacles;
 
 /// Replays of a transition that a candidate takes, about: most are told in their first.
@@ -13,6 +15,8 @@ const SCHEMES: usize = 5;
 /// Steps that a treatment misses and are searched as well, and how often.
 const MISSED: usize = 4;
 const REFINED: usize = 3;
+/// Steps of all substeps that soft steps are tried in, of both schemes.
+const FINER: u64 = (MOST_SUBSTEPS * (MOST_SUBSTEPS + 1)) as u64;
 
 /// The treatment with the fewest mistakes that explains all steps beside obstacles, and whether all were tried. What a sample
 /// leaves out and the first finding misses is searched as well; what explains the sample alone is kept where nothing explains
@@ -64,10 +68,14 @@ fn of_sample(
         .map(|(scheme, t)| search.replay.effort(scheme, t));
     let each = each.fold(0, u64::saturating_add).saturating_mul(REPLAYS);
     let affordable = (budget / each.max(1)) as usize;
-    let bounces = match obstacles.penalty() {
+    let mut bounces = match obstacles.penalty() {
         Some(force) => pressing(force),
         None => bounce::all(obstacles, search.question.rows.timestep),
     };
+    // What soft steps keep is found from all rows.
+    let finest = few.iter().map(|scheme| scheme.substeps.max(1)).max();
+    let soft = search.pass().saturating_mul(u64::from(finest.unwrap_or(1))) <= budget;
+    bounces.retain(|bounce| soft || !matches!(bounce.way.does, Way::Soft));
     let mistakes = |most: usize| bounces.partition_point(|b| b.mistakes().count() < most);
     let (right, one, two) = (
         &bounces[..mistakes(1)],
@@ -76,6 +84,14 @@ fn of_sample(
     );
     let whole = affordable >= bounces.len() + fitted::REPLAYS + numbers::REPLAYS;
     let mut told = search.told(&few, &right[..right.len().min(affordable)]);
+    let finer = search.pass().saturating_mul(FINER) <= budget;
+    if finer && search.apart.mixed && obstacles.penalty().is_none() {
+        let soft = right
+            .iter()
+            .filter(|bounce| matches!(bounce.way.does, Way::Soft));
+        let soft: Vec<Bounce> = soft.copied().collect();
+        told = told.or_else(|| search.told(&softened(search), &soft));
+    }
     if whole {
         told = told
             .or_else(|| fitted::found(search, all))
@@ -91,7 +107,16 @@ fn of_sample(
         let schemes = others.iter().chain(new).cloned().collect();
         Told { schemes, ..told }
     });
-    (told, whole)
+    (told, whole && soft)
+}
+
+/// The schemes that have a soft step, in substeps.
+fn softened(search: &Search) -> Vec<Candidate> {
+    let methods = || SOFT_SCHEMES.iter().filter_map(|id| integrators::find(id));
+    let system = search.question.system;
+    let all = (2..=MOST_SUBSTEPS)
+        .flat_map(|n| methods().map(move |method| Candidate::method(system, method, n)));
+    all.collect()
 }
 
 /// The treatments of a scene with a penalty.

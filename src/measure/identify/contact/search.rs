@@ -4,7 +4,7 @@ use super::super::Question;
 use super::super::bounce::{Bounce, Row, WAYS, Way, relevant, same_here};
 use super::super::candidate::Candidate;
 use super::super::race::defects_of_all;
-use super::super::replay::Replay;
+use super::super::replay::{Replay, solve_effort};
 use super::super::result::Treated;
 use super::super::transition::Transition;
 use super::{Apart, usual};
@@ -39,13 +39,30 @@ impl Told {
 
 impl Search<'_> {
     pub(super) fn bouncing(&self, scheme: &Candidate, bounce: &Bounce) -> Option<Candidate> {
-        scheme.bouncing(self.question.scene, self.question.system, bounce)
+        let candidate = scheme.bouncing(self.question.scene, self.question.system, bounce)?;
+        Some(self.replay.remembering(candidate))
+    }
+
+    /// The effort of one pass of soft steps over all rows.
+    pub(super) fn pass(&self) -> u64 {
+        let rows = self.replay.rows;
+        let particles = self.question.scene.particles.len() as u64;
+        let steps = rows.steps.last().zip(rows.steps.first());
+        let steps = steps.map_or(0, |(last, first)| last - first);
+        (particles * solve_effort(particles)).saturating_mul(steps)
     }
 
     fn fits(&self, candidate: &Candidate) -> bool {
         let mut replayer = candidate.replayer(&self.replay.settings);
-        let mut all = self.apart.beside.iter();
-        all.all(|t| self.replay.defect(&mut replayer, t).fits())
+        let beside = self.known(candidate, &self.apart.beside);
+        let mut all = beside.iter();
+        !beside.is_empty() && all.all(|t| self.replay.defect(&mut replayer, t).fits())
+    }
+
+    /// Those of these steps that begin with all that a candidate's step depends on.
+    pub(super) fn known(&self, candidate: &Candidate, at: &[Transition]) -> Vec<Transition> {
+        let known = |t: &&Transition| self.replay.knows(candidate, t.from);
+        at.iter().filter(known).copied().collect()
     }
 
     /// The schemes that fit with this treatment.
@@ -104,8 +121,8 @@ impl Search<'_> {
         let scheme = told.schemes.first();
         let candidate = scheme.and_then(|scheme| self.bouncing(scheme, &told.bounce));
         candidate.map_or_else(Vec::new, |candidate| {
-            let all = &self.apart.met;
-            let defects = defects_of_all(self.replay, &candidate, all);
+            let all = self.known(&candidate, &self.apart.met);
+            let defects = defects_of_all(self.replay, &candidate, &all);
             let missed = all.iter().zip(defects).filter(|(_, defect)| !defect.fits());
             missed.map(|(t, _)| *t).take(most).collect()
         })
@@ -150,10 +167,10 @@ impl Search<'_> {
     /// beside other schemes where no step away from contact tells these apart.
     fn equivalent(&self, told: &Told) -> Vec<String> {
         let own = &told.bounce;
+        let beside = |way: &Way| !matches!(way, Way::Force { .. } | Way::Soft | Way::Never);
         let alike = |way: &&Row<Way>| match (own.way.does, way.does) {
             (Way::Force { whole: a, .. }, Way::Force { whole: b, .. }) => a == b,
-            (Way::Event | Way::Once(_), Way::Event | Way::Once(_)) => true,
-            _ => false,
+            (a, b) => beside(&a) && beside(&b),
         };
         let obstacles = self.question.system.obstacles();
         let places = obstacles.map_or_else(Vec::new, |all| relevant(all).0);

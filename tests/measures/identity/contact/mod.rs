@@ -6,6 +6,9 @@ mod mistakes;
 mod numbers;
 mod pairs;
 mod programs;
+mod slopes;
+mod soft;
+mod ways;
 
 use super::{Precision, Rows, Scene, every, found, run};
 use crate::testkit::scenes::parsed;

@@ -36,7 +36,7 @@ pub struct Forces {
 }
 
 impl Forces {
-    fn acceleration(&self, x: Vector, v: Vector, mu: f64) -> Vector {
+    pub fn acceleration(&self, x: Vector, v: Vector, mu: f64) -> Vector {
         let mut a = [0.0, 0.0, -9.81];
         let anchor = [0.0, 0.0, 3.0];
         for i in 0..3 {
@@ -59,12 +59,12 @@ impl Forces {
     }
 }
 
-fn plus(x: Vector, h: f64, v: Vector) -> Vector {
+pub fn plus(x: Vector, h: f64, v: Vector) -> Vector {
     [0, 1, 2].map(|i| x[i] + h * v[i])
 }
 
-type Point = (Vector, Vector);
-type Step = fn(&dyn Fn(Vector, Vector) -> Vector, f64, Point) -> Point;
+pub type Point = (Vector, Vector);
+pub type Step = fn(&dyn Fn(Vector, Vector) -> Vector, f64, Point) -> Point;
 
 pub const METHODS: [(&str, Step); 3] = [
     ("symplectic_euler", |a, h, (x, v)| {
@@ -137,9 +137,7 @@ pub fn rows(
     let a = |x: Vector, v: Vector| forces.acceleration(x, v, ball.mu);
     let turn = |v: Vector| turn(v, ball.e, ball.mu, h);
     let meets = |x: Vector, v: Vector| x[2] <= RADIUS && v[2] < 0.0;
-    let (mut x, mut v) = (ball.x, ball.v);
-    let mut all = vec![(x, v)];
-    for _ in 0..steps {
+    let next = |(mut x, mut v): Point| {
         match rule {
             Rule::Never => (x, v) = step(&a, h, (x, v)),
             Rule::Event => (x, v) = located(&|h, at| step(&a, h, at), &turn, h, (x, v)),
@@ -177,7 +175,16 @@ pub fn rows(
                 x = plus(x, h, v);
             }
         }
-        all.push((x, v));
+        (x, v)
+    };
+    recorded(h, ball, &next, steps)
+}
+
+/// Rows of steps of a ball beside a fixed particle.
+pub fn recorded(h: f64, ball: &Ball, next: &dyn Fn(Point) -> Point, steps: u64) -> Rows {
+    let mut all = vec![(ball.x, ball.v)];
+    for _ in 0..steps {
+        all.push(next(all[all.len() - 1]));
     }
     let fixed = [0.0, 0.0, 3.0];
     Rows {
