@@ -6,7 +6,7 @@ mod testkit;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use springcheck::integrators::{self, Settings};
-use springcheck::physics::{ParticleSystem, State};
+use springcheck::physics::{Counting, ParticleSystem, State};
 use springcheck::scene::Scene;
 use springcheck::solvers::rapier::{RapierEngine, RapierSettings};
 use springcheck::solvers::{Engine, advance};
@@ -45,7 +45,7 @@ fn cloths(c: &mut Criterion) {
             ),
         ] {
             let scene = cloth(side, colliders);
-            let system = ParticleSystem::new(&scene);
+            let system = Counting::new(ParticleSystem::new(&scene));
             let mut start = ParticleSystem::initial_state(&scene);
             let run = |state: &mut State, steps: usize| {
                 let method = integrators::find("velocity_verlet").expect("a method");
@@ -84,7 +84,7 @@ fn at_rest(c: &mut Criterion) {
              colliders: [{{plane: {{normal: [0, 0, 1]}}, friction: 0.5}}]\nparticles:\n{particles}"
         ));
         let h = scene.solver.timestep;
-        let system = ParticleSystem::new(&scene);
+        let system = Counting::new(ParticleSystem::new(&scene));
         let method = integrators::find("velocity_verlet").expect("a method");
         let mut integrator = method.build(&Settings::default());
         let mut state = ParticleSystem::initial_state(&scene);

@@ -237,10 +237,7 @@ impl<'a> Sweep<'a> {
             return;
         };
         if let Some(bound) = self.bound(&[i]) {
-            for d in self.axes() {
-                self.rate(bound, b, [(i, d)]);
-            }
-            return;
+            return self.slow(bound, b, i);
         }
         if !self.relaxes(b, self.inverse_mass[i]) {
             return;

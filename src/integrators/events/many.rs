@@ -6,7 +6,7 @@ use super::root::Due;
 use crate::integrators::StepError;
 use crate::physics::constraints::Rods;
 use crate::physics::constraints::contact::{Against, Blows, Held, Near, Obstacles};
-use crate::physics::{State, System};
+use crate::physics::{ForceKinds, State, System};
 use crate::space::{dot, minus, three};
 use std::cmp::{Ordering, Reverse};
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
@@ -203,7 +203,24 @@ impl Many<'_> {
         let from = system.remembered_acceleration(before.t, &before.x, &before.v, &mut was);
         let to = system.free_acceleration(before.t, &before.x, &v, &mut change);
         for (change, was) in change.iter_mut().zip(&was) {
-            *change = self.h * (*change - was);
+            *change -= was;
+        }
+        // The power is quadratic in the velocity: that of a change which lasts for a part of the step is not that of its mean.
+        let power = |w: &[f64], a: &[f64]| {
+            let each = w.iter().zip(a).zip(system.inverse_mass());
+            let each = each.filter(|(_, inverse)| **inverse > 0.0);
+            -each.map(|((w, a), inverse)| w * a / inverse).sum::<f64>()
+        };
+        let linear = !system.kinds().has(ForceKinds::NON_LINEAR);
+        let [whole, of_mean] = [(root, false), (mean, linear)].map(|(w, known)| {
+            if known {
+                return power(w, &change);
+            }
+            system.damping(before.t, &before.x, w, &mut was);
+            power(w, &was)
+        });
+        for change in &mut change {
+            *change *= self.h;
         }
         if let Some(held) = self.held {
             held.left(end, &mut change);
@@ -222,13 +239,6 @@ impl Many<'_> {
         for (v, change) in end.v.iter_mut().zip(&change) {
             *v += change;
         }
-        // The power is quadratic in the velocity: that of a change which lasts for a part of the step is not that of its mean.
-        let [whole, of_mean] = [root, mean].map(|w| {
-            system.damping(before.t, &before.x, w, &mut was);
-            let each = w.iter().zip(&was).zip(system.inverse_mass());
-            let each = each.filter(|(_, inverse)| **inverse > 0.0);
-            -each.map(|((w, a), inverse)| w * a / inverse).sum::<f64>()
-        });
         end.work.dissipated += self.h * (to.dissipated - from.dissipated + whole - of_mean);
         end.work.injected += self.h * (to.injected - from.injected);
         Ok(())

@@ -153,15 +153,19 @@ impl Walk<'_> {
             for beside in obstacles.touched(&self.near, *particle, state) {
                 let beside = obstacles.beside(beside.particle, beside.against, state);
                 let parting = beside.parting();
+                if parting < beside.slow {
+                    obstacles.rest(rods, &beside, state)?;
+                    continue;
+                }
                 if a.is_empty() {
                     a = self.acceleration(state)?;
                 }
                 // It would rise by less than is seen.
                 let down = -obstacles.opening(&beside, state.t, &a);
                 let high = parting * parting / (2.0 * down);
-                if parting < beside.slow || (down > 0.0 && high < obstacles.lowest(&beside)) {
+                if down > 0.0 && high < obstacles.lowest(&beside) {
                     obstacles.rest(rods, &beside, state)?;
-                    changed |= parting > beside.slow && obstacles.among_particles();
+                    changed |= obstacles.among_particles();
                 }
             }
         }

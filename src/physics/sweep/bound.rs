@@ -1,6 +1,6 @@
 //! Dampers on particles that cannot move in all directions, as those that stay on a surface.
 
-use super::Sweep;
+use super::{Decay, EXPONENT, Sweep};
 use crate::physics::System;
 use crate::space::{dot, three};
 
@@ -83,6 +83,19 @@ impl<'a> Sweep<'a> {
         order.map(|axis| [0, 1, 2].map(|c| if c == axis { 1.0 } else { 0.0 }))
     }
 
+    /// Drag b on the free part of the velocity at this place.
+    pub(super) fn slow(&mut self, bound: &Bound, b: f64, at: usize) {
+        if !self.relaxes(b, self.inverse_mass[at]) {
+            return;
+        }
+        let free = bound.part(at / 3, three(self.v, at / 3));
+        let Decay { lost, kept, .. } = self.decay;
+        self.dissipated += 0.5 * lost * (1.0 + kept) * dot(free, free);
+        for (v, free) in self.v[at..at + 3].iter_mut().zip(free) {
+            *v -= (1.0 - kept) * free;
+        }
+    }
+
     /// A damper c on the rate at which velocities change a number, by its gradients at particles with these places: as
     /// between two ends, with of each gradient the part that is free for the response.
     pub(super) fn rate<const N: usize>(
@@ -93,17 +106,22 @@ impl<'a> Sweep<'a> {
     ) {
         let inverse_mass = self.inverse_mass;
         let reach = gradients.map(|(at, g)| bound.part(at / 3, g).map(|g| inverse_mass[at] * g));
-        let each = || gradients.iter().zip(&reach);
-        let w = each().map(|((_, g), reach)| dot(*g, *reach)).sum();
-        if !self.relaxes(c, w) {
+        let each = gradients.iter().zip(&reach);
+        let w: f64 = each.map(|((_, g), reach)| dot(*g, *reach)).sum();
+        // Directions differ from damper to damper, and so does the rate: no decay is kept for the next.
+        let z = (-c * self.scale * w * self.h).min(EXPONENT);
+        if z == 0.0 {
             return;
         }
-        let u: f64 = gradients
-            .iter()
-            .map(|(at, g)| dot(*g, three(self.v, at / 3)))
-            .sum();
-        let change = -self.decay.lost * u;
-        self.dissipated -= 0.5 * change * (u + self.decay.kept * u);
+        let gone = if self.midpoint {
+            -z / (1.0 - 0.5 * z)
+        } else {
+            -z.exp_m1()
+        };
+        let rows = gradients.iter();
+        let u: f64 = rows.map(|(at, g)| dot(*g, three(self.v, at / 3))).sum();
+        let change = -gone * u / w;
+        self.dissipated -= 0.5 * change * u * (2.0 - gone);
         for ((at, _), reach) in gradients.iter().zip(reach) {
             for axis in 0..3 {
                 self.v[at + axis] += change * reach[axis];

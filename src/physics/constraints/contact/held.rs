@@ -472,11 +472,12 @@ impl System for Held<'_> {
     }
 
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
-        let (mut own_x, mut own_v) = (x.to_vec(), v.to_vec());
-        self.place(t, &mut own_x, &mut own_v);
         let still = v.iter().all(|v| *v == 0.0);
-        let seen = if still { v } else { &own_v };
-        let power = self.seen(&own_x, seen, |x, v| {
+        let mut own_x = x.to_vec();
+        let mut own_v = if still { Vec::new() } else { v.to_vec() };
+        self.place(t, &mut own_x, &mut own_v);
+        let power = self.seen(&own_x, &own_v, |x, own| {
+            let v = if still { v } else { own };
             self.system.free_acceleration(t, x, v, a)
         });
         self.turn(a);

@@ -10,7 +10,7 @@ use parry3d::partitioning::{Bvh, BvhBuildStrategy};
 use std::sync::Arc;
 
 /// Boxes are larger than a path by so many of it.
-const AHEAD: f64 = 8.0;
+const AHEAD: f64 = 32.0;
 /// And by this part of the radius.
 const WIDER: f64 = 1e-2;
 
