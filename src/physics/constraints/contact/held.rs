@@ -15,7 +15,7 @@
 //! Particles that touch each other, or that rods join, have such coordinates together ([`Group`]).
 
 use super::group::{Group, TooManyTouch, grouped};
-use super::member::{Contact, Member, approach, multipliers};
+use super::member::{Contact, Member, Reach, approach, multipliers};
 use super::{Against, Beside, Obstacles};
 use crate::physics::{
     Bound, Dampers, Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, State, Sweep,
@@ -23,6 +23,7 @@ use crate::physics::{
 };
 use crate::space::{dot, minus, norm, three};
 
+use smallvec::smallvec;
 use std::collections::BTreeMap;
 
 /// Particles that stay in contact from one instant on, and the system they are part of.
@@ -429,40 +430,60 @@ impl<'s> Held<'s> {
 
     /// The entries of a Jacobian in the particles' own axes: those between two particles are summed before they are turned.
     fn turned(&self, entries: &Triplets, exact: bool, out: &mut Triplets) {
-        let mut blocks: BTreeMap<[usize; 2], [[f64; 3]; 3]> = BTreeMap::new();
-        for &(row, column, value) in entries {
-            blocks.entry([row / 3, column / 3]).or_default()[row % 3][column % 3] += value;
+        let place = |(row, column, _): &&(usize, usize, f64)| [row / 3, column / 3];
+        let mut sorted: Vec<&(usize, usize, f64)> = entries.iter().collect();
+        sorted.sort_by_key(place);
+        for own in sorted.chunk_by(|one, other| place(one) == place(other)) {
+            let mut block = [[0.0; 3]; 3];
+            for (row, column, value) in own {
+                block[row % 3][column % 3] += value;
+            }
+            self.turn_block(place(&own[0]), &block, exact, out);
         }
-        let three = |particle: usize, own: &dyn Fn(usize) -> Vec<(usize, f64)>| {
-            [0, 1, 2].map(|axis| own(3 * particle + axis))
+    }
+
+    /// Adds a block of forces of a particle by coordinates of another.
+    fn turn_block(&self, ends: [usize; 2], block: &[[f64; 3]; 3], exact: bool, out: &mut Triplets) {
+        let [from, to] = ends;
+        let own = |particle: usize, each: &dyn Fn(usize) -> Reach| {
+            [0, 1, 2].map(|axis| each(3 * particle + axis))
         };
-        for ([from, to], block) in blocks {
-            let rows = three(from, &|row| match (self.member(from), self.group(from)) {
-                (Some(member), _) => member.rows(row, exact && self.friction),
-                (_, Some(group)) => group.rows(row, exact),
-                _ => vec![(row, 1.0)],
-            });
-            let columns = three(to, &|column| match (self.member(to), self.group(to)) {
-                (Some(member), _) => member.columns(column),
-                (_, Some(group)) => group.columns(column),
-                _ => vec![(column, 1.0)],
-            });
-            // A row of its own is reached from all three axes of space.
-            let mut sums: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        let rows = own(from, &|row| match (self.member(from), self.group(from)) {
+            (Some(member), _) => member.rows(row, exact && self.friction),
+            (_, Some(group)) => group.rows(row, exact).into(),
+            _ => smallvec![(row, 1.0)],
+        });
+        let columns = own(to, &|column| match (self.member(to), self.group(to)) {
+            (Some(member), _) => member.columns(column),
+            (_, Some(group)) => group.columns(column).into(),
+            _ => smallvec![(column, 1.0)],
+        });
+        // A row of its own is reached from all three axes of space.
+        let each = |add: &mut dyn FnMut(usize, usize, f64)| {
             for (rows, block) in rows.iter().zip(block) {
                 for (columns, value) in columns.iter().zip(block) {
                     for (row, by) in rows {
                         for (column, along) in columns {
-                            *sums.entry((*row, *column)).or_default() += by * along * value;
+                            add(*row, *column, by * along * value);
                         }
                     }
                 }
             }
-            out.extend(
-                sums.into_iter()
-                    .map(|((row, column), value)| (row, column, value)),
-            );
+        };
+        if ends.iter().all(|one| self.group(*one).is_none()) {
+            let mut sums = [[0.0; 3]; 3];
+            each(&mut |row, column, value| sums[row % 3][column % 3] += value);
+            for (row, sums) in sums.into_iter().enumerate() {
+                for (column, sum) in sums.into_iter().enumerate() {
+                    out.push((3 * from + row, 3 * to + column, sum));
+                }
+            }
+            return;
         }
+        let mut sums: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        each(&mut |row, column, value| *sums.entry((row, column)).or_default() += value);
+        let sums = sums.into_iter();
+        out.extend(sums.map(|((row, column), value)| (row, column, value)));
     }
 }
 

@@ -39,6 +39,9 @@ pub(super) struct Contact {
     pub(super) turning: f64,
 }
 
+/// Coordinates in a particle's own axes, each with its factor.
+pub(super) type Reach = SmallVec<[(usize, f64); 3]>;
+
 /// N/m of each contact, m/s².
 pub(super) type Forces = SmallVec<[f64; 3]>;
 
@@ -309,10 +312,9 @@ impl Member {
 
     /// The rows in its own axes that a row in the axes of space goes into, each with its factor; with friction where it
     /// slides straight on.
-    pub(super) fn rows(&self, row: usize, friction: bool) -> Vec<(usize, f64)> {
+    pub(super) fn rows(&self, row: usize, friction: bool) -> Reach {
         let (at, axis) = (3 * self.particle, row % 3);
-        let mut rows: Vec<(usize, f64)> =
-            (0..3).map(|own| (at + own, self.axes[own][axis])).collect();
+        let mut rows: Reach = (0..3).map(|own| (at + own, self.axes[own][axis])).collect();
         if friction && self.slides && self.contacts.len() == 1 {
             // N = m a_s - n·f, so that -µ N gains µ n·f.
             rows[1].1 += self.contacts[0].friction[0] * self.axes[0][axis];
@@ -320,7 +322,7 @@ impl Member {
         rows
     }
 
-    pub(super) fn columns(&self, column: usize) -> Vec<(usize, f64)> {
+    pub(super) fn columns(&self, column: usize) -> Reach {
         let (at, axis) = (3 * self.particle, column % 3);
         (0..3).map(|own| (at + own, self.axes[own][axis])).collect()
     }
