@@ -1,11 +1,12 @@
 //! The energy scale S that errors are relative to.
 
+use crate::physics::constraints::contact::Obstacles;
 use crate::physics::{ParticleSystem, System};
 use crate::scene::{Scene, Spring};
 
 /// S in joules: the larger of K(0) + U_elastic(0) and `peak`, the largest kinetic energy of the
 /// truth where one is known; if both are 0, the sum over free particles of m |g| L, with L the
-/// scene's size. None if all of these are 0.
+/// scene's size, its obstacles included. None if all of these are 0.
 ///
 /// Not the total energy, which depends on where gravity's zero is.
 pub fn energy_scale(scene: &Scene, system: &ParticleSystem, peak: Option<f64>) -> Option<f64> {
@@ -19,7 +20,8 @@ pub fn energy_scale(scene: &Scene, system: &ParticleSystem, peak: Option<f64>) -
         .filter(|p| !p.fixed)
         .map(|p| p.mass * gravity(scene))
         .sum();
-    let rest = weight * scene.size();
+    let size = system.obstacles().map_or(0.0, Obstacles::size);
+    let rest = weight * scene.size().max(size);
     // A truth that stands still leaves only rounding, too.
     let peak = peak.filter(|peak| *peak > f64::EPSILON * rest && peak.is_finite());
     let moving = own.unwrap_or(0.0).max(peak.unwrap_or(0.0));

@@ -24,9 +24,9 @@ pub const LOCATED: f64 = 1e-12;
 /// Where more particles than these have events in one step, the rest of these are found each on its particle's own path.
 const MANY: usize = 4;
 
-/// With more particles than these one is enough, and none where more than [`MANY`] are in contact: a sub-step costs as
-/// much as a step, and an event takes a dozen.
-const LARGE: usize = 32;
+/// With more particles than these one event located in a step is enough, and none where more than four are in contact: a
+/// sub-step costs as much as a step, and an event takes a dozen.
+pub const LARGE: usize = 32;
 
 /// What happens to a particle.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -55,7 +55,7 @@ impl<'a> Sweep<'a> {
         system: &dyn System,
         x: &[f64],
         bound: &Bound,
-        [out, back]: [&dyn Fn(&mut [f64]); 2],
+        (out, back): (impl Fn(&mut [f64]), impl Fn(&mut [f64])),
     ) {
         out(self.v);
         let mut there = Sweep {

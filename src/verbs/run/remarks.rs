@@ -2,9 +2,11 @@
 
 use super::identity::own_law;
 use super::plan::{Case, Plan};
+use crate::integrators::events::LARGE;
 use crate::integrators::{Coefficients, EnergyLaw, Method, PerStep, Settings, Stable};
 use crate::measure::stability::{Effort, Limit, Linearised, Prediction};
 use crate::measure::{Behaviour, Energy, EnergyClass};
+use crate::physics::constraints::contact::Obstacles;
 use crate::physics::effects::BendingForce;
 use crate::physics::{ForceKinds, ParticleSystem, System};
 use crate::report::words;
@@ -212,7 +214,8 @@ fn explain(plan: &Plan, case: &Case, class: EnergyClass, lost: bool) -> Option<S
             let free = has_springs(plan) && !driven && !limited;
             let law = by_law(method, class, damped).filter(|_| free);
             law.or_else(|| {
-                (damped || driven || limited).then(|| by_balance(method, class, lost, limited))
+                (damped || driven || limited)
+                    .then(|| by_balance(closes_to(method, plan), class, lost, limited))
             })
         }
         None if has_springs(plan) => case.solver.by_design(class == EnergyClass::Growing),
@@ -291,7 +294,7 @@ fn by_law(method: &Method, class: EnergyClass, damped: bool) -> Option<String> {
 
 /// The explanation by a balance that does not close. It may grow while the energy falls: the work counted for
 /// dampers exceeds what they took.
-fn by_balance(method: &Method, class: EnergyClass, lost: bool, limited: bool) -> String {
+fn by_balance(order: u32, class: EnergyClass, lost: bool, limited: bool) -> String {
     let does = match class {
         EnergyClass::Growing if lost => "grows, though E itself falls",
         EnergyClass::Growing => "grows",
@@ -300,10 +303,20 @@ fn by_balance(method: &Method, class: EnergyClass, lost: bool, limited: bool) ->
     };
     let more = if limited { " + limited" } else { "" };
     format!(
-        "the balance E + dissipated - injected{more} {does}: it closes to order {} only, take a smaller \
-         step",
-        method.order_damped
+        "the balance E + dissipated - injected{more} {does}: it closes to order {order} only, take a smaller \
+         step"
     )
+}
+
+/// The order to which a balance closes: many impacts in one step are of second order.
+fn closes_to(method: &Method, plan: &Plan) -> u32 {
+    let many = |obstacles: &Obstacles| obstacles.particles().count() > LARGE;
+    let order = method.order_damped;
+    if plan.system.obstacles().is_some_and(many) {
+        order.min(2)
+    } else {
+        order
+    }
 }
 
 /// What linearising takes a particle, in its steps under explicit forces, and what each prediction takes where

@@ -14,17 +14,16 @@
 //!
 //! Particles that touch each other, or that rods join, have such coordinates together ([`Group`]).
 
+mod turned;
+mod work;
+
 use super::group::{Group, TooManyTouch, grouped};
-use super::member::{Contact, Member, Reach, approach, multipliers};
+use super::member::{Contact, Member, approach, multipliers};
 use super::{Against, Beside, Obstacles};
 use crate::physics::{
-    Bound, Dampers, Derivative, ForceKinds, Injected, Jacobian, Linearization, Power, State, Sweep,
-    System, Triplets,
+    Bound, Dampers, ForceKinds, Injected, Jacobian, Linearization, Power, State, Sweep, System,
 };
-use crate::space::{dot, minus, norm, three};
-
-use smallvec::smallvec;
-use std::collections::BTreeMap;
+use crate::space::{dot, norm, three};
 
 /// Particles that stay in contact from one instant on, and the system they are part of.
 pub struct Held<'s> {
@@ -170,33 +169,6 @@ impl<'s> Held<'s> {
         self.groups.iter().for_each(|group| group.turn_back(all));
     }
 
-    /// Where the friction of sliding particles is not among the forces: its flow over `h`, s, at a state in the axes of
-    /// space, which takes µ N h / m off the speed and leaves its direction. Books what it takes.
-    pub fn slow_down(&self, h: f64, state: &mut State) {
-        if self.friction {
-            return;
-        }
-        let a = if state.t == self.since {
-            self.begins.clone()
-        } else {
-            self.free(state)
-        };
-        for member in self.members.iter().filter(|member| member.slides) {
-            let now = member.contacts.now(self.obstacles, state);
-            let pressed = now.pressed(self.obstacles, state.t, three(&a, member.particle));
-            let along = now.outer_sliding(self.obstacles, state);
-            let fast = norm(along);
-            let lost = (h * now.resistance(&pressed, 0)).min(fast);
-            if fast > 0.0 {
-                let mass = 1.0 / self.system.inverse_mass()[3 * member.particle];
-                for axis in 0..3 {
-                    state.v[3 * member.particle + axis] -= lost / fast * along[axis];
-                }
-                state.work.friction += mass * lost * (fast - 0.5 * lost);
-            }
-        }
-    }
-
     /// The acceleration without contact at a state in the axes of space, m/s².
     pub fn free(&self, state: &State) -> Vec<f64> {
         let mut a = vec![0.0; state.x.len()];
@@ -281,63 +253,6 @@ impl<'s> Held<'s> {
         for group in &self.groups {
             group.stop(self.obstacles, self.system.rods(), particle, state);
         }
-    }
-
-    /// Adds the work of friction among the forces, and of moving obstacles, over `h` seconds from a state to another, at
-    /// which the acceleration without contact is `a`: by Simpson's rule, with the middle of the cubic through both.
-    pub fn book(&self, h: f64, start: &State, end: &mut State, a: &[f64]) {
-        let slides = self.friction && self.members.iter().any(|member| member.slides);
-        if !self.obstacles.any_moves() && !slides && self.groups.is_empty() {
-            return;
-        }
-        let middle = start.middle(end, h);
-        let parts = [
-            self.powers(start, &self.begins),
-            self.powers(&middle, &self.free(&middle)),
-            self.powers(end, a),
-        ];
-        for ([lost, given], weight) in parts.into_iter().zip([1.0, 4.0, 1.0]) {
-            end.work.friction += weight * h / 6.0 * lost;
-            end.work.injected += weight * h / 6.0 * given;
-        }
-    }
-
-    /// The power lost to friction among the forces, and that of the obstacles' motions, W, at a state in the axes of space with the
-    /// acceleration `a` without contact.
-    fn powers(&self, state: &State, a: &[f64]) -> [f64; 2] {
-        let mut sums = [0.0; 2];
-        for member in &self.members {
-            let now = member.contacts.now(self.obstacles, state);
-            let mass = 1.0 / self.system.inverse_mass()[3 * member.particle];
-            let free = three(a, member.particle);
-            let pressed = now.pressed(self.obstacles, state.t, free);
-            let [_, along, pushed] = self.obstacles.moved(now[0].beside.against, state.t);
-            let mut force = [0.0; 3];
-            for (n, contact) in pressed.iter().zip(now.iter()) {
-                for axis in 0..3 {
-                    force[axis] += n * contact.beside.normal[axis];
-                }
-            }
-            if member.slides {
-                let sliding = now.outer_sliding(self.obstacles, state);
-                let direction = member.rubbed(sliding);
-                let lost = now.resistance(&pressed, 0);
-                if self.friction {
-                    sums[0] += mass * lost * dot(direction, sliding);
-                }
-                for axis in 0..3 {
-                    force[axis] -= lost * direction[axis];
-                }
-            } else if member.sticks() {
-                force = minus(pushed, free);
-            }
-            sums[1] += mass * dot(force, along);
-        }
-        for group in &self.groups {
-            let own = group.powers(self.obstacles, self.system.rods(), state, a);
-            sums = [sums[0] + own[0], sums[1] + own[1]];
-        }
-        sums
     }
 
     /// Whether this particle stays in this contact.
@@ -426,64 +341,6 @@ impl<'s> Held<'s> {
     fn group(&self, particle: usize) -> Option<&Group> {
         let has = |group: &&Group| group.particles().binary_search(&particle).is_ok();
         self.groups.iter().find(has)
-    }
-
-    /// The entries of a Jacobian in the particles' own axes: those between two particles are summed before they are turned.
-    fn turned(&self, entries: &Triplets, exact: bool, out: &mut Triplets) {
-        let place = |(row, column, _): &&(usize, usize, f64)| [row / 3, column / 3];
-        let mut sorted: Vec<&(usize, usize, f64)> = entries.iter().collect();
-        sorted.sort_by_key(place);
-        for own in sorted.chunk_by(|one, other| place(one) == place(other)) {
-            let mut block = [[0.0; 3]; 3];
-            for (row, column, value) in own {
-                block[row % 3][column % 3] += value;
-            }
-            self.turn_block(place(&own[0]), &block, exact, out);
-        }
-    }
-
-    /// Adds a block of forces of a particle by coordinates of another.
-    fn turn_block(&self, ends: [usize; 2], block: &[[f64; 3]; 3], exact: bool, out: &mut Triplets) {
-        let [from, to] = ends;
-        let own = |particle: usize, each: &dyn Fn(usize) -> Reach| {
-            [0, 1, 2].map(|axis| each(3 * particle + axis))
-        };
-        let rows = own(from, &|row| match (self.member(from), self.group(from)) {
-            (Some(member), _) => member.rows(row, exact && self.friction),
-            (_, Some(group)) => group.rows(row, exact).into(),
-            _ => smallvec![(row, 1.0)],
-        });
-        let columns = own(to, &|column| match (self.member(to), self.group(to)) {
-            (Some(member), _) => member.columns(column),
-            (_, Some(group)) => group.columns(column).into(),
-            _ => smallvec![(column, 1.0)],
-        });
-        // A row of its own is reached from all three axes of space.
-        let each = |add: &mut dyn FnMut(usize, usize, f64)| {
-            for (rows, block) in rows.iter().zip(block) {
-                for (columns, value) in columns.iter().zip(block) {
-                    for (row, by) in rows {
-                        for (column, along) in columns {
-                            add(*row, *column, by * along * value);
-                        }
-                    }
-                }
-            }
-        };
-        if ends.iter().all(|one| self.group(*one).is_none()) {
-            let mut sums = [[0.0; 3]; 3];
-            each(&mut |row, column, value| sums[row % 3][column % 3] += value);
-            for (row, sums) in sums.into_iter().enumerate() {
-                for (column, sum) in sums.into_iter().enumerate() {
-                    out.push((3 * from + row, 3 * to + column, sum));
-                }
-            }
-            return;
-        }
-        let mut sums: BTreeMap<(usize, usize), f64> = BTreeMap::new();
-        each(&mut |row, column, value| *sums.entry((row, column)).or_default() += value);
-        let sums = sums.into_iter();
-        out.extend(sums.map(|((row, column), value)| (row, column, value)));
     }
 }
 
@@ -583,7 +440,7 @@ impl System for Held<'_> {
             self.system,
             &x,
             bound,
-            [&|v| self.turn_back(v), &|v| self.turn(v)],
+            (|v| self.turn_back(v), |v| self.turn(v)),
         );
     }
 
@@ -624,29 +481,6 @@ impl System for Held<'_> {
         linearization: Linearization,
         out: &mut Jacobian,
     ) {
-        let mut own = Jacobian::in_blocks();
-        self.seen(x, v, |x, v| {
-            self.system.jacobian(t, x, v, linearization, &mut own);
-        });
-        let exact = linearization == Linearization::Exact;
-        for by in [Derivative::Position, Derivative::Velocity] {
-            let mut entries = own.triplets(by).clone();
-            for pair in own.pairs(by) {
-                let turned = |end: &u32| {
-                    let end = *end as usize;
-                    self.member(end).is_some() || self.group(end).is_some()
-                };
-                if pair.ends.iter().any(turned) {
-                    pair.for_each(|row, column, value| entries.push((row, column, value)));
-                } else {
-                    out.add_pair(by, pair.ends.map(|end| end as usize), pair.block);
-                }
-            }
-            let place = match by {
-                Derivative::Position => &mut out.position,
-                Derivative::Velocity => &mut out.velocity,
-            };
-            self.turned(&entries, exact, place);
-        }
+        self.add_jacobian(t, x, v, linearization, out);
     }
 }

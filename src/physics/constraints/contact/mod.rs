@@ -219,14 +219,14 @@ impl Obstacles {
             step: scene.solver.timestep,
             broad: Mutex::default(),
         };
-        let size = all.size(scene);
+        let size = all.measured(scene);
         (all.close, all.lowest) = (TOUCHING * size, LOWEST * size);
         Some(all)
     }
 
     /// How large the scene is, m: the box around the particles, the largest of them, and how far they are from obstacles;
     /// at least the way of the fastest in a step.
-    fn size(&self, scene: &Scene) -> f64 {
+    fn measured(&self, scene: &Scene) -> f64 {
         let starts = scene.starts();
         let mut size = scene.size() + self.radii.iter().fold(0.0, |most, r| r.max(most));
         for obstacle in &self.obstacles {
@@ -368,7 +368,13 @@ impl Obstacles {
     /// What a report calls touching, m: a billionth of the scene's size. Not to be confused with [`close`](Self::close), at
     /// which there are impacts.
     pub fn closed(&self) -> f64 {
-        self.close / TOUCHING * CLOSED
+        self.size() * CLOSED
+    }
+
+    /// The scene's size, m, with its obstacles: the box around the particles, the largest of them, and how far they are from
+    /// obstacles.
+    pub fn size(&self) -> f64 {
+        self.close / TOUCHING
     }
 
     /// The radius of a particle, m.
