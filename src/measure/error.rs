@@ -26,6 +26,14 @@ pub struct TrueStates {
     pub states: States,
 }
 
+impl TrueStates {
+    /// How far a run's instant is from the truth, m: the largest distance of a particle; None where the truth is not known.
+    pub fn distance(&self, run: &Trajectory, instant: usize) -> Option<f64> {
+        let at = self.steps.binary_search(&run.step(instant)).ok()?;
+        Some(farthest(run.x(instant), self.states.x(at)))
+    }
+}
+
 /// Errors of a run: the largest distances over the particles at each instant, summarised over all.
 #[derive(Debug, Clone)]
 pub struct Errors {

@@ -7,6 +7,7 @@ pub mod json;
 pub mod junit;
 pub mod markdown;
 pub mod names;
+pub mod page;
 pub mod svg;
 pub mod table;
 pub mod terminal;

@@ -2,6 +2,7 @@
 
 use super::{Body, Report, check, cost, rest, run, stability};
 use crate::report::json::{self, Tool};
+use crate::report::page::{self, Article};
 use crate::report::svg::{Chart, Figure};
 use crate::report::words::one_line;
 use crate::report::{Note, View, github, junit, names, terminal, verdict};
@@ -62,6 +63,12 @@ pub const FORMATS: &[Format] = &[
         },
     },
     Format {
+        id: "html",
+        extension: "html",
+        file: true,
+        render: |_, reports| page::render(&reports.iter().map(article).collect::<Vec<_>>()),
+    },
+    Format {
         id: "junit",
         extension: "xml",
         file: false,
@@ -79,6 +86,15 @@ pub const FORMATS: &[Format] = &[
         },
     },
 ];
+
+/// A report on a page.
+fn article(report: &Report) -> Article {
+    Article {
+        title: report.header.scene.name.clone(),
+        markdown: report.markdown(),
+        figures: report.svg(),
+    }
+}
 
 /// A report in JSON, with what the texts say beside the numbers. It reads back as the report alone.
 #[derive(Debug, Serialize, JsonSchema)]

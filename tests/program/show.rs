@@ -185,7 +185,7 @@ fn several_reports_and_lost_series() {
     let (_, err) = show(&both, &["--output", word(&elsewhere)]);
     assert!(err.contains("both.series is missing"), "{err}");
     let left: Vec<String> = files(&elsewhere.join("pa1/scene01")).into_iter().collect();
-    assert_eq!(left, ["report.json", "report.md"]);
+    assert_eq!(left, ["report.html", "report.json", "report.md"]);
     let (quiet, err) = show(&both, &["--format", "markdown", "--quiet"]);
     assert!(err.is_empty() && !quiet.contains(".svg"));
     // Two reports of one scene have one place.

@@ -356,7 +356,12 @@ fn it_prints_a_table_and_writes_a_report() {
     assert!(tail[0].starts_with("next: springcheck run "), "{}", tail[0]);
     assert!(tail[1].starts_with("report: ") && tail[1].ends_with("stability.md"));
     let place = folder.path().join("oscillator/circle");
-    let expected = ["stability.json", "stability.md", "stability_map.svg"];
+    let expected = [
+        "stability.html",
+        "stability.json",
+        "stability.md",
+        "stability_map.svg",
+    ];
     assert_eq!(files(&place), expected.map(String::from).into());
     well_formed(&place);
 }

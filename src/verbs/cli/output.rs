@@ -50,7 +50,7 @@ impl Output {
 
     /// Whether figures are wanted: in files, or as links.
     pub fn draws(&self) -> bool {
-        self.stated().is_some() || self.format == "markdown"
+        self.stated().is_some() || ["markdown", "html"].contains(&self.format.as_str())
     }
 
     /// The folder that `--output` states.

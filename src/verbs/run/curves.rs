@@ -41,6 +41,12 @@ pub fn series(
             energy: energy
                 .as_ref()
                 .map_or_else(Vec::new, |energy| energy.error(scale.unwrap_or(1.0))),
+            errors: truths
+                .at(plan.cases[outcome].label.timestep)
+                .map_or_else(Vec::new, |known| {
+                    let off = |&k: &usize| known.distance(trajectory, k).filter(|d| d.is_finite());
+                    instants.iter().map_while(off).collect()
+                }),
             rods: plan.system.rods().map_or_else(Vec::new, |rods| {
                 let off = |&k: &usize| rods.residual(trajectory.x(k), &[]).position;
                 instants.iter().map(off).collect()

@@ -159,6 +159,50 @@ fn plot(report: &Report) -> Option<Chart> {
     }))
 }
 
+/// How far each run is from the truth, over time, up to the truth's horizon. Below the floor, ten times the truth's own
+/// error bar, a distance says nothing.
+fn errors(report: &Report) -> Option<Chart> {
+    let truth = &report.header.truth;
+    let floor = 10.0 * truth.error_bound_m.unwrap_or_default();
+    let least = (0.1 * floor).max(LEAST_OFF);
+    let panels = by_timestep(
+        report,
+        |_| Paths::new(),
+        |run| {
+            // The start is the scene's, and has no error.
+            let seen: Vec<f64> = run.errors.iter().map(|off| off.max(least)).collect();
+            if seen.len() < 2 {
+                return Paths::new();
+            }
+            over_time(&run.t[1..], &seen[1..])
+        },
+    )?;
+    let titles = [
+        "distance from the truth over time",
+        "largest distance of a particle (m)",
+    ];
+    let mut chart = curves(report, titles, panels, |panel| {
+        let [lo, hi] = panel.shown(1, None);
+        let lowest = if floor > 0.0 { lo.min(floor) } else { lo };
+        ChartAxis {
+            scale: Scale::Log,
+            range: [
+                lowest.clamp(least, HUGE) / 2.0,
+                hi.max(10.0 * lowest).clamp(10.0 * least, HUGE) * 2.0,
+            ],
+        }
+    });
+    for panel in &mut chart.panels {
+        if floor > 0.0 {
+            let [from, to] = panel.axes[0].range;
+            let mut line = Polyline::new(vec![[from, floor], [to, floor]], FLOOR);
+            line.label = Some(LegendEntry::new("floor", Look::Line(FLOOR)));
+            panel.marks.insert(0, Mark::Line(line));
+        }
+    }
+    Some(chart)
+}
+
 /// The error of the rods' lengths over time; what is 0 or below rounding lies on the lower edge.
 fn rods(report: &Report) -> Option<Chart> {
     let panels = by_timestep(
@@ -184,6 +228,9 @@ fn rods(report: &Report) -> Option<Chart> {
         }
     }))
 }
+
+/// Where errors are those of the truth.
+const FLOOR: Stroke = Stroke::new(FAINT, "3 3", 1.0);
 
 /// The smallest error of a length that is drawn, m.
 const LEAST_OFF: f64 = 1e-17;
@@ -343,6 +390,7 @@ fn layer(report: &Report, outcome: &Outcome) -> u8 {
 /// The figures of `run` and `compare`.
 pub const FIGURES: &[Figure<Report>] = &[
     ("plot.svg", "the curve the scene asks for", plot),
+    ("error.svg", "distance from the truth over time", errors),
     ("energy.svg", "energy balance over time", energy),
     ("rods.svg", "error of the rods' lengths over time", rods),
     ("trajectories.svg", "trajectories", trajectories),

@@ -108,6 +108,9 @@ pub struct Curves {
     pub t: Vec<f64>,
     /// (B - B(0)) / S, or joules where the scene has no scale; empty where no velocities are known.
     pub energy: Vec<f64>,
+    /// The largest distance of a particle from the truth, m, up to the truth's horizon; empty without a truth.
+    #[serde(default)]
+    pub errors: Vec<f64>,
     /// The largest error of a rod's length, m; empty without rods.
     #[serde(default)]
     pub rods: Vec<f64>,

@@ -54,6 +54,7 @@ pub fn hostile() -> Report {
             outcome,
             t: vec![0.0, f64::MAX],
             energy: values.into(),
+            errors: values.into(),
             plot: values.into(),
             paths: vec![vec![values, values], vec![values], vec![]],
         });
@@ -63,6 +64,7 @@ pub fn hostile() -> Report {
         outcome: 9_999,
         t: vec![],
         energy: vec![],
+        errors: vec![],
         plot: vec![],
         paths: vec![],
     });

@@ -41,6 +41,7 @@ pub fn oscillator(timesteps: &[f64], duration: f64, engines: usize) -> Report {
                 plot: run.path.iter().map(|p| p[0]).collect(),
                 t: run.t,
                 energy: run.energy,
+                errors: Vec::new(),
                 paths: vec![run.path],
             });
             report.outcomes_mut().push(outcome);

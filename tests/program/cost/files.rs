@@ -25,6 +25,7 @@ fn it_prints_a_table_and_writes_a_report() {
     }
     let place = folder.path().join("oscillator/oscillator");
     let wanted = [
+        "cost.html",
         "cost.json",
         "cost.md",
         "cost_energy.svg",
