@@ -29,8 +29,13 @@ pub struct TrueStates {
 impl TrueStates {
     /// How far a run's instant is from the truth, m: the largest distance of a particle; None where the truth is not known.
     pub fn distance(&self, run: &Trajectory, instant: usize) -> Option<f64> {
-        let at = self.steps.binary_search(&run.step(instant)).ok()?;
+        let at = self.place(run, instant)?;
         Some(farthest(run.x(instant), self.states.x(at)))
+    }
+
+    /// Which of the states is that of a run's instant.
+    fn place(&self, run: &Trajectory, instant: usize) -> Option<usize> {
+        self.steps.binary_search(&run.step(instant)).ok()
     }
 }
 
@@ -48,16 +53,13 @@ pub struct Errors {
 ///
 /// None when it shares no later instant, or is too far away for a number.
 pub fn errors(run: &Trajectory, known: &TrueStates) -> Option<Errors> {
-    let shared = (0..run.len()).filter_map(|k| {
-        let at = known.steps.binary_search(&run.step(k)).ok()?;
-        Some((k, at))
+    let distances =
+        |of: &dyn Fn(usize) -> Option<f64>| -> Vec<f64> { (0..run.len()).filter_map(of).collect() };
+    let position = distances(&|k| known.distance(run, k));
+    let velocity = distances(&|k| {
+        let at = known.place(run, k)?;
+        Some(farthest(run.v(k), known.states.v(at)))
     });
-    let shared: Vec<(usize, usize)> = shared.collect();
-    let distances = |of: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
-        shared.iter().map(|&(k, at)| of(k, at)).collect()
-    };
-    let position = distances(&|k, at| farthest(run.x(k), known.states.x(at)));
-    let velocity = distances(&|k, at| farthest(run.v(k), known.states.v(at)));
     Some(Errors {
         position: summary(&position)?,
         velocity: summary(&velocity).filter(|_| run.has_velocities()),

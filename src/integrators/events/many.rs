@@ -212,13 +212,16 @@ impl Many<'_> {
             -each.map(|((w, a), inverse)| w * a / inverse).sum::<f64>()
         };
         let linear = !system.kinds().has(ForceKinds::NON_LINEAR);
-        let [whole, of_mean] = [(root, false), (mean, linear)].map(|(w, known)| {
-            if known {
-                return power(w, &change);
-            }
+        let mut damped = |w: &[f64]| {
             system.damping(before.t, &before.x, w, &mut was);
             power(w, &was)
-        });
+        };
+        let whole = damped(root);
+        let of_mean = if linear {
+            power(mean, &change)
+        } else {
+            damped(mean)
+        };
         for change in &mut change {
             *change *= self.h;
         }

@@ -169,12 +169,13 @@ fn errors(report: &Report) -> Option<Chart> {
         report,
         |_| Paths::new(),
         |run| {
-            // The start is the scene's, and has no error.
             let seen: Vec<f64> = run.errors.iter().map(|off| off.max(least)).collect();
-            if seen.len() < 2 {
-                return Paths::new();
-            }
-            over_time(&run.t[1..], &seen[1..])
+            let mut paths = over_time(&run.t, &seen);
+            // The start is the scene's, and has no error.
+            paths
+                .iter_mut()
+                .for_each(|path| drop(path.drain(..path.len().min(1))));
+            paths
         },
     )?;
     let titles = [

@@ -68,6 +68,10 @@ pub fn hostile() -> Report {
         plot: vec![],
         paths: vec![],
     });
+    // Errors of instants that are not there.
+    let mut errors_alone = report.series_mut().curves[0].clone();
+    errors_alone.t.clear();
+    report.series_mut().curves.push(errors_alone);
     report.series_mut().plane = [7, 2];
     report.series_mut().plot = Some(PlotAxis {
         label: long.clone(),

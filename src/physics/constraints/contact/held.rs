@@ -481,6 +481,10 @@ impl System for Held<'_> {
         linearization: Linearization,
         out: &mut Jacobian,
     ) {
-        self.add_jacobian(t, x, v, linearization, out);
+        let mut own = Jacobian::in_blocks();
+        self.seen(x, v, |x, v| {
+            self.system.jacobian(t, x, v, linearization, &mut own);
+        });
+        self.add_turned(&own, linearization == Linearization::Exact, out);
     }
 }

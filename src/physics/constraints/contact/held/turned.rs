@@ -2,25 +2,13 @@
 
 use super::super::member::Reach;
 use super::Held;
-use crate::physics::{Derivative, Jacobian, Linearization, Triplets};
+use crate::physics::{Derivative, Jacobian, Triplets};
 use smallvec::smallvec;
 use std::collections::BTreeMap;
 
 impl Held<'_> {
-    /// Adds the Jacobian in the particles' own axes.
-    pub(super) fn add_jacobian(
-        &self,
-        t: f64,
-        x: &[f64],
-        v: &[f64],
-        linearization: Linearization,
-        out: &mut Jacobian,
-    ) {
-        let mut own = Jacobian::in_blocks();
-        self.seen(x, v, |x, v| {
-            self.system.jacobian(t, x, v, linearization, &mut own);
-        });
-        let exact = linearization == Linearization::Exact;
+    /// Adds a Jacobian in the axes of space, pairs in blocks, in the particles' own axes.
+    pub(super) fn add_turned(&self, own: &Jacobian, exact: bool, out: &mut Jacobian) {
         for by in [Derivative::Position, Derivative::Velocity] {
             let mut entries = own.triplets(by).clone();
             for pair in own.pairs(by) {

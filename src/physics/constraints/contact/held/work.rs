@@ -3,6 +3,7 @@
 use super::Held;
 use crate::physics::State;
 use crate::space::{dot, minus, norm, three};
+use std::borrow::Cow;
 
 impl Held<'_> {
     /// Where the friction of sliding particles is not among the forces: its flow over `h`, s, at a state in the axes of
@@ -12,9 +13,9 @@ impl Held<'_> {
             return;
         }
         let a = if state.t == self.since {
-            self.begins.clone()
+            Cow::Borrowed(&self.begins)
         } else {
-            self.free(state)
+            Cow::Owned(self.free(state))
         };
         for member in self.members.iter().filter(|member| member.slides) {
             let now = member.contacts.now(self.obstacles, state);
@@ -51,8 +52,8 @@ impl Held<'_> {
         }
     }
 
-    /// The power lost to friction among the forces, and that of the obstacles' motions, W, at a state in the axes of space with the
-    /// acceleration `a` without contact.
+    /// The power lost to friction among the forces, and that of the obstacles' motions, W, at a state in the axes of space
+    /// with the acceleration `a` without contact.
     fn powers(&self, state: &State, a: &[f64]) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for member in &self.members {
