@@ -13,7 +13,7 @@ mod turn;
 pub use bound::Bound;
 
 use crate::physics::System;
-use crate::space::norm;
+use crate::space::dot;
 
 /// How a system's dampers can be applied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,13 +144,10 @@ impl<'a> Sweep<'a> {
             return;
         };
         if let Some(bound) = self.bound(&[i, j]) {
-            let size = norm(d);
-            if size * size >= f64::MIN_POSITIVE {
-                self.rate(
-                    bound,
-                    c,
-                    [(i, d.map(|d| -d / size)), (j, d.map(|d| d / size))],
-                );
+            let square = dot(d, d);
+            if square >= f64::MIN_POSITIVE {
+                // The rate of d² / 2, without a root.
+                self.rate(bound, c / square, [(i, d.map(|d| -d)), (j, d)]);
             }
             return;
         }
@@ -159,7 +156,7 @@ impl<'a> Sweep<'a> {
             return;
         }
         // n nᵀ = d dᵀ / d², without a root. All but the energy is linear in what is along d.
-        let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        let square = dot(d, d);
         if square < f64::MIN_POSITIVE {
             return;
         }

@@ -6,7 +6,7 @@ use super::root::Due;
 use crate::integrators::StepError;
 use crate::physics::constraints::Rods;
 use crate::physics::constraints::contact::{Against, Blows, Held, Near, Obstacles};
-use crate::physics::{ForceKinds, State, System};
+use crate::physics::{ForceKinds, Power, State, System};
 use crate::space::{dot, minus, three};
 use std::cmp::{Ordering, Reverse};
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
@@ -45,7 +45,7 @@ struct Bent<'a> {
     ends: [&'a State; 2],
     paths: BTreeMap<usize, (Path, u32)>,
     hits: BTreeMap<usize, u32>,
-    /// The changes of velocity, each times the part of the step that is left after it, and times the root of that, m/s.
+    /// The changes of velocity, and each times the part of the step that is left after it, m/s.
     turned: [Vec<f64>; 2],
 }
 
@@ -69,7 +69,7 @@ impl Bent<'_> {
         let (path, often) = self.paths.entry(one).or_insert((path, 0));
         path.bend(s, change);
         *often += 1;
-        for (all, weight) in self.turned.iter_mut().zip([1.0 - s, (1.0 - s).sqrt()]) {
+        for (all, weight) in self.turned.iter_mut().zip([1.0, 1.0 - s]) {
             for axis in 0..3 {
                 all[3 * one + axis] += weight * change[axis];
             }
@@ -197,30 +197,42 @@ impl Many<'_> {
             return Ok(());
         }
         let before = bent.ends[1];
-        let [mean, root] = &bent.turned;
-        let v: Vec<f64> = before.v.iter().zip(mean).map(|(v, w)| v + w).collect();
-        let (mut was, mut change) = (vec![0.0; v.len()], vec![0.0; v.len()]);
-        let from = system.remembered_acceleration(before.t, &before.x, &before.v, &mut was);
-        let to = system.free_acceleration(before.t, &before.x, &v, &mut change);
-        for (change, was) in change.iter_mut().zip(&was) {
-            *change -= was;
-        }
-        // The power is quadratic in the velocity: that of a change which lasts for a part of the step is not that of its mean.
+        let [turned, mean] = &bent.turned;
         let power = |w: &[f64], a: &[f64]| {
             let each = w.iter().zip(a).zip(system.inverse_mass());
-            let each = each.filter(|(_, inverse)| **inverse > 0.0);
+            // Most particles are not struck: what is 0 is not divided.
+            let each = each.filter(|((w, a), inverse)| **inverse > 0.0 && *w * *a != 0.0);
             -each.map(|((w, a), inverse)| w * a / inverse).sum::<f64>()
         };
-        let linear = !system.kinds().has(ForceKinds::NON_LINEAR);
-        let mut damped = |w: &[f64]| {
-            system.damping(before.t, &before.x, w, &mut was);
-            power(w, &was)
-        };
-        let whole = damped(root);
-        let of_mean = if linear {
-            power(mean, &change)
+        let mut damped = vec![0.0; mean.len()];
+        system.damping(before.t, &before.x, mean, &mut damped);
+        // The power is quadratic in the velocity: that of a change which lasts for a part of the step is not that of its mean.
+        let lasting = power(turned, &damped) - power(mean, &damped);
+        let others = [
+            ForceKinds::NON_LINEAR,
+            ForceKinds::DRIVEN,
+            ForceKinds::GYROSCOPIC,
+        ];
+        let (more, mut change) = if others.iter().any(|kind| system.kinds().has(*kind)) {
+            let v: Vec<f64> = before.v.iter().zip(mean).map(|(v, w)| v + w).collect();
+            let (mut was, mut change) = (vec![0.0; v.len()], vec![0.0; v.len()]);
+            let from = system.remembered_acceleration(before.t, &before.x, &before.v, &mut was);
+            let to = system.free_acceleration(before.t, &before.x, &v, &mut change);
+            for (change, was) in change.iter_mut().zip(&was) {
+                *change -= was;
+            }
+            let more = Power {
+                dissipated: to.dissipated - from.dissipated,
+                injected: to.injected - from.injected,
+            };
+            (more, change)
         } else {
-            damped(mean)
+            // Dampers are symmetric, and all that depends on velocity.
+            let more = Power {
+                dissipated: power(mean, &damped) + 2.0 * power(&before.v, &damped),
+                injected: 0.0,
+            };
+            (more, damped)
         };
         for change in &mut change {
             *change *= self.h;
@@ -242,8 +254,8 @@ impl Many<'_> {
         for (v, change) in end.v.iter_mut().zip(&change) {
             *v += change;
         }
-        end.work.dissipated += self.h * (to.dissipated - from.dissipated + whole - of_mean);
-        end.work.injected += self.h * (to.injected - from.injected);
+        end.work.dissipated += self.h * (more.dissipated + lasting);
+        end.work.injected += self.h * more.injected;
         Ok(())
     }
 

@@ -198,10 +198,11 @@ impl Walk<'_> {
         let taken = self.integrator.takes();
         let held = Held::at(system, obstacles, &touching, &start, taken)?;
         let held = held.as_ref();
-        self.integrator.forget();
         let mut end = self.sub_step(held, left, &start)?;
         self.near = path::near(obstacles, left, &start, &end);
-        let a = held.map(|held| held.free_at_end(&end));
+        // Where nothing is located what leaves and slips does so with the next step.
+        let a = held.filter(|held| located > 0 || held.books());
+        let a = a.map(|held| held.free_at_end(&end));
         let mut due = Self::changes(held, left, &end, a.as_deref());
         due.extend(self.impacts(held, left, &start, &end));
         self.involved
@@ -251,7 +252,10 @@ impl Walk<'_> {
         let mut begin = start.clone();
         held.slow_down(0.5 * h, &mut begin);
         let mut own = held.inward(begin);
+        // Its forces are those of these contacts, and of no step before or after.
+        self.integrator.forget();
         self.integrator.step(held, h, &mut own)?;
+        self.integrator.forget();
         held.place(start.t + h, &mut own.x, &mut own.v);
         let mut end = held.outward(own);
         held.slow_down(0.5 * h, &mut end);
@@ -260,7 +264,7 @@ impl Walk<'_> {
 
     /// What has changed in contacts at the end of a sub-step.
     fn changes(held: Option<&Held>, h: f64, end: &State, a: Option<&[f64]>) -> Vec<Due<Event>> {
-        let changes = held.zip(a).map(|(held, a)| held.changes(end, a));
+        let changes = held.map(|held| held.changes(end, a));
         let changes = changes.unwrap_or_default();
         let due = changes.into_iter().filter(|(.., by)| *by > 0.0);
         due.map(|(particle, change, _)| Due {
@@ -339,7 +343,7 @@ fn sign(obstacles: &Obstacles, held: Option<&Held>, due: &Due<Event>, state: &St
             obstacles.gap(particle, against, state.t, at) - due.level
         }
         Event::Contact { particle, change } => {
-            let changes = held.map(|held| held.changes(state, &held.free(state)));
+            let changes = held.map(|held| held.changes(state, Some(&held.free(state))));
             let changes = changes.unwrap_or_default();
             let own = changes.iter().filter(|c| c.0 == particle && c.1 == change);
             -own.map(|c| c.2).fold(f64::NEG_INFINITY, f64::max)

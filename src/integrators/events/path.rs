@@ -3,7 +3,7 @@
 use super::root::Due;
 use crate::physics::State;
 use crate::physics::constraints::contact::{Against, Near, Obstacles};
-use crate::space::{norm, three};
+use crate::space::{minus, norm, three};
 use std::borrow::Borrow;
 use std::sync::Arc;
 
@@ -16,22 +16,24 @@ pub(super) struct Path {
 }
 
 impl Path {
+    #[inline]
     pub fn new(particle: usize, h: f64, start: &State, end: &State) -> Self {
-        let both = |all: [&[f64]; 2]| all.map(|all| three(all, particle));
         Self {
             h,
-            x: both([&start.x, &end.x]),
-            v: both([&start.v, &end.v]),
+            x: [three(&start.x, particle), three(&end.x, particle)],
+            v: [three(&start.v, particle), three(&end.v, particle)],
         }
     }
 
+    #[inline]
     pub fn at(&self, s: f64) -> [f64; 3] {
         let r = 1.0 - s;
-        [0, 1, 2].map(|c| {
+        let along = |c: usize| {
             let way = self.x[1][c] - self.x[0][c];
             let bend = r * (self.h * self.v[0][c] - way) - s * (self.h * self.v[1][c] - way);
             self.x[0][c] + s * (way + r * bend)
-        })
+        };
+        [along(0), along(1), along(2)]
     }
 
     pub fn velocity(&self, s: f64) -> [f64; 3] {
@@ -61,20 +63,23 @@ impl Path {
     }
 
     /// A cube that it keeps within: its centre, and half a side, m.
+    #[inline]
     pub fn cube(&self) -> ([f64; 3], f64) {
-        let center = [0, 1, 2].map(|c| 0.5 * (self.x[0][c] + self.x[1][c]));
-        let long = [0, 1, 2].map(|c| {
+        let center = |c: usize| 0.5 * (self.x[0][c] + self.x[1][c]);
+        let long = |c: usize| {
             let way = self.x[1][c] - self.x[0][c];
             let off = |v: [f64; 3]| (self.h * v[c] - way).abs();
             way.abs() + off(self.v[0]) + off(self.v[1])
-        });
-        (center, 0.5 * long.into_iter().fold(0.0, f64::max))
+        };
+        let half = 0.5 * long(0).max(long(1)).max(long(2));
+        ([center(0), center(1), center(2)], half)
     }
 
     /// It is not longer, m.
+    #[inline]
     pub fn length(&self) -> f64 {
-        let way = [0, 1, 2].map(|c| self.x[1][c] - self.x[0][c]);
-        let off = |v: [f64; 3]| norm([0, 1, 2].map(|c| self.h * v[c] - way[c]));
+        let way = minus(self.x[1], self.x[0]);
+        let off = |v: [f64; 3]| norm(minus([self.h * v[0], self.h * v[1], self.h * v[2]], way));
         norm(way) + off(self.v[0]) + off(self.v[1])
     }
 }

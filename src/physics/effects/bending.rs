@@ -27,6 +27,7 @@ pub(super) const ROW: EffectRow = EffectRow {
 /// its energy k L² θ⁴ / 32 is of the fourth order.
 pub struct BendingForce {
     hinges: Vec<Bending>,
+    kinds: ForceKinds,
 }
 
 impl BendingForce {
@@ -37,7 +38,8 @@ impl BendingForce {
             free && (hinge.stiffness != 0.0 || hinge.damping != 0.0)
         };
         let hinges: Vec<_> = scene.bending.iter().filter(acts).cloned().collect();
-        (!hinges.is_empty()).then_some(Self { hinges })
+        let kinds = ForceKinds::union(hinges.iter().map(|one| ForceKinds::of_damper(one.damping)));
+        (!hinges.is_empty()).then_some(Self { hinges, kinds })
     }
 
     /// The first hinge of a scene that holds energy at the start and no force, since its angle has no direction: straight
@@ -233,8 +235,7 @@ impl Effect for BendingForce {
     }
 
     fn kinds(&self) -> ForceKinds {
-        let dampers = self.hinges.iter().map(|hinge| hinge.damping);
-        ForceKinds::union(dampers.map(ForceKinds::of_damper))
+        self.kinds
     }
 
     fn add_force(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) -> Power {

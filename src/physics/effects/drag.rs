@@ -22,6 +22,7 @@ pub struct Drag {
     coefficients: Vec<(usize, f64)>,
     /// w, m/s.
     air: [f64; 3],
+    kinds: ForceKinds,
 }
 
 impl Drag {
@@ -35,9 +36,13 @@ impl Drag {
             .filter(|(_, p)| !p.fixed && p.drag != 0.0)
             .map(|(i, p)| (i, p.drag))
             .collect();
-        (!coefficients.is_empty()).then(|| Self {
+        let air = scene.air().velocity;
+        let dampers = coefficients.iter().map(|&(_, b)| ForceKinds::of_damper(b));
+        let kinds = ForceKinds::union(dampers) | moved_by(air);
+        (!coefficients.is_empty()).then_some(Self {
             coefficients,
-            air: scene.air().velocity,
+            air,
+            kinds,
         })
     }
 }
@@ -48,9 +53,7 @@ impl Effect for Drag {
     }
 
     fn kinds(&self) -> ForceKinds {
-        let dampers = self.coefficients.iter();
-        let dampers = ForceKinds::union(dampers.map(|&(_, b)| ForceKinds::of_damper(b)));
-        dampers | moved_by(self.air)
+        self.kinds
     }
 
     fn add_force(&self, _t: f64, _x: &[f64], v: &[f64], f: &mut [f64]) -> Power {

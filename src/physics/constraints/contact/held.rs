@@ -30,6 +30,8 @@ pub struct Held<'s> {
     system: &'s dyn System,
     obstacles: &'s Obstacles,
     members: Vec<Member>,
+    /// Of each particle its place among the members, or [`NONE`].
+    places: Vec<u32>,
     groups: Vec<Group>,
     inverse_mass: Vec<f64>,
     /// The acceleration without contact at the beginning, m/s².
@@ -42,6 +44,9 @@ pub struct Held<'s> {
     /// apart: see [`slow_down`](Self::slow_down).
     friction: bool,
 }
+
+/// The place of what is no member.
+const NONE: u32 = u32::MAX;
 
 /// What ends a motion in contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,7 +82,7 @@ impl<'s> Held<'s> {
         let mut a = vec![0.0; state.x.len()];
         system.remembered_acceleration(state.t, &state.x, &state.v, &mut a);
         let groups = grouped(obstacles, system.rods(), &mut all, state, &a)?;
-        let mut members: Vec<Member> = Vec::new();
+        let mut members: Vec<Member> = Vec::with_capacity(all.len());
         for own in all.chunk_by(|one, other| one.particle == other.particle) {
             let [x, a] = [&state.x, &a].map(|all| three(all, own[0].particle));
             members.extend(Member::new(obstacles, own, state.t, [x, a], follow));
@@ -95,9 +100,11 @@ impl<'s> Held<'s> {
                 inverse_mass[at] = 0.0;
             }
         }
-        for member in &members {
+        let mut places = vec![NONE; state.x.len() / 3];
+        for (place, member) in members.iter().enumerate() {
             let at = 3 * member.particle;
             inverse_mass[at..at + member.given].fill(0.0);
+            places[member.particle] = u32::try_from(place).unwrap_or(NONE);
         }
         let turns = members
             .iter()
@@ -121,6 +128,7 @@ impl<'s> Held<'s> {
             system,
             obstacles,
             members,
+            places,
             groups,
             inverse_mass,
             begins: a,
@@ -189,10 +197,13 @@ impl<'s> Held<'s> {
     pub fn left(&self, state: &State, change: &mut [f64]) {
         for member in &self.members {
             let own = 3 * member.particle..3 * member.particle + 3;
-            let now = member.contacts.now(self.obstacles, state);
+            if change[own.clone()] == [0.0; 3] {
+                continue;
+            }
             let left = if member.sticks() {
                 [0.0; 3]
             } else {
+                let now = member.contacts.now(self.obstacles, state);
                 now.along(three(change, member.particle))
             };
             change[own].copy_from_slice(&left);
@@ -217,27 +228,44 @@ impl<'s> Held<'s> {
 
     /// What has changed at a state in the axes of space, with the acceleration `a` without contact there, by how much: the
     /// largest violation, negative where none is. Each is a continuous function of time, and 0 where the change is due.
-    pub fn changes(&self, state: &State, a: &[f64]) -> Vec<(usize, Change, f64)> {
+    /// Without `a` what has stopped alone.
+    pub fn changes(&self, state: &State, a: Option<&[f64]>) -> Vec<(usize, Change, f64)> {
         let mut found = Vec::with_capacity(2 * self.members.len());
         for member in &self.members {
+            if !member.slides && a.is_none() {
+                continue;
+            }
+            let mut push = |change: Change, by: f64| found.push((member.particle, change, by));
+            let Some(a) = a else {
+                // At the end of a step nothing is left along the normal of one contact.
+                let along = match &member.contacts[..] {
+                    [_] => member.contacts.relative(self.obstacles, state),
+                    _ => {
+                        let now = member.contacts.now(self.obstacles, state);
+                        now.outer_sliding(self.obstacles, state)
+                    }
+                };
+                push(Change::Stops, -dot(member.forward(), along));
+                continue;
+            };
             let now = member.contacts.now(self.obstacles, state);
+            if member.slides {
+                let along = now.outer_sliding(self.obstacles, state);
+                push(Change::Stops, -dot(member.forward(), along));
+            }
             let free = three(a, member.particle);
             let pressed = now.pressed(self.obstacles, state.t, free);
             for n in &pressed {
-                found.push((member.particle, Change::Leaves, -n));
+                push(Change::Leaves, -n);
             }
-            if member.slides {
-                let along = now.outer_sliding(self.obstacles, state);
-                let forward = dot(member.forward(), along);
-                found.push((member.particle, Change::Stops, -forward));
-            } else if member.sticks() {
+            if member.sticks() {
                 let pull = now.pull(self.obstacles, state.t, free);
-                let most = now.resistance(&pressed, 1);
-                found.push((member.particle, Change::Slips, norm(pull) - most));
+                push(Change::Slips, norm(pull) - now.resistance(&pressed, 1));
             }
         }
         for group in &self.groups {
-            found.extend(group.changes(self.obstacles, self.system.rods(), state, a));
+            let own = a.map(|a| group.changes(self.obstacles, self.system.rods(), state, a));
+            found.extend(own.into_iter().flatten());
         }
         found
     }
@@ -263,13 +291,15 @@ impl<'s> Held<'s> {
             || self.groups.iter().any(|group| group.contacts().any(is))
     }
 
-    /// Adds friction to an acceleration in the particles' own axes, and sets given coordinates to 0.
-    fn constrain(&self, t: f64, x: &[f64], v: Option<&[f64]>, a: &mut [f64]) {
+    /// Adds friction to an acceleration in the particles' own axes, and sets given coordinates to 0, at positions and
+    /// velocities in the axes of space; `v` are the velocities in the particles' own, None where all are 0.
+    fn constrain(&self, t: f64, out: [&[f64]; 2], v: Option<&[f64]>, a: &mut [f64]) {
         for member in &self.members {
             let at = 3 * member.particle;
             let own = three(a, member.particle);
             if member.follows {
-                let added = member.inward(self.follow(member, t, x, v, member.outward(own)));
+                let out = out.map(|all| three(all, member.particle));
+                let added = member.inward(self.follow(member, t, out, member.outward(own)));
                 for axis in 0..3 {
                     a[at + axis] += added[axis];
                 }
@@ -292,18 +322,15 @@ impl<'s> Held<'s> {
         }
     }
 
-    /// What a surface that bends adds to the acceleration `a`, in the axes of space, of a particle at positions and
-    /// velocities in the particles' own axes.
+    /// What a surface that bends adds to the acceleration `a` of a particle at a place and with a velocity, all in the
+    /// axes of space.
     fn follow(
         &self,
         member: &Member,
         t: f64,
-        x: &[f64],
-        v: Option<&[f64]>,
+        [place, velocity]: [[f64; 3]; 2],
         a: [f64; 3],
     ) -> [f64; 3] {
-        let out = |all: &[f64]| member.outward(three(all, member.particle));
-        let (place, velocity) = (out(x), v.map_or([0.0; 3], out));
         let Against::Obstacle(obstacle) = member.contacts[0].beside.against else {
             return [0.0; 3];
         };
@@ -334,8 +361,7 @@ impl<'s> Held<'s> {
     }
 
     fn member(&self, particle: usize) -> Option<&Member> {
-        let found = self.members.binary_search_by_key(&particle, |m| m.particle);
-        found.ok().map(|at| &self.members[at])
+        self.members.get(self.places[particle] as usize)
     }
 
     fn group(&self, particle: usize) -> Option<&Group> {
@@ -351,15 +377,17 @@ impl System for Held<'_> {
 
     fn acceleration(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) -> Power {
         let still = v.iter().all(|v| *v == 0.0);
-        let mut own_x = x.to_vec();
-        let mut own_v = if still { Vec::new() } else { v.to_vec() };
-        self.place(t, &mut own_x, &mut own_v);
-        let power = self.seen(&own_x, &own_v, |x, own| {
-            let v = if still { v } else { own };
-            self.system.free_acceleration(t, x, v, a)
-        });
+        let mut out_x = x.to_vec();
+        let mut out_v = if still { Vec::new() } else { v.to_vec() };
+        self.place(t, &mut out_x, &mut out_v);
+        self.turn_back(&mut out_x);
+        if !still {
+            self.turn_back(&mut out_v);
+        }
+        let seen_v = if still { v } else { &out_v };
+        let power = self.system.free_acceleration(t, &out_x, seen_v, a);
         self.turn(a);
-        self.constrain(t, &own_x, (!still).then_some(&own_v[..]), a);
+        self.constrain(t, [&out_x, seen_v], (!still).then_some(v), a);
         power
     }
 

@@ -107,8 +107,13 @@ impl Pressing {
 
     /// Along the surfaces, in the axes of space, relative to the obstacle.
     pub(super) fn outer_sliding(&self, obstacles: &Obstacles, state: &State) -> [f64; 3] {
+        self.along(self.relative(obstacles, state))
+    }
+
+    /// The velocity relative to the obstacle.
+    pub(super) fn relative(&self, obstacles: &Obstacles, state: &State) -> [f64; 3] {
         let moved = obstacles.moved(self[0].beside.against, state.t)[1];
-        self.along(minus(three(&state.v, self[0].beside.particle), moved))
+        minus(three(&state.v, self[0].beside.particle), moved)
     }
 
     /// N/m of each contact, m/s²; negative where it would have to pull.
@@ -220,12 +225,17 @@ impl Member {
         unit(sliding).filter(|_| turns).unwrap_or(forward)
     }
 
+    #[inline]
     pub(super) fn inward(&self, out: [f64; 3]) -> [f64; 3] {
-        self.axes.map(|axis| dot(axis, out))
+        let [a, b, c] = self.axes;
+        [dot(a, out), dot(b, out), dot(c, out)]
     }
 
+    #[inline]
     pub(super) fn outward(&self, own: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|c| (0..3).map(|axis| own[axis] * self.axes[axis][c]).sum())
+        let [a, b, c] = self.axes;
+        let along = |axis| own[0] * a[axis] + own[1] * b[axis] + own[2] * c[axis];
+        [along(0), along(1), along(2)]
     }
 
     /// The direction of sliding in the plane of the last two axes, at velocities in its own axes. Beyond a standstill it
@@ -279,35 +289,43 @@ impl Member {
         if self.sticks() || self.contacts.iter().all(flat) {
             return;
         }
-        if let ([one], false) = (&self.contacts[..], self.follows || h <= 0.0) {
-            let n = one.beside.normal;
-            let mut moved = 0.0;
-            for _ in 0..ITERATIONS {
-                let now = one.now(obstacles, state).beside;
-                let along = dot(n, now.normal);
-                if now.gap.abs() <= now.close || along <= 0.0 {
-                    break;
-                }
-                let step = -now.gap / along;
-                moved += step;
-                for axis in 0..3 {
-                    state.x[3 * self.particle + axis] += step * n[axis];
-                }
+        let beside = |contact: &Contact, state: &State| {
+            obstacles.beside(self.particle, contact.beside.against, state)
+        };
+        let onto = |now: &Beside, parting: f64, state: &mut State| {
+            for (axis, n) in now.normal.into_iter().enumerate() {
+                state.x[3 * self.particle + axis] -= now.gap * n;
+                state.v[3 * self.particle + axis] -= parting * n;
             }
-            let pushed = obstacles.moved(one.beside.against, state.t - h)[2];
-            let back = moved / h + 0.5 * h * dot(n, minus(begins, pushed));
+        };
+        let ([one], false) = (&self.contacts[..], self.follows || h <= 0.0) else {
+            for contact in self.contacts.iter() {
+                let now = beside(contact, state);
+                onto(&now, now.parting(), state);
+            }
+            return;
+        };
+        let n = one.beside.normal;
+        let mut moved = 0.0;
+        let mut now = beside(one, state);
+        for _ in 0..ITERATIONS {
+            let along = dot(n, now.normal);
+            if now.gap.abs() <= now.close || along <= 0.0 {
+                break;
+            }
+            let step = -now.gap / along;
+            moved += step;
             for axis in 0..3 {
-                state.v[3 * self.particle + axis] += back * n[axis];
+                state.x[3 * self.particle + axis] += step * n[axis];
             }
+            now = beside(one, state);
         }
-        for contact in self.contacts.iter() {
-            let now = obstacles.beside(self.particle, contact.beside.against, state);
-            let parting = now.parting();
-            for axis in 0..3 {
-                state.x[3 * self.particle + axis] -= now.gap * now.normal[axis];
-                state.v[3 * self.particle + axis] -= parting * now.normal[axis];
-            }
+        let pushed = obstacles.moved(one.beside.against, state.t - h)[2];
+        let back = moved / h + 0.5 * h * dot(n, minus(begins, pushed));
+        for axis in 0..3 {
+            state.v[3 * self.particle + axis] += back * n[axis];
         }
+        onto(&now, now.parting() + back * dot(n, now.normal), state);
     }
 
     /// The rows in its own axes that a row in the axes of space goes into, each with its factor; with friction where it

@@ -551,19 +551,9 @@ impl Obstacles {
 
     /// What touches at a state, in ascending order of the particles, and of what each touches.
     pub fn touching(&self, near: &Near, state: &State) -> Vec<Beside> {
-        let at = |particle| three(&state.x, particle);
-        let touch = |(particle, against): &(usize, Against)| {
-            let close = self.close(at(*particle));
-            let close = match against {
-                Against::Particle(other) => close.max(self.close(at(*other))),
-                Against::Obstacle(_) => close,
-            };
-            self.gap(*particle, *against, state.t, at) <= close
-        };
-        let touching = near.pairs().filter(touch);
-        touching
-            .map(|(particle, against)| self.beside(particle, against, state))
-            .collect()
+        let all = near.pairs();
+        let beside = all.map(|(particle, against)| self.beside(particle, against, state));
+        beside.filter(Beside::touches).collect()
     }
 
     /// A particle beside all that it touches at a state; of two particles the smaller is the first.

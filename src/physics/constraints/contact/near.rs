@@ -37,8 +37,11 @@ impl Near {
     }
 
     /// Whether a cube that a particle keeps within, its centre and half a side in metres, is within its box.
+    #[inline]
     pub fn holds(&self, particle: usize, (center, half): ([f64; 3], f64)) -> bool {
-        self.boxes[particle].contains(&around(center, half))
+        let [low, high]: [[f64; 3]; 2] =
+            [self.boxes[particle].mins, self.boxes[particle].maxs].map(Into::into);
+        (0..3).all(|c| low[c] <= center[c] - half && center[c] + half <= high[c])
     }
 
     /// What a particle may touch, ascending.

@@ -12,13 +12,18 @@ impl Held<'_> {
         if self.friction {
             return;
         }
-        let a = if state.t == self.since {
+        let begins = state.t == self.since;
+        let a = if begins {
             Cow::Borrowed(&self.begins)
         } else {
             Cow::Owned(self.free(state))
         };
         for member in self.members.iter().filter(|member| member.slides) {
-            let now = member.contacts.now(self.obstacles, state);
+            let now = if begins {
+                Cow::Borrowed(&member.contacts)
+            } else {
+                member.contacts.now(self.obstacles, state)
+            };
             let pressed = now.pressed(self.obstacles, state.t, three(&a, member.particle));
             let along = now.outer_sliding(self.obstacles, state);
             let fast = norm(along);
@@ -33,11 +38,16 @@ impl Held<'_> {
         }
     }
 
+    /// Whether there is work to [`book`](Self::book).
+    pub fn books(&self) -> bool {
+        let slides = self.friction && self.members.iter().any(|member| member.slides);
+        self.obstacles.any_moves() || slides || !self.groups.is_empty()
+    }
+
     /// Adds the work of friction among the forces, and of moving obstacles, over `h` seconds from a state to another, at
     /// which the acceleration without contact is `a`: by Simpson's rule, with the middle of the cubic through both.
     pub fn book(&self, h: f64, start: &State, end: &mut State, a: &[f64]) {
-        let slides = self.friction && self.members.iter().any(|member| member.slides);
-        if !self.obstacles.any_moves() && !slides && self.groups.is_empty() {
+        if !self.books() {
             return;
         }
         let middle = start.middle(end, h);
