@@ -1,0 +1,60 @@
+// Exact values on hover and on focus. The arrows go from value to value of one figure or table,
+// so that Tab passes each of them in one step.
+
+export function linkTips() {
+  const tip = document.createElement("div");
+  tip.id = "tip";
+  tip.setAttribute("role", "tooltip");
+  tip.hidden = true;
+  document.body.append(tip);
+
+  const hide = () => (tip.hidden = true);
+  /** @param {EventTarget | null} target @param {number} [x] @param {number} [y] pixels of the window */
+  const show = (target, x, y) => {
+    const element = target instanceof Element ? target.closest("[data-tip]") : null;
+    if (!element) return hide();
+    tip.textContent = element.getAttribute("data-tip");
+    tip.hidden = false;
+    const box = element.getBoundingClientRect();
+    const [left, top] = [x ?? box.left + box.width / 2, y ?? box.top];
+    const size = tip.getBoundingClientRect();
+    tip.style.left = `${Math.max(4, Math.min(innerWidth - size.width - 4, left + 12))}px`;
+    tip.style.top = `${top - size.height - 10 < 4 ? top + 18 : top - size.height - 10}px`;
+    return false;
+  };
+  document.addEventListener("pointermove", (event) => show(event.target, event.clientX, event.clientY));
+  document.addEventListener("pointerdown", (event) => show(event.target, event.clientX, event.clientY));
+  document.addEventListener("focusin", (event) => show(event.target));
+  document.addEventListener("focusout", hide);
+  document.addEventListener("scroll", hide, { passive: true });
+  document.addEventListener("keydown", (event) => event.key === "Escape" && hide());
+
+  /** @type {Map<Element, Element[]>} */
+  const groups = new Map();
+  for (const element of document.querySelectorAll("[data-tip]")) {
+    const own = element.matches("a, button, input, select, summary, [tabindex]");
+    const group = own ? null : element.closest("svg, table");
+    if (element instanceof SVGElement && !element.hasAttribute("role")) {
+      element.setAttribute("role", "img");
+      element.setAttribute("aria-label", element.getAttribute("data-tip") ?? "");
+    }
+    if (group) groups.set(group, [...(groups.get(group) ?? []), element]);
+    else if (!own) element.setAttribute("tabindex", "0");
+  }
+  for (const [group, elements] of groups) {
+    // An image has no parts for a screen reader; a group has.
+    if (group.getAttribute("role") === "img") group.setAttribute("role", "group");
+    elements.forEach((element, k) => element.setAttribute("tabindex", k ? "-1" : "0"));
+    group.addEventListener("keydown", (event) => {
+      const key = event instanceof KeyboardEvent ? event.key : "";
+      const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[key];
+      const at = elements.findIndex((element) => element === document.activeElement);
+      const next = step && at >= 0 ? elements[at + step] : undefined;
+      if (!(next instanceof HTMLElement || next instanceof SVGElement)) return;
+      event.preventDefault();
+      elements[at].setAttribute("tabindex", "-1");
+      next.setAttribute("tabindex", "0");
+      next.focus();
+    });
+  }
+}
