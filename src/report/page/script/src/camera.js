@@ -57,20 +57,35 @@ export class Camera {
   }
 
   /**
-   * Goes as far away as the box needs to lie within a panel, with a margin.
-   * @param {[Vec3, Vec3]} box @param {number} width @param {number} height
+   * Goes to where all points lie within a panel, with a margin.
+   * @param {Vec3[]} points @param {number} width @param {number} height
    */
-  fit([low, high], width, height) {
+  fit(points, width, height) {
     const side = Math.min(width, height);
-    const [r, u, b] = this.axes();
-    this.target = /** @type {Vec3} */ (low.map((x, axis) => (x + high[axis]) / 2));
-    let far = 1e-6;
-    for (let corner = 0; corner < 8; corner++) {
-      const d = low.map((x, axis) => (corner & (1 << axis) ? high[axis] : x) - this.target[axis]);
-      const [x, y, z] = [r, u, b].map((way) => Math.abs(way[0] * d[0] + way[1] * d[1] + way[2] * d[2]));
-      far = Math.max(far, z + 1.15 * FOCUS * Math.max((x * side) / width, (y * side) / height));
+    const axes = this.axes();
+    const { low, high } = this.reach(points);
+    const middle = low.map((x, k) => (x + high[k]) / 2);
+    this.target = /** @type {Vec3} */ ([0, 1, 2].map((axis) => axes.reduce((sum, way, k) => sum + middle[k] * way[axis], 0)));
+    let far = 1e-9;
+    for (const point of points) {
+      const [x, y, z] = axes.map((way, k) => dot(way, point) - middle[k]);
+      far = Math.max(far, z + 1.15 * FOCUS * Math.max((Math.abs(x) * side) / width, (Math.abs(y) * side) / height));
     }
     this.distance = far;
+  }
+
+  /** The least and the most of points to the right, up and back. @param {Vec3[]} points */
+  reach(points) {
+    const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    const axes = this.axes();
+    for (const point of points) {
+      axes.forEach((way, k) => {
+        const x = dot(way, point);
+        if (x < low[k]) low[k] = x;
+        if (x > high[k]) high[k] = x;
+      });
+    }
+    return { low, high };
   }
 
   /**
@@ -97,3 +112,6 @@ export class Camera {
     }
   }
 }
+
+/** @param {number[]} a @param {number[]} b */
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -4,13 +4,13 @@ import { mix } from "./raster.js";
 
 /**
  * @param {string} text `#rrggbb`
- * @param {boolean} dark turns light to dark and keeps the hue, as the style sheet's `invert(1) hue-rotate(180deg)` does
+ * @param {boolean} dark turns light to dark and keeps the hue, as the style sheet's `invert(.93) hue-rotate(180deg)` does
  */
 export function pixel(text, dark = false) {
   const value = parseInt(text.slice(1), 16);
   let rgb = [value >> 16, (value >> 8) & 255, value & 255];
   if (dark) {
-    const [r, g, b] = rgb.map((part) => 255 - part);
+    const [r, g, b] = rgb.map((part) => 0.93 * 255 - 0.86 * part);
     // The matrix of hue-rotate(180deg) in CSS's filter effects.
     rgb = [
       -0.574 * r + 1.43 * g + 0.144 * b,

@@ -59,27 +59,21 @@ export function placeOf(engine, count, frame, particle) {
 }
 
 /**
- * The box around what stays near: all frames of engines that did not diverge, or the first frames of all.
- * @param {Motion} motion @returns {[Vec3, Vec3]}
+ * Some points of what stays near, a few thousand: of engines that did not diverge, or of the first frames of all.
+ * @param {Motion} motion @returns {Vec3[]}
  */
-export function extent(motion) {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  const calm = motion.engines.filter((engine) => engine.diverged === null && engine.last > 0);
-  const widen = (/** @type {Engine} */ { q, origin, unit }, /** @type {number} */ frames) => {
-    for (let row = 0; row < 3 * frames; row++) {
-      const axis = row % 3;
-      for (let i = row * motion.count, end = i + motion.count; i < end; i++) {
-        const x = origin[axis] + unit * q[i];
-        if (x < low[axis]) low[axis] = x;
-        if (x > high[axis]) high[axis] = x;
-      }
+export function sample(motion) {
+  const { engines, count } = motion;
+  const calm = engines.filter((engine) => engine.diverged === null && engine.last > 0);
+  const points = [];
+  for (const engine of calm.length ? calm : engines) {
+    const frames = calm.length ? engine.last : Math.min(1, engine.last);
+    const each = Math.max(1, Math.floor(Math.sqrt((count * frames * engines.length) / 4000)));
+    for (let frame = 0; frame < frames; frame += count < each ? each * each : each) {
+      for (let i = frame % Math.min(each, count); i < count; i += each) points.push(placeOf(engine, count, frame, i));
     }
-  };
-  for (const engine of calm) widen(engine, engine.last);
-  if (!calm.length) for (const engine of motion.engines) widen(engine, Math.min(1, engine.last));
-  if (!(low[0] <= high[0])) return [[-1, -1, -1], [1, 1, 1]];
-  return [/** @type {Vec3} */ (low), /** @type {Vec3} */ (high)];
+  }
+  return points.length ? points : [[-1, -1, -1], [1, 1, 1]];
 }
 
 /**

@@ -1,7 +1,7 @@
 // One picture of the motion: obstacles, then the truth as a pale ghost, then each engine.
 
 import { pixel, strainScale, strainStep } from "./colours.js";
-import { frameAt, extent, placeOf, placesAt, strain, usualStrain } from "./motion.js";
+import { frameAt, placeOf, placesAt, sample, strain, usualStrain } from "./motion.js";
 import { wires } from "./obstacles.js";
 import { mix, Raster } from "./raster.js";
 
@@ -29,21 +29,30 @@ const FEW = 3000;
 /** Particles are drawn as balls when there are few, or where they are large. */
 const FEW_BALLS = 600;
 const TRAILS = 12;
+const SHADES = 24;
+/** Where the light comes from, of length 1. */
+const LAMP = [0.48, -0.36, 0.8];
 
 export class Picture {
   /** @param {Motion} motion @param {Camera} camera */
   constructor(motion, camera) {
     this.motion = motion;
     this.camera = camera;
-    this.box = extent(motion);
     this.most = usualStrain(motion);
     this.places = new Float32Array(3 * motion.count);
     this.screen = new Float32Array(3 * motion.count);
-    const [low, high] = this.box;
+    /** What the view has to hold. */
+    this.points = sample(motion);
+    const [low, high] = box(this.points);
     const middle = /** @type {Vec3} */ (low.map((x, axis) => (x + high[axis]) / 2));
     const reach = 0.75 * Math.hypot(...low.map((x, axis) => high[axis] - x)) || 1;
     this.wires = motion.obstacles.map((shape) => wires(shape, middle, reach));
-    this.stretch(reach);
+    // Obstacles not much larger than the motion belong into the view.
+    this.wires.forEach((points, k) => {
+      const [from, to] = box(points);
+      const small = from.every((x, axis) => to[axis] - x < 3 * reach);
+      if (small && motion.obstacles[k].shape !== "plane") this.points.push(...points);
+    });
     const moving = Array.from({ length: motion.count }, (_, i) => i).filter((i) => !motion.fixed.includes(i));
     const every = Math.max(1, Math.ceil(moving.length / TRAILS));
     this.traced = moving.filter((_, k) => k % every === (every >> 1));
@@ -51,24 +60,9 @@ export class Picture {
     /** @type {Choice} */
     this.choice = {
       on: new Set(motion.engines.map((engine) => engine.id)),
-      apart: false, strain: false, trails: motion.count <= 20, obstacles: true,
+      apart: this.crowded(), strain: false, trails: motion.count <= 20, obstacles: true,
       chosen: null, dark: false, paper: "#ffffff",
     };
-  }
-
-  /** Obstacles not much larger than the motion belong into the view. @param {number} reach */
-  stretch(reach) {
-    const [low, high] = this.box;
-    this.motion.obstacles.forEach((shape, k) => {
-      if (shape.shape === "plane" || !this.wires[k].length) return;
-      const sides = [0, 1, 2].map((axis) => this.wires[k].map((point) => point[axis]));
-      const ends = sides.map((side) => side.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]));
-      if (ends.some(([a, b]) => b - a > 3 * reach)) return;
-      ends.forEach(([a, b], axis) => {
-        low[axis] = Math.min(low[axis], a);
-        high[axis] = Math.max(high[axis], b);
-      });
-    });
   }
 
   /** The engines to be drawn, the highlighted one last, on top. */
@@ -85,7 +79,8 @@ export class Picture {
     const ghosts = shown.filter((engine) => engine.truth);
     const order = this.motion.engines.filter((engine) => shown.includes(engine) && !engine.truth);
     if (!this.choice.apart || order.length < 2) return [{ panel: { left: 0, top: 0, right: width, bottom: height }, engines: shown }];
-    const [columns, rows] = split(order.length, width / height);
+    const { low, high } = this.camera.reach(this.points);
+    const [columns, rows] = split(order.length, width / height, (high[0] - low[0]) / (high[1] - low[1]));
     return order.map((engine, k) => {
       const [column, row] = [k % columns, Math.floor(k / columns)];
       const panel = {
@@ -96,9 +91,16 @@ export class Picture {
     });
   }
 
+  /** Whether engines on top of each other would hide each other: on a line, or a dense cloth. */
+  crowded() {
+    const [low, high] = box(this.points);
+    const sizes = low.map((x, axis) => high[axis] - x).sort((a, b) => b - a);
+    return this.motion.springs.length / 2 > FEW || !(sizes[1] > 0.02 * sizes[0]);
+  }
+
   fit() {
     const { panel } = this.panels()[0];
-    this.camera.fit(this.box, panel.right - panel.left, panel.bottom - panel.top);
+    this.camera.fit(this.points, panel.right - panel.left, panel.bottom - panel.top);
   }
 
   /** @param {number} time seconds */
@@ -138,10 +140,13 @@ export class Picture {
     camera.project(places, count, panel, screen);
     const byStrain = choice.strain && !engine.truth && (choice.chosen ?? engine.id) === engine.id;
     const scale = /** @type {Uint32Array} */ (this.scale);
+    const shades = this.shades(colour);
     for (let s = 0; s < springs.length; s += 2) {
       const i = springs[s];
       const j = springs[s + 1];
-      const ink = byStrain ? scale[strainStep(strain(places, count, i, j, rest[s >> 1]), this.most)] : colour;
+      let ink = colour;
+      if (byStrain) ink = scale[strainStep(strain(places, count, i, j, rest[s >> 1]), this.most)];
+      else if (!few) ink = shades[this.shade(i, j)];
       if (few) raster.thick(screen[i], screen[count + i], screen[j], screen[count + j], wide, ink);
       else raster.thin(screen[i], screen[count + i], screen[j], screen[count + j], ink);
     }
@@ -152,11 +157,31 @@ export class Picture {
     this.drawBalls(engine, colour);
   }
 
+  /** From pale to full. @param {number} colour */
+  shades(colour) {
+    return Uint32Array.from({ length: SHADES }, (_, k) => mix(this.paper ?? 0, colour, 0.3 + (0.7 * k) / (SHADES - 1)));
+  }
+
+  /**
+   * How dark a spring of a dense cloth is: as a hair under a lamp, by its angle to the light. It makes folds visible.
+   * @param {number} i @param {number} j
+   */
+  shade(i, j) {
+    const { places, motion: { count } } = this;
+    const x = places[i] - places[j];
+    const y = places[count + i] - places[count + j];
+    const z = places[2 * count + i] - places[2 * count + j];
+    const along = LAMP[0] * x + LAMP[1] * y + LAMP[2] * z;
+    const part = (along * along) / (x * x + y * y + z * z);
+    return (Math.sqrt(part) * (SHADES - 0.01)) | 0;
+  }
+
   /** @param {Engine} engine @param {number} colour */
   drawBalls(engine, colour) {
     const { motion: { count, radius, fixed }, screen, raster } = this;
     const size = (/** @type {number} */ i) => screen[2 * count + i] * (typeof radius === "number" ? radius : radius[i] ?? 0);
-    const least = count <= FEW_BALLS ? (count <= 60 ? 4 : 2) * this.wide() : 0;
+    // The truth's balls are larger: a ring of them is seen behind others.
+    const least = count <= FEW_BALLS ? (count <= 60 ? 4 : 2) * (engine.truth ? 1.6 : 1) * this.wide() : 0;
     const [paper, rim] = [this.paper ?? 0, this.wide()];
     for (let i = 0; i < count; i++) {
       const pixels = Math.max(size(i), least);
@@ -227,17 +252,32 @@ export class Picture {
   }
 }
 
+/** @param {Vec3[]} points @returns {[Vec3, Vec3]} */
+export function box(points) {
+  const low = /** @type {Vec3} */ ([Infinity, Infinity, Infinity]);
+  const high = /** @type {Vec3} */ ([-Infinity, -Infinity, -Infinity]);
+  for (const point of points) {
+    for (let axis = 0; axis < 3; axis++) {
+      low[axis] = Math.min(low[axis], point[axis]);
+      high[axis] = Math.max(high[axis], point[axis]);
+    }
+  }
+  return [low, high];
+}
+
 /**
- * Columns and rows that give each of n panels the largest square.
- * @param {number} n @param {number} aspect width over height @returns {[number, number]}
+ * Columns and rows that show each of n panels largest.
+ * @param {number} n @param {number} aspect width over height of all panels together @param {number} content the same of what is in one
+ * @returns {[number, number]}
  */
-export function split(n, aspect) {
+export function split(n, aspect, content) {
+  const wide = Math.max(0.2, Math.min(5, content)) || 1;
   let best = /** @type {[number, number]} */ ([1, n]);
   let largest = 0;
   for (let columns = 1; columns <= n; columns++) {
     const rows = Math.ceil(n / columns);
-    const side = Math.min(aspect / columns, 1 / rows);
-    if (side > largest * 1.001) [best, largest] = [[columns, rows], side];
+    const height = Math.min(aspect / columns / wide, 1 / rows);
+    if (height > largest * 1.001) [best, largest] = [[columns, rows], height];
   }
   return best;
 }

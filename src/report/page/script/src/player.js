@@ -6,11 +6,14 @@ import { STRAIN } from "./colours.js";
 import { button, choice, element, swatch, tick } from "./dom.js";
 import { linkCamera } from "./hands.js";
 import { frameAt, placeOf } from "./motion.js";
-import { Picture } from "./picture.js";
+import { box, Picture } from "./picture.js";
 import { Raster } from "./raster.js";
 import { events, timeline } from "./timeline.js";
 
 /** @typedef {import("./types").Motion} Motion */
+
+/** The strain's scale with the root in it, as a gradient. */
+const SCALE = [STRAIN[0], `color-mix(in srgb, ${STRAIN[0]}, ${STRAIN[1]}) 37.5%`, STRAIN[1], `color-mix(in srgb, ${STRAIN[2]}, ${STRAIN[1]}) 62.5%`, STRAIN[2]].join();
 
 /** More lines than this are drawn at one pixel of the raster for one of the page, however dense the screen. */
 const MANY = 20000;
@@ -65,7 +68,7 @@ export function buildPlayer(place, motion, clock) {
     refit();
   };
   const home = () => {
-    camera.face(picture.box);
+    camera.face(box(picture.points));
     untouched = true;
     refit();
   };
@@ -92,17 +95,17 @@ export function buildPlayer(place, motion, clock) {
     };
     const notes = events(motion).filter((event) => event.engine === engine)
       .map(({ time, what }) => element("small", {}, ` ${what} at ${seconds(time, duration)}`));
-    const box = tick(true, turn, swatch(engine.colour, engine.dash), engine.name, ...notes);
-    box.dataset.engine = engine.id;
-    return box;
+    const label = tick(true, turn, swatch(engine.colour, engine.dash), engine.name, ...notes);
+    label.dataset.engine = engine.id;
+    return label;
   });
   const scale = element("span", { class: "strain", hidden: true }, `−${percent(picture.most)} `,
-    element("i", { style: `background: linear-gradient(90deg, ${STRAIN.join()})` }), ` +${percent(picture.most)} strain`);
+    element("i", { style: `background: linear-gradient(90deg, ${SCALE})` }), ` +${percent(picture.most)} strain`);
   const colours = choice("Springs", [["engine", "by engine"], ["strain", "by strain"]], "engine", (value) => {
     scale.hidden = value !== "strain";
     set("strain")(value === "strain");
   });
-  const layout = choice("Engines", [["over", "overlaid"], ["apart", "side by side"]], "over", (value) => set("apart")(value === "apart"));
+  const layout = choice("Engines", [["over", "overlaid"], ["apart", "side by side"]], show.apart ? "apart" : "over", (value) => set("apart")(value === "apart"));
     const moved = (/** @type {boolean} */ own) => {
     if (!own) return home();
     untouched = false;
@@ -145,7 +148,7 @@ export function buildPlayer(place, motion, clock) {
   };
   dark.addEventListener("change", dress);
   dress();
-  camera.face(picture.box);
+  camera.face(box(picture.points));
   new ResizeObserver(resize).observe(canvas);
   startInSight(canvas, clock);
 

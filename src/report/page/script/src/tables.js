@@ -77,7 +77,7 @@ export function linkTables() {
     filterable(table);
   }
   // What scrolls sideways can be scrolled by keyboard too.
-  for (const box of document.querySelectorAll(".scroll")) {
+  for (const box of document.querySelectorAll(".scroll, figure")) {
     if (box.scrollWidth > box.clientWidth) box.setAttribute("tabindex", "0");
   }
 }

@@ -26,7 +26,7 @@ export function timeline(motion, clock) {
     const text = `${engine.name}: ${what} at ${seconds(time, duration)}`;
     const mark = button(sign, () => clock.seek(time), { class: "mark", "aria-label": text, "data-tip": text, "data-engine": engine.id });
     mark.style.setProperty("--at", String(frameAt(t, time) / last));
-    mark.style.setProperty("--ink", engine.colour);
+    mark.style.setProperty("--engine", engine.colour);
     return mark;
   });
   clock.listen(() => {
