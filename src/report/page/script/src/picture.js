@@ -30,6 +30,7 @@ const FEW = 3000;
 const FEW_BALLS = 600;
 const TRAILS = 12;
 const SHADES = 24;
+const WHITE = 0xffffffff;
 /** Where the light comes from, of length 1. */
 const LAMP = [0.48, -0.36, 0.8];
 
@@ -188,7 +189,7 @@ export class Picture {
       if (pixels < 1.5) continue;
       raster.disc(screen[i], screen[count + i], pixels, colour);
       // A light spot makes a large ball look round, unless it is a ghost.
-      if (pixels > 6 && !engine.truth) raster.disc(screen[i] - pixels / 3, screen[count + i] - pixels / 3, pixels / 4, mix(colour, paper, 0.5));
+      if (pixels > 6 && !engine.truth) raster.disc(screen[i] - pixels / 3, screen[count + i] - pixels / 3, pixels / 4, mix(colour, WHITE, 0.5));
     }
     if (engine.truth) return;
     for (const i of fixed) {

@@ -36,11 +36,16 @@ export class Raster {
    */
   thin(x0, y0, x1, y1, colour) {
     const { left, right, top, bottom } = this;
-    const inside = x0 >= left && x0 < right && x1 >= left && x1 < right && y0 >= top && y0 < bottom && y1 >= top && y1 < bottom;
+    const across = x0 >= left && x0 < right && x1 >= left && x1 < right;
+    const inside = across && y0 >= top && y0 < bottom && y1 >= top && y1 < bottom;
     if (!inside) {
       const cut = this.cut(x0, y0, x1, y1, 0);
       if (!cut) return;
-      [x0, y0, x1, y1] = cut;
+      // Rounding may leave an end a hair outside.
+      x0 = Math.max(left, Math.min(right, cut[0]));
+      y0 = Math.max(top, Math.min(bottom, cut[1]));
+      x1 = Math.max(left, Math.min(right, cut[2]));
+      y1 = Math.max(top, Math.min(bottom, cut[3]));
     }
     const { pixels, width } = this;
     const dx = x1 - x0;

@@ -26,7 +26,8 @@ export function linkTips() {
   document.addEventListener("pointerdown", (event) => show(event.target, event.clientX, event.clientY));
   document.addEventListener("focusin", (event) => show(event.target));
   document.addEventListener("focusout", hide);
-  document.addEventListener("scroll", hide, { passive: true });
+  // Tab may scroll to what it reaches: the tip goes along.
+  document.addEventListener("scroll", () => show(document.activeElement), { passive: true });
   document.addEventListener("keydown", (event) => event.key === "Escape" && hide());
 
   /** @type {Map<Element, Element[]>} */
