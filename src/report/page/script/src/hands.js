@@ -29,7 +29,11 @@ export function linkCamera(canvas, camera, act) {
       camera.zoom(apart(event.clientX, event.clientY) / apart(before[0], before[1]));
       camera.pan(dx / 2 / side(), dy / 2 / side());
     } else if (event.shiftKey || event.buttons === 2 || event.buttons === 4) camera.pan(dx / side(), dy / side());
-    else camera.orbit((-dx * 3) / side(), (dy * 3) / side());
+    else {
+      // Up and down, a finger scrolls the page until the picture has the focus.
+      const scrolls = event.pointerType === "touch" && document.activeElement !== canvas;
+      camera.orbit((-dx * 3) / side(), scrolls ? 0 : (dy * 3) / side());
+    }
     down.set(event.pointerId, [event.clientX, event.clientY]);
     act(true);
   });

@@ -3,7 +3,8 @@
 /** @param {(engine: string | null) => void} chosen is told of each change */
 export function linkEngines(chosen) {
   const marked = () => /** @type {NodeListOf<HTMLElement | SVGElement>} */ (document.querySelectorAll("[data-engine]"));
-  for (const row of document.querySelectorAll("tr[data-engine]")) row.setAttribute("tabindex", "0");
+  // A row whose cells take the focus needs none of its own.
+  for (const row of document.querySelectorAll("tr[data-engine]:not(:has([data-tip], a, button))")) row.setAttribute("tabindex", "0");
   /** @type {string | null} */
   let now = null;
   const choose = (/** @type {string | null} */ engine) => {

@@ -116,7 +116,11 @@ export class Picture {
     for (const { panel, engines } of panels) {
       raster.clip(panel);
       if (choice.obstacles) this.drawObstacles(panel, frame);
-      for (const engine of engines) this.drawEngine(engine, panel, frame, lines <= FEW);
+      // What is drawn earlier is wider, so that it is seen where engines agree.
+      engines.forEach((engine, k) => {
+        const wider = 1 + 0.4 * (engines.length - 1 - k);
+        this.drawEngine(engine, panel, frame, lines <= FEW, this.wide() * (engine.truth ? Math.max(3, wider) : wider));
+      });
     }
     raster.clip({ left: 0, top: 0, right: raster.width, bottom: raster.height });
     if (panels.length > 1) this.drawBorders(panels.map(({ panel }) => panel));
@@ -130,12 +134,11 @@ export class Picture {
     return mix(this.paper ?? 0, own, chosen !== null && chosen !== engine.id ? 0.25 : pale);
   }
 
-  /** @param {Engine} engine @param {Panel} panel @param {number} frame @param {boolean} few */
-  drawEngine(engine, panel, frame, few) {
+  /** @param {Engine} engine @param {Panel} panel @param {number} frame @param {boolean} few @param {number} wide pixels of a line */
+  drawEngine(engine, panel, frame, few, wide) {
     const { motion, camera, places, screen, raster, choice } = this;
     const { count, springs, rest, rods } = motion;
     const colour = this.colour(engine);
-    const wide = (engine.truth ? 3 : 1) * this.wide();
     if (choice.trails && !engine.truth) this.drawTrails(engine, panel, frame, mix(this.paper ?? 0, colour, 0.6));
     if (!placesAt(engine, count, frame, places)) return;
     camera.project(places, count, panel, screen);
@@ -155,7 +158,7 @@ export class Picture {
       const [i, j] = [rods[s], rods[s + 1]];
       raster.thick(screen[i], screen[count + i], screen[j], screen[count + j], 2 * wide, colour);
     }
-    this.drawBalls(engine, colour);
+    this.drawBalls(engine, colour, wide);
   }
 
   /** From pale to full. @param {number} colour */
@@ -177,12 +180,11 @@ export class Picture {
     return (Math.sqrt(part) * (SHADES - 0.01)) | 0;
   }
 
-  /** @param {Engine} engine @param {number} colour */
-  drawBalls(engine, colour) {
+  /** @param {Engine} engine @param {number} colour @param {number} wide pixels of a line */
+  drawBalls(engine, colour, wide) {
     const { motion: { count, radius, fixed }, screen, raster } = this;
     const size = (/** @type {number} */ i) => screen[2 * count + i] * (typeof radius === "number" ? radius : radius[i] ?? 0);
-    // The truth's balls are larger: a ring of them is seen behind others.
-    const least = count <= FEW_BALLS ? (count <= 60 ? 4 : 2) * (engine.truth ? 1.6 : 1) * this.wide() : 0;
+    const least = count <= FEW_BALLS ? (count <= 60 ? 3.5 : 1.5) * this.wide() + wide : 0;
     const [paper, rim] = [this.paper ?? 0, this.wide()];
     for (let i = 0; i < count; i++) {
       const pixels = Math.max(size(i), least);

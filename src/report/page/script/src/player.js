@@ -140,7 +140,7 @@ export function buildPlayer(place, motion, clock) {
     else return;
     event.preventDefault();
   });
-  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const dark = matchMedia("screen and (prefers-color-scheme: dark)");
   const dress = () => {
     show.dark = dark.matches;
     show.paper = getComputedStyle(place).getPropertyValue("--paper").trim() || show.paper;

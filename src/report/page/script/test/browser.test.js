@@ -121,7 +121,7 @@ test("the clock is a line in each figure, and the pointer there moves it", optio
 
 test("pointer and focus highlight an engine everywhere", options, async () => {
   const { page, close } = await open("spring");
-  const row = page.locator("tr[data-engine=rk4]").first();
+  const row = page.locator("tr[data-engine=rk4] td[data-tip]").first();
   for (const act of [() => row.hover(), () => row.focus()]) {
     await page.mouse.move(5, 5);
     await act();
