@@ -135,8 +135,8 @@ export function buildPlayer(place, motion, clock) {
   canvas.addEventListener("keydown", (event) => {
     const frame = frameAt(motion.t, clock.time);
     if (event.key === " ") play.click();
-    else if (event.key === ",") clock.seek(motion.t[Math.max(0, Math.ceil(frame) - 1)]);
-    else if (event.key === ".") clock.seek(motion.t[Math.min(motion.t.length - 1, Math.floor(frame) + 1)]);
+    else if (event.key === ",") clock.seek(motion.t[Math.max(0, Math.ceil(frame) - 1)] ?? clock.start);
+    else if (event.key === ".") clock.seek(motion.t[Math.min(motion.t.length - 1, Math.floor(frame) + 1)] ?? clock.start);
     else return;
     event.preventDefault();
   });

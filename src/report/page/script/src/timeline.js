@@ -20,8 +20,8 @@ export function timeline(motion, clock) {
   const { t } = motion;
   const last = Math.max(1, t.length - 1);
   const duration = clock.end - clock.start;
-  const slider = element("input", { type: "range", min: 0, max: last, step: 1, value: 0, "aria-label": "Time" });
-  slider.addEventListener("input", () => clock.seek(t[Number(slider.value)]));
+  const slider = element("input", { type: "range", min: 0, max: Math.max(0, t.length - 1), step: 1, value: 0, "aria-label": "Time" });
+  slider.addEventListener("input", () => clock.seek(t[Number(slider.value)] ?? clock.start));
   const marks = events(motion).map(({ engine, time, what, sign }) => {
     const text = `${engine.name}: ${what} at ${seconds(time, duration)}`;
     const mark = button(sign, () => clock.seek(time), { class: "mark", "aria-label": text, "data-tip": text, "data-engine": engine.id });

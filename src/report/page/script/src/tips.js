@@ -8,7 +8,9 @@ export function linkTips() {
   tip.hidden = true;
   document.body.append(tip);
 
-  const hide = () => (tip.hidden = true);
+  const hide = () => {
+    tip.hidden = true;
+  };
   /** @param {EventTarget | null} target @param {number} [x] @param {number} [y] pixels of the window */
   const show = (target, x, y) => {
     const element = target instanceof Element ? target.closest("[data-tip]") : null;
@@ -20,7 +22,6 @@ export function linkTips() {
     const size = tip.getBoundingClientRect();
     tip.style.left = `${Math.max(4, Math.min(innerWidth - size.width - 4, left + 12))}px`;
     tip.style.top = `${top - size.height - 10 < 4 ? top + 18 : top - size.height - 10}px`;
-    return false;
   };
   document.addEventListener("pointermove", (event) => show(event.target, event.clientX, event.clientY));
   document.addEventListener("pointerdown", (event) => show(event.target, event.clientX, event.clientY));
@@ -28,7 +29,9 @@ export function linkTips() {
   document.addEventListener("focusout", hide);
   // Tab may scroll to what it reaches: the tip goes along.
   document.addEventListener("scroll", () => show(document.activeElement), { passive: true });
-  document.addEventListener("keydown", (event) => event.key === "Escape" && hide());
+  document.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") hide();
+  });
 
   /** @type {Map<Element, Element[]>} */
   const groups = new Map();

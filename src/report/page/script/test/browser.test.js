@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { fixture, launch, missing } from "../tools/chromium.js";
 
@@ -15,13 +16,17 @@ before(async () => {
 after(() => browser?.close());
 
 /** Opens a fixture page; it must ask for nothing and complain of nothing. */
-async function open(name, context = {}) {
+async function open(name, { json, ...context } = {}) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 900 }, reducedMotion: "reduce", ...context });
   const bad = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && bad.push(message.text()));
   page.on("pageerror", (error) => bad.push(String(error)));
   page.on("request", (request) => /^(file|data):/.test(request.url()) || bad.push(request.url()));
-  await page.goto(fixture(name));
+  if (json) {
+    // The page with another playback in it.
+    const html = readFileSync(new URL(fixture(name)), "utf8");
+    await page.setContent(html.replace(/(application\/json">).*?(<\/script>)/s, (_, head, tail) => head + json + tail));
+  } else await page.goto(fixture(name));
   if (context.javaScriptEnabled !== false) await page.waitForSelector("html[data-ready]");
   return { page, close: async () => (assert.deepEqual(bad, []), page.close()) };
 }
@@ -177,6 +182,34 @@ test("nothing is wider than a narrow window, and all is named", options, async (
     }
     await close();
   }
+});
+
+test("a motion of next to nothing, and one that cannot be read", options, async () => {
+  const { page, close } = await open("spring");
+  const html = await page.content();
+  const start = html.indexOf('type="application/json">') + 'type="application/json">'.length;
+  const playback = JSON.parse(html.slice(start, html.indexOf("</script>", start)));
+  const none = { count: 0, ends: "", rest: "" };
+  const [truth] = playback.engines;
+  const bare = { ...playback, springs: none, particles: { count: 0, fixed: [], radius: 0 }, engines: [] };
+  const variants = {
+    still: { ...playback, t: [0], engines: [{ ...truth, last: 0, positions: "AwA=" }] },
+    empty: { ...bare, t: [] },
+    free: { ...bare, t: [0, 1], obstacles: [{ shape: "plane", normal: [0, 0, 1], offset: 0 }] },
+    broken: { ...playback, engines: [{ ...truth, positions: "AwA=" }] },
+  };
+  for (const [name, variant] of Object.entries(variants)) {
+    const { page: other, close: shut } = await open("spring", { json: JSON.stringify(variant) });
+    if (name === "broken") assert.match(await other.locator("#player").textContent(), /cannot be played: expected/);
+    else {
+      await other.locator("canvas").focus();
+      for (const key of [" ", ".", ",", "f"]) await other.keyboard.press(key);
+      assert.equal(await time(other), 0, name);
+    }
+    assert.ok(await other.getByRole("searchbox").isVisible());
+    await shut();
+  }
+  await close();
 });
 
 test("tables and figures are there without the script", options, async () => {

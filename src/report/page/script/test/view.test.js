@@ -78,6 +78,7 @@ test("no line leaves its panel, wherever its ends are", () => {
     const [a, b, reach] = [k * 2.4, k * 1.7, 2 ** (k % 22)];
     const ends = [20 + reach * Math.cos(a), 12 + reach * Math.sin(a), 20 + 7 * Math.cos(b), 12 - reach * Math.sin(b)];
     raster.thin(...ends, 0xff000001);
+    raster.thin(ends[1] + 8, ends[0] - 8, ends[3] + 8, ends[2] - 8, 0xff000001);
     if (k % 10 === 0) raster.thick(...ends, 3, 0xff000001);
   }
   raster.disc(10, 5, 6, 0xff000001);
