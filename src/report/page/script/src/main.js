@@ -10,15 +10,16 @@ import { linkTips } from "./tips.js";
 
 async function start() {
   linkTables();
+  const say = linkTips();
   const data = document.getElementById("playback");
   const place = document.getElementById("player");
   /** @type {(engine: string | null) => void} */
   let highlight = () => {};
-  if (data && place) {
+  const playback = data && place ? JSON.parse(data.textContent ?? "") : null;
+  const clock = playback ? new Clock(playback.t) : null;
+  linkFigures(clock, say);
+  if (place && clock) {
     try {
-      const playback = JSON.parse(data.textContent ?? "");
-      const clock = new Clock(playback.t);
-      linkFigures(clock);
       const player = buildPlayer(place, await decode(playback), clock);
       highlight = player.highlight;
       Object.assign(window, { springcheckPlayer: player });
@@ -27,7 +28,6 @@ async function start() {
     }
   }
   linkEngines((engine) => highlight(engine));
-  linkTips();
   document.documentElement.dataset.ready = "";
 }
 

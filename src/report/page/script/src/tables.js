@@ -24,8 +24,18 @@ export function order(values, down) {
   });
 }
 
+/** Seconds of the units of time that tables use. @type {Record<string, number>} */
+const SECONDS = { ns: 1e-9, "µs": 1e-6, ms: 1e-3, s: 1, min: 60, h: 3600 };
+
+/** The number of a text that begins with one, times of different units in seconds, else the text. @param {string} text */
+export function quantity(text) {
+  const found = /^(-?[\d.]+(?:e[+-]?\d+)?)(?:\s+(\S+))?/.exec(text.trim());
+  if (!found || Number.isNaN(Number(found[1]))) return text.trim();
+  return String(Number(found[1]) * (SECONDS[found[2] ?? ""] ?? 1));
+}
+
 /** @param {HTMLTableCellElement | undefined} cell */
-const valueOf = (cell) => (cell ? cell.dataset.value ?? (cell.textContent ?? "").trim() : "");
+const valueOf = (cell) => (cell ? cell.dataset.value ?? quantity(cell.textContent ?? "") : "");
 
 /** @param {HTMLTableElement} table */
 function sortable(table) {

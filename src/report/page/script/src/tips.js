@@ -1,6 +1,7 @@
 // Exact values on hover and on focus. The arrows go from value to value of one figure or table,
 // so that Tab passes each of them in one step.
 
+/** @returns {(text: string | null, event: PointerEvent) => void} says a text where the pointer is, or nothing */
 export function linkTips() {
   const tip = document.createElement("div");
   tip.id = "tip";
@@ -8,20 +9,25 @@ export function linkTips() {
   tip.hidden = true;
   document.body.append(tip);
 
+  /** @param {string} text @param {number} left @param {number} top pixels of the window */
+  const put = (text, left, top) => {
+    tip.textContent = text;
+    tip.hidden = false;
+    const size = tip.getBoundingClientRect();
+    tip.style.left = `${Math.max(4, Math.min(innerWidth - size.width - 4, left + 12))}px`;
+    tip.style.top = `${top - size.height - 10 < 4 ? top + 18 : top - size.height - 10}px`;
+  };
+  /** Whether a figure says values where the pointer is. */
+  let said = false;
   const hide = () => {
     tip.hidden = true;
   };
   /** @param {EventTarget | null} target @param {number} [x] @param {number} [y] pixels of the window */
   const show = (target, x, y) => {
     const element = target instanceof Element ? target.closest("[data-tip]") : null;
-    if (!element) return hide();
-    tip.textContent = element.getAttribute("data-tip");
-    tip.hidden = false;
+    if (!element) return said ? undefined : hide();
     const box = element.getBoundingClientRect();
-    const [left, top] = [x ?? box.left + box.width / 2, y ?? box.top];
-    const size = tip.getBoundingClientRect();
-    tip.style.left = `${Math.max(4, Math.min(innerWidth - size.width - 4, left + 12))}px`;
-    tip.style.top = `${top - size.height - 10 < 4 ? top + 18 : top - size.height - 10}px`;
+    put(element.getAttribute("data-tip") ?? "", x ?? box.left + box.width / 2, y ?? box.top);
   };
   document.addEventListener("pointermove", (event) => show(event.target, event.clientX, event.clientY));
   document.addEventListener("pointerdown", (event) => show(event.target, event.clientX, event.clientY));
@@ -61,4 +67,10 @@ export function linkTips() {
       next.focus();
     });
   }
+
+  return (text, event) => {
+    said = text !== null;
+    if (text === null) hide();
+    else put(text, event.clientX, event.clientY);
+  };
 }
