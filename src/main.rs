@@ -3,8 +3,8 @@
 use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 use springcheck::verbs::cli::{interrupt, note, output};
 use springcheck::verbs::{
-    check, compare, completions, cost, expand, explain, init, list, merge, rest, run, schema, show,
-    stability,
+    check, compare, completions, cost, expand, explain, init, list, merge, report, rest, run,
+    schema, show, stability,
 };
 use std::process::ExitCode;
 
@@ -71,6 +71,13 @@ enum Verb {
         "cost scene.yml --timestep 0.04,0.02,0.01"
     ))]
     Cost(cost::Args),
+    /// One page of a scene: what runs, how large a step may be, what accuracy costs; and an index of several.
+    #[command(after_help = examples!(
+        "report scenes/pa1/scene01.yml --open"
+        "report scenes/contact"
+        "report scene.yml --output pages --budget 2s"
+    ))]
+    Report(report::Args),
     /// Where a scene comes to rest, how it oscillates about that, and what refining its objects does.
     #[command(after_help = examples!(
         "rest scenes/string/hanging.yml"
@@ -168,6 +175,7 @@ fn main() -> ExitCode {
         Verb::Check(args) => check::check(&args, cli.quiet),
         Verb::Stability(args) => stability::stability(&args, cli.quiet),
         Verb::Cost(args) => cost::cost(&args, cli.quiet),
+        Verb::Report(args) => report::report(&args, cli.quiet),
         Verb::Rest(args) => rest::rest(&args, cli.quiet),
         Verb::Show(args) => show::show(&args, cli.quiet),
         Verb::Merge(args) => merge::merge(&args),

@@ -100,6 +100,12 @@ impl Shape {
         }
     }
 
+    /// The directions of a box's sides under a rotation: an axis of the length of the angle, rad.
+    pub fn sides(rotation: [f64; 3]) -> [[f64; 3]; 3] {
+        let rotation = Rotation::from_scaled_axis(Vector::from(rotation));
+        [Vector::X, Vector::Y, Vector::Z].map(|side| (rotation * side).into())
+    }
+
     /// A triangle between three corners, m.
     pub fn triangle(corners: [[f64; 3]; 3]) -> Self {
         let [a, b, c] = corners.map(Vector::from);

@@ -66,7 +66,7 @@ pub const FORMATS: &[Format] = &[
         id: "html",
         extension: "html",
         file: true,
-        render: |_, reports| page::render(&reports.iter().map(article).collect::<Vec<_>>()),
+        render: page,
     },
     Format {
         id: "junit",
@@ -87,12 +87,21 @@ pub const FORMATS: &[Format] = &[
     },
 ];
 
+/// The page of these reports, which has everything in it.
+pub fn page(tool: &Tool, reports: &[Report]) -> String {
+    let articles: Vec<Article> = reports.iter().map(article).collect();
+    page::render(tool, &articles)
+}
+
 /// A report on a page.
 fn article(report: &Report) -> Article {
     Article {
         title: report.header.scene.name.clone(),
+        part: report.title(),
         markdown: report.markdown(),
-        figures: report.svg(),
+        figures: report.drawn(Chart::draw_linked),
+        engines: run::rows(report),
+        motion: run::shown(report),
     }
 }
 
@@ -172,6 +181,18 @@ impl Report {
             Body::Stability { .. } => "stability",
             Body::Cost { .. } => "cost",
             Body::Rest { .. } => "rest",
+        }
+    }
+
+    /// What was done with the scene, as a title.
+    pub fn title(&self) -> &'static str {
+        match &self.body {
+            Body::Run { .. } => "Run",
+            Body::Compare { .. } => "Comparison",
+            Body::Check { .. } => "Check",
+            Body::Stability { .. } => "Stability",
+            Body::Cost { .. } => "Cost",
+            Body::Rest { .. } => "Rest",
         }
     }
 
@@ -259,7 +280,11 @@ impl Report {
 
     /// The figures as files: name and SVG.
     pub fn svg(&self) -> Vec<(&'static str, String)> {
-        let drawn = self.charts().map(|(file, _, chart)| (file, chart.draw()));
+        self.drawn(Chart::draw)
+    }
+
+    fn drawn(&self, draw: fn(Chart) -> String) -> Vec<(&'static str, String)> {
+        let drawn = self.charts().map(|(file, _, chart)| (file, draw(chart)));
         drawn.collect()
     }
 

@@ -16,6 +16,7 @@ pub mod formats;
 pub mod init;
 pub mod list;
 pub mod merge;
+pub mod report;
 pub mod rest;
 pub mod run;
 pub mod schema;
@@ -204,7 +205,9 @@ impl Report {
             truth: None,
             plot: None,
             plane: [0, 0],
+            phase: None,
             fixed: Vec::new(),
+            playback: None,
         };
         match self.series() {
             Some(Series::Curves(series)) => series,

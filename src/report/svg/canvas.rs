@@ -76,9 +76,47 @@ pub const FAINT: &str = "#6b6b6b";
 #[derive(Default)]
 pub struct Canvas {
     body: String,
+    /// For a page, whose script links what stands for one engine and reads the values of lines.
+    pub linked: bool,
+    /// Attributes of the whole drawing.
+    pub attributes: String,
 }
 
+/// The values of a line that a page shows, at most.
+const VALUES: usize = 240;
+
 impl Canvas {
+    /// Begins what stands for this engine, with the values it shows.
+    pub fn open(&mut self, engine: Option<&str>, values: &[[f64; 2]]) {
+        let Some(engine) = engine.filter(|_| self.linked) else {
+            return;
+        };
+        let stride = values.len().div_ceil(VALUES).max(1);
+        let mut kept: Vec<String> = values
+            .iter()
+            .step_by(stride)
+            .map(|[x, y]| format!("{x:.5e} {y:.5e}"))
+            .collect();
+        if let Some([x, y]) = values.last().filter(|_| values.len() % stride != 1) {
+            kept.push(format!("{x:.5e} {y:.5e}"));
+        }
+        let values = match &kept[..] {
+            [] => String::new(),
+            kept => format!(r#" data-values="{}""#, kept.join(",")),
+        };
+        self.push(&format!(
+            r#"<g data-engine="{}"{values}>"#,
+            attribute(engine)
+        ));
+    }
+
+    /// Ends what [`open`](Self::open) began.
+    pub fn close(&mut self, engine: Option<&str>) {
+        if self.linked && engine.is_some() {
+            self.push("</g>");
+        }
+    }
+
     pub fn line(&mut self, from: [f64; 2], to: [f64; 2], colour: &str, width: f64) {
         let [x1, y1] = from.map(px);
         let [x2, y2] = to.map(px);
@@ -180,9 +218,9 @@ impl Canvas {
     /// The whole file. Its background is white, so that it shows on dark pages too.
     pub fn finish(self, width: f64, height: f64, title: &str) -> String {
         let (width, height) = (px(width.ceil()), px(height.ceil()));
-        let (title, body) = (escape(title), self.body);
+        let (title, body, more) = (escape(title), self.body, self.attributes);
         format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" role="img" font-family="Helvetica, Arial, sans-serif">
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" role="img" font-family="Helvetica, Arial, sans-serif"{more}>
 <title>{title}</title>
 <rect width="{width}" height="{height}" fill="{WHITE}"/>
 {body}</svg>
@@ -195,6 +233,11 @@ impl Canvas {
 pub fn px(value: f64) -> String {
     // Adding 0 turns -0 into 0.
     ((10.0 * value).round() / 10.0 + 0.0).to_string()
+}
+
+/// Text escaped for an attribute.
+pub fn attribute(text: &str) -> String {
+    escape(text).replace('"', "&quot;")
 }
 
 /// Text escaped for XML.

@@ -3,7 +3,7 @@
 
 use super::WIDTH;
 use super::axis::ChartAxis;
-use super::canvas::{Align, Canvas, FAINT, INK};
+use super::canvas::{Align, Canvas, FAINT, INK, attribute};
 use super::key::{LegendEntry, Look, SWATCH};
 use super::marks::{Anchor, Frame, Mark, Window};
 
@@ -36,6 +36,8 @@ pub struct Chart {
     pub own_y: bool,
     /// The text below everything; may be empty.
     pub note: String,
+    /// Whether x is the time of all panels, which a page marks on the clock of its player.
+    pub over_time: bool,
 }
 
 /// Marks on two axes.
@@ -61,14 +63,26 @@ pub struct Panel {
 
 impl Chart {
     /// The SVG file.
-    pub fn draw(mut self) -> String {
+    pub fn draw(self) -> String {
+        self.drawn(false)
+    }
+
+    /// The same for a page whose script links engines and values.
+    pub fn draw_linked(self) -> String {
+        self.drawn(true)
+    }
+
+    fn drawn(mut self, linked: bool) -> String {
         self.legend
             .retain(|key| self.panels.iter().any(|panel| panel.shows(key)));
         for panel in &mut self.panels {
             let keys = std::mem::take(&mut panel.keys);
             panel.keys = keys.into_iter().filter(|key| panel.shows(key)).collect();
         }
-        let mut canvas = Canvas::default();
+        let mut canvas = Canvas {
+            linked,
+            ..Canvas::default()
+        };
         canvas.text([LEFT, 24.0], Align::Start, 15.0, INK, &self.title);
         let mut top = self.legend(&mut canvas);
         let columns = self.columns.max(1);
@@ -127,6 +141,9 @@ impl Chart {
             let is_last = (row + 1) * columns >= stacks.len();
             top = end + if columns == 1 || is_last { BELOW } else { 12.0 };
         }
+        if linked && self.over_time {
+            canvas.attributes = self.clock(&titled);
+        }
         for w in titled {
             let [x, y] = [(w.left + w.right) / 2.0, (w.top + w.bottom) / 2.0];
             let (below, beside) = ([x, w.bottom + 34.0], [w.left - 66.0, y]);
@@ -138,6 +155,29 @@ impl Chart {
             top += 16.0;
         }
         canvas.finish(WIDTH, top + 2.0, &self.title)
+    }
+
+    /// Where the time is along x, for a page: nothing where panels differ in that.
+    fn clock(&self, windows: &[Window]) -> String {
+        let ([first, ..], [w, ..]) = (&self.panels[..], windows) else {
+            return String::new();
+        };
+        let [from, to] = first.axes[0].range;
+        if self
+            .panels
+            .iter()
+            .any(|panel| panel.axes[0].range != [from, to])
+        {
+            return String::new();
+        }
+        let bottom = windows.iter().map(|w| w.bottom).fold(w.bottom, f64::max);
+        format!(
+            r#" data-time="{from},{to},{},{}" data-top="{}" data-bottom="{bottom}" data-value="{}""#,
+            w.left,
+            w.right,
+            w.top,
+            attribute(&self.titles[1])
+        )
     }
 
     /// Draws the legend and returns the top of the panels, pixels.

@@ -10,6 +10,8 @@ pub const CHARACTER: f64 = 6.9;
 pub struct LegendEntry {
     pub text: String,
     pub look: Look,
+    /// The engine it names, by its id on a page.
+    pub engine: Option<String>,
 }
 
 /// The sign before a text that shows what it names.
@@ -26,8 +28,17 @@ pub enum Look {
 
 impl LegendEntry {
     pub fn new(text: impl Into<String>, look: Look) -> LegendEntry {
-        let text = text.into();
-        LegendEntry { text, look }
+        LegendEntry {
+            text: text.into(),
+            look,
+            engine: None,
+        }
+    }
+
+    /// The same, of this engine.
+    #[must_use]
+    pub fn of(self, engine: Option<String>) -> LegendEntry {
+        LegendEntry { engine, ..self }
     }
 
     /// Draws the look within `wide` pixels from `at` on, and the text after it.
@@ -35,6 +46,7 @@ impl LegendEntry {
         let [x, y] = at;
         let (middle, piece) = ([x + wide / 2.0, y], format!("M{x:.1} {y:.1}h{wide}"));
         let mut colour = INK;
+        canvas.open(self.engine.as_deref(), &[]);
         match self.look {
             Look::Remark => colour = FAINT,
             Look::Line(stroke) => canvas.path(&piece, stroke),
@@ -47,6 +59,7 @@ impl LegendEntry {
         }
         let at = [x + wide + 6.0, y + 4.0];
         canvas.text(at, Align::Start, 12.0, colour, &self.text);
+        canvas.close(self.engine.as_deref());
     }
 
     /// Width of the text with the gaps before and after it, pixels.

@@ -46,6 +46,8 @@ pub struct Polyline {
     pub end: Option<Symbol>,
     /// The label beside the panel, at the height of the last point inside.
     pub label: Option<LegendEntry>,
+    /// The engine it is about, by its id on a page.
+    pub engine: Option<String>,
 }
 
 impl Polyline {
@@ -58,6 +60,7 @@ impl Polyline {
             wild: false,
             end: None,
             label: None,
+            engine: None,
         }
     }
 }
@@ -222,11 +225,13 @@ impl Frame {
             [only] if w.holds(only) => (dot(only), Some(only)),
             ref pixels => path(pixels.windows(2).map(|pair| [pair[0], pair[1]]), w),
         };
+        canvas.open(line.engine.as_deref(), &line.points);
         canvas.path(&data, line.stroke);
         let arrives = end == Some(last);
         if let Some(symbol) = line.end.filter(|_| arrives) {
             canvas.symbol(last, symbol);
         }
+        canvas.close(line.engine.as_deref());
         Some(Anchor {
             point: w.clamped(end.unwrap_or(last)),
             led: arrives || end.is_some_and(|[x, _]| x > w.right - 3.0),

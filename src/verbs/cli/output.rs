@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 
 /// The format of tables for people, with files beside them.
 const HUMAN: &str = "human";
+/// The format that has its figures in it.
+const PAGE: &str = "html";
 /// The format of a line a report.
 const LINES: &str = "jsonl";
 
@@ -50,7 +52,7 @@ impl Output {
 
     /// Whether figures are wanted: in files, or as links.
     pub fn draws(&self) -> bool {
-        self.stated().is_some() || ["markdown", "html"].contains(&self.format.as_str())
+        self.stated().is_some() || ["markdown", PAGE].contains(&self.format.as_str())
     }
 
     /// The folder that `--output` states.
@@ -76,6 +78,22 @@ impl Output {
         print(&rendered(&self.format, tool, reports)?)
     }
 
+    /// Whether a page is made: among the files of a folder, or on stdout.
+    pub fn plays(&self, place: Option<&Place>) -> bool {
+        place.is_some() || self.format == PAGE
+    }
+
+    /// Writes the report to its folder, and returns it with the result of that: where writing fails, the report is not
+    /// lost. Without a folder or a page there are no figures, so the report loses its series and nothing links to them.
+    pub fn written(&self, report: Report, place: Option<&Place>) -> (Report, anyhow::Result<()>) {
+        let report = match self.plays(place) {
+            true => report,
+            false => report.without_series(),
+        };
+        let written = place.map_or(Ok(()), |place| place.write(&Tool::this(), &report));
+        (report, written)
+    }
+
     /// Writes the report to its folder and prints it, also where it could not be written.
     ///
     /// # Errors
@@ -87,7 +105,7 @@ impl Output {
         otherwise: &str,
         quiet: bool,
     ) -> anyhow::Result<Report> {
-        let (report, saved) = written(report, place.as_ref());
+        let (report, saved) = self.written(report, place.as_ref());
         // The path of a report is not shown where the report could not be written.
         let place = place.filter(|_| saved.is_ok());
         self.print_one(&report, place.as_ref(), otherwise, quiet)?;
@@ -144,16 +162,6 @@ pub fn print(text: &str) -> anyhow::Result<bool> {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
         other => other.context("cannot write to stdout").map(|()| true),
     }
-}
-
-/// Writes the report to its folder, and returns it with the result of that: where writing fails, the report is not
-/// lost. Without a folder there are no figures, so the report loses its series and nothing links to them.
-pub fn written(report: Report, place: Option<&Place>) -> (Report, anyhow::Result<()>) {
-    let Some(place) = place else {
-        return (report.without_series(), Ok(()));
-    };
-    let written = place.write(&Tool::this(), &report);
-    (report, written)
 }
 
 /// The table and its verdict, then the report's path if it has a folder.

@@ -91,11 +91,25 @@ impl Place {
         Ok(())
     }
 
-    fn put(&self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
-        let path = self.folder.join(name);
-        let refusal = || format!("cannot write {}", path.display());
-        Target::of(&path).with_context(refusal)?.put(bytes)
+    /// Writes the page that a browser shows of the folder; returns its path.
+    pub fn write_page(&self, page: &str) -> anyhow::Result<PathBuf> {
+        let path = self.folder.join(INDEX);
+        put(&path, page.as_bytes())?;
+        Ok(path)
     }
+
+    fn put(&self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
+        put(&self.folder.join(name), bytes)
+    }
+}
+
+/// The page that a browser shows of a folder.
+pub const INDEX: &str = "index.html";
+
+/// Writes a whole file, or nothing.
+pub fn put(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let refusal = || format!("cannot write {}", path.display());
+    Target::of(path).with_context(refusal)?.put(bytes)
 }
 
 /// The path without `..` and `.`.

@@ -100,14 +100,15 @@ pub fn compare(args: &Args, quiet: bool) -> anyhow::Result<ExitCode> {
     let terminal = Terminal::new(quiet);
     let rows = Arc::new(rows);
     let choice = choice(&rows, &name, args.truth);
-    let plan = Plan::new(&scene, &choice).expecting(false, &Cache::new());
+    let mut plan = Plan::new(&scene, &choice).expecting(false, &Cache::new());
+    plan.played = args.output.plays(place.as_ref());
     let estimates = plan.estimate();
     let expected = terminal::expected(&estimates);
     terminal.expect(plan.units(), expected, &estimates, "--truth closed");
     let mut report = report(&plan, &rows, &terminal)?;
     report.header.checks.extend(wanted(args, &report));
     drop(terminal);
-    let (report, saved) = output::written(report, place.as_ref());
+    let (report, saved) = args.output.written(report, place.as_ref());
     let place = place.filter(|_| saved.is_ok());
     if args.output.is_human() && !quiet {
         output::print(&output::table(&report, place.as_ref()))?;

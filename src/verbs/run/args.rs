@@ -196,12 +196,13 @@ fn one(
     let terminal = Terminal::new(quiet).saving(files);
     let mut plan = Plan::new(scene, choice).expecting(saving, &Cache::new());
     plan.loads = !args.columns.is_empty();
+    plan.played = args.output.plays(place);
     let estimates = plan.estimate();
     let expected = terminal::expected(&estimates);
     terminal.expect(plan.units(), expected, &estimates, SHORTER);
     let mut report = plan.execute(&terminal)?;
     report.header.advice = next(args, path, &report).into_iter().collect();
-    let (report, written) = output::written(report, place);
+    let (report, written) = args.output.written(report, place);
     let saved = terminal.saved().context("--save");
     Ok((report, saved.and(written)))
 }

@@ -1,6 +1,7 @@
 //! The series from which figures are drawn.
 
 use super::plan::Plan;
+use super::playback::playback;
 use super::record::Record;
 use super::truths::Truths;
 use crate::measure::{EnergySeries, TrueStates};
@@ -22,8 +23,10 @@ pub fn series(
     scale: Option<f64>,
 ) -> RunSeries {
     let scene = plan.scene;
-    let plane = shape::plane(scene.up, [0, 1, 2].map(|axis| extent(scene, records, axis)));
+    let extents = [0, 1, 2].map(|axis| extent(scene, records, axis));
+    let plane = shape::plane(scene.up, extents);
     let drawn = drawn_particles(scene);
+    let phase = portrayed(scene, extents, &drawn);
     let mut curves = Vec::new();
     for (outcome, (record, energy)) in records.iter().zip(energies).enumerate() {
         let Some(trajectory) = &record.trajectory else {
@@ -53,6 +56,14 @@ pub fn series(
             }),
             plot: plotted(scene, || instants.iter().map(|&k| trajectory.x(k))),
             paths: paths(&drawn, plane, || instants.iter().map(|&k| trajectory.x(k))),
+            phase: phase.filter(|_| trajectory.has_velocities()).map_or_else(
+                Vec::new,
+                |[particle, axis]| {
+                    let at = 3 * particle + axis;
+                    let point = |&k: &usize| [trajectory.x(k)[at], trajectory.v(k)[at]];
+                    instants.iter().map(point).collect()
+                },
+            ),
         });
     }
     let timesteps = plan.cases.iter().map(|case| case.label.timestep);
@@ -61,7 +72,7 @@ pub fn series(
         curves,
         truth: truths
             .at(finest)
-            .map(|known| truth(scene, &drawn, plane, known, finest)),
+            .map(|known| truth(scene, &drawn, plane, phase, known, finest)),
         plot: scene.plot.as_ref().map(|plot| PlotAxis {
             label: format!(
                 "particle {}, {} (m)",
@@ -71,17 +82,38 @@ pub fn series(
             y_range: plot.y_range,
         }),
         plane,
+        phase: phase.map(|[particle, axis]| {
+            format!(
+                "particle {}, {}",
+                called(&scene.bodies, particle),
+                ["x", "y", "z"][axis]
+            )
+        }),
         fixed: std::iter::zip(&scene.particles, scene.starts())
             .filter(|(p, _)| p.fixed)
             .map(|(_, start)| plane.map(|axis| start[axis]))
             .collect(),
+        playback: plan
+            .played
+            .then(|| playback(plan, records, truths))
+            .flatten(),
     }
+}
+
+/// The particle and the coordinate of the phase portrait; None where nothing is free.
+fn portrayed(scene: &Scene, extents: [f64; 3], drawn: &[usize]) -> Option<[usize; 2]> {
+    if let Some(plot) = &scene.plot {
+        return Some([plot.particle, plot.dof]);
+    }
+    let widest = (0..3).max_by(|a, b| extents[*a].total_cmp(&extents[*b]))?;
+    Some([*drawn.first()?, widest])
 }
 
 fn truth(
     scene: &Scene,
     drawn: &[usize],
     plane: [usize; 2],
+    phase: Option<[usize; 2]>,
     known: &TrueStates,
     timestep: f64,
 ) -> TruthCurves {
@@ -90,6 +122,11 @@ fn truth(
         t: known.steps.iter().map(|s| *s as f64 * timestep).collect(),
         plot: plotted(scene, states),
         paths: paths(drawn, plane, states),
+        phase: phase.map_or_else(Vec::new, |[particle, axis]| {
+            let at = 3 * particle + axis;
+            let point = |k| [known.states.x(k)[at], known.states.v(k)[at]];
+            (0..known.steps.len()).map(point).collect()
+        }),
     }
 }
 

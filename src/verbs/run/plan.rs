@@ -140,6 +140,8 @@ pub struct Plan<'a> {
     pub choice: Choice,
     /// Whether outcomes state tensions and reactions.
     pub loads: bool,
+    /// Whether the motion is kept for a page that plays it.
+    pub played: bool,
     /// What is done beside the runs, for the progress; nothing until [`Plan::expecting`] says it.
     pub beside: Beside,
 }
@@ -167,6 +169,7 @@ impl<'a> Plan<'a> {
             cases,
             choice: choice.clone(),
             loads: false,
+            played: false,
             beside: Beside::default(),
         }
     }

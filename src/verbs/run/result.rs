@@ -5,6 +5,7 @@ use crate::measure::identify::{Explained, Identity};
 use crate::measure::{
     Constrained, Contact, Deviation, Energy, ErrorSummary, Loads, Momentum, Strain,
 };
+use crate::report::page::playback::Playback;
 use crate::solvers::{Built, SolverKind, Status};
 use crate::verbs::clock::WallTime;
 use schemars::JsonSchema;
@@ -88,8 +89,14 @@ pub struct RunSeries {
     pub plot: Option<PlotAxis>,
     /// The two coordinates (0, 1, 2) trajectories are projected on: the widest, `up` vertical.
     pub plane: [usize; 2],
+    /// The coordinate of the phase portrait, such as `particle 1, z`: that of `plot`, else the one that moves most.
+    #[serde(default)]
+    pub phase: Option<String>,
     /// Fixed particles on that plane, drawn as squares.
     pub fixed: Vec<[f64; 2]>,
+    /// The motion in 3D; None where no page is written, or it would be too large.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub playback: Option<Playback>,
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -118,6 +125,9 @@ pub struct Curves {
     pub plot: Vec<f64>,
     /// A few particles' paths projected on [`RunSeries::plane`]: one polyline each.
     pub paths: Vec<Vec<[f64; 2]>>,
+    /// The coordinate that [`RunSeries::phase`] names and its velocity, m and m/s; empty where velocities are not known.
+    #[serde(default)]
+    pub phase: Vec<[f64; 2]>,
 }
 
 /// Series of the truth over some instants; all finite, equally long.
@@ -129,4 +139,7 @@ pub struct TruthCurves {
     pub plot: Vec<f64>,
     /// The paths of the same particles as in [`Curves`].
     pub paths: Vec<Vec<[f64; 2]>>,
+    /// As in [`Curves`].
+    #[serde(default)]
+    pub phase: Vec<[f64; 2]>,
 }

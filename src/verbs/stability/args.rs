@@ -1,7 +1,6 @@
 //! `springcheck stability SCENE`
 
 use crate::scene::{self, Particle, Scene, limits};
-use crate::solvers;
 use crate::verbs::Report;
 use crate::verbs::cli::flags;
 use crate::verbs::cli::interrupt;
@@ -123,8 +122,7 @@ fn read(args: &Args) -> anyhow::Result<Scene> {
 
 fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> {
     without_timestep(&args.rapier, "searched; leave dt out")?;
-    let mut usual = crate::solvers::methods(&scene.solver.method);
-    usual.extend(solvers::find("rapier"));
+    let usual = StabilityPlan::default_for(scene);
     let map = match &args.vary {
         None => None,
         Some(text) => Some(MapPlan {
@@ -150,7 +148,7 @@ fn plan<'a>(args: &Args, scene: &'a Scene) -> anyhow::Result<StabilityPlan<'a>> 
             &args.engines,
             &args.rapier,
             scene,
-            &usual,
+            &usual.solvers,
         )?,
         timestep,
         map,
@@ -181,7 +179,7 @@ fn count(text: &str) -> Result<u64, String> {
 }
 
 /// How long each engine will take, from its first few steps of the scene.
-fn estimates(plan: &StabilityPlan) -> anyhow::Result<Vec<TimeEstimate>> {
+pub fn estimates(plan: &StabilityPlan) -> anyhow::Result<Vec<TimeEstimate>> {
     let by_row = plan.steps_by_row();
     let rows = by_row.len().max(1) as u64;
     let of_map = plan.steps()?.saturating_sub(by_row.iter().sum()) / rows;

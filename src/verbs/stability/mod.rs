@@ -20,6 +20,7 @@ pub use range::{COUNT, Range, VaryError};
 pub(super) use text::{page, view};
 pub use vary::{VariedKey, Vary};
 
+pub(in crate::verbs) use args::estimates;
 pub use args::{Args, stability};
 pub use result::{
     Admissible, AdmissiblePanel, Largest, LargestFound, LargestRow, MapPanel, Stability,
@@ -30,7 +31,7 @@ use crate::measure::stability::{Effort, Linearised, is_linear};
 use crate::physics::{ParticleSystem, System};
 use crate::report::Header;
 use crate::scene::Scene;
-use crate::solvers::{Solver, Tally};
+use crate::solvers::{self, Solver, Tally};
 use crate::truth::Truth;
 use crate::verbs::session::Session;
 use crate::verbs::{Body, Report, SeriesState, facts};
@@ -51,6 +52,22 @@ pub struct StabilityPlan<'a> {
     /// Stiffnesses, N/m, at which to draw where a step does not enlarge a spring's force; empty for no
     /// picture.
     pub admissible: Vec<f64>,
+}
+
+impl<'a> StabilityPlan<'a> {
+    /// Every method and rapier, at the scene's step, without pictures.
+    pub fn default_for(scene: &'a Scene) -> Self {
+        let mut solvers = solvers::methods(&scene.solver.method);
+        solvers.extend(solvers::find("rapier"));
+        Self {
+            scene,
+            solvers,
+            timestep: scene.solver.timestep,
+            map: None,
+            largest: None,
+            admissible: Vec::new(),
+        }
+    }
 }
 
 /// The linearised scene and its path, which all rows use.

@@ -119,8 +119,8 @@ pub fn page(report: &Report, view: &View) -> String {
     let fault = fault.iter().map(|line| format!("- {}\n", escape(line)));
     [
         opening(view, more),
-        report.images(),
         section("Outcomes", table::markdown(report)),
+        report.images(),
         findings(view),
         section("First fault", fault.collect()),
         section("Where the energy is at the end", ledger::energies(report)),
