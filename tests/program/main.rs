@@ -14,6 +14,7 @@ mod gate;
 #[cfg(unix)] // signals are POSIX's
 mod interrupted;
 mod names;
+mod report;
 mod rest;
 mod run;
 mod schema;

@@ -312,7 +312,7 @@ mod tests {
         let origin = [-1.0, -1.0, -1.0];
         let motion = Motion::new(None, &frames, Grid { origin, unit });
         let steps = unpacked(&motion.positions);
-        let mut q = vec![0; 12];
+        let mut q = [0; 12];
         for (frame, steps) in frames.iter().zip(steps.chunks(12)) {
             for (axis, steps) in steps.chunks(4).enumerate() {
                 let mut along = 0;

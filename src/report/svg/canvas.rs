@@ -77,7 +77,7 @@ pub const FAINT: &str = "#6b6b6b";
 pub struct Canvas {
     body: String,
     /// For a page, whose script links what stands for one engine and reads the values of lines.
-    pub linked: bool,
+    linked: bool,
     /// Attributes of the whole drawing.
     pub attributes: String,
 }
@@ -86,6 +86,14 @@ pub struct Canvas {
 const VALUES: usize = 240;
 
 impl Canvas {
+    /// Empty; `linked` is for a page.
+    pub fn new(linked: bool) -> Self {
+        Self {
+            linked,
+            ..Self::default()
+        }
+    }
+
     /// Begins what stands for this engine, with the values it shows.
     pub fn open(&mut self, engine: Option<&str>, values: &[[f64; 2]]) {
         let Some(engine) = engine.filter(|_| self.linked) else {

@@ -79,10 +79,7 @@ impl Chart {
             let keys = std::mem::take(&mut panel.keys);
             panel.keys = keys.into_iter().filter(|key| panel.shows(key)).collect();
         }
-        let mut canvas = Canvas {
-            linked,
-            ..Canvas::default()
-        };
+        let mut canvas = Canvas::new(linked);
         canvas.text([LEFT, 24.0], Align::Start, 15.0, INK, &self.title);
         let mut top = self.legend(&mut canvas);
         let columns = self.columns.max(1);

@@ -51,6 +51,7 @@ fn refine(report: &Report) -> Option<Chart> {
         own_y: true,
         panels,
         note: note(rest),
+        ..Chart::default()
     })
 }
 

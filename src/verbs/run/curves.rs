@@ -72,7 +72,7 @@ pub fn series(
         curves,
         truth: truths
             .at(finest)
-            .map(|known| truth(scene, &drawn, plane, phase, known, finest)),
+            .map(|known| Box::new(truth(scene, &drawn, plane, phase, known, finest))),
         plot: scene.plot.as_ref().map(|plot| PlotAxis {
             label: format!(
                 "particle {}, {} (m)",
@@ -95,7 +95,7 @@ pub fn series(
             .collect(),
         playback: plan
             .played
-            .then(|| playback(plan, records, truths))
+            .then(|| playback(plan, records, truths).map(Box::new))
             .flatten(),
     }
 }

@@ -35,7 +35,7 @@ pub fn shown(report: &Report) -> Option<Playback<Shown>> {
         Body::Compare { fault, .. } => fault.as_ref().map(|fault| fault.t_s),
         _ => None,
     };
-    let playback = report.run_series().playback.as_ref()?;
+    let playback = report.run_series().playback.as_deref()?;
     Some(playback.map(|motion| {
         let motion = motion.clone();
         let outcome = motion.outcome.and_then(|at| report.outcomes().get(at));
@@ -90,10 +90,11 @@ pub fn playback(plan: &Plan, records: &[Record], truths: &Truths) -> Option<Play
         .filter(|(_, run)| !run.is_empty())
         .collect();
     let end = |run: &Trajectory| run.time(run.len() - 1);
-    let (_, lead) = recorded.iter().max_by(|(_, a), (_, b)| {
-        let by_end = end(a).total_cmp(&end(b));
-        by_end.then(a.len().cmp(&b.len()))
-    })?;
+    let by_end = |a: &Trajectory, b: &Trajectory| {
+        let longer = end(a).total_cmp(&end(b));
+        longer.then(a.len().cmp(&b.len()))
+    };
+    let (_, lead) = *recorded.iter().max_by(|(_, a), (_, b)| by_end(a, b))?;
     let known = truths.at(lead.rows().timestep);
     let frame = 3 * scene.particles.len();
     let most = (MOST / (FEWEST * frame.max(1))).max(1) - usize::from(known.is_some());
@@ -214,7 +215,9 @@ fn grid(
 
 fn bodies(scene: &Scene) -> Bodies {
     let particles = scene.particles.iter().enumerate();
-    let radii: Vec<f64> = scene.particles.iter().map(|p| p.radius).collect();
+    // Where nothing collides a radius is none.
+    let radius = |p: &crate::scene::Particle| if scene.collides() { p.radius } else { 0.0 };
+    let radii: Vec<f64> = scene.particles.iter().map(radius).collect();
     let same = radii.windows(2).all(|pair| pair[0] == pair[1]);
     Bodies {
         count: scene.particles.len(),

@@ -84,7 +84,7 @@ pub struct RunSeries {
     /// The curves of each outcome that recorded anything, in the outcomes' order.
     pub curves: Vec<Curves>,
     /// The truth, up to its horizon.
-    pub truth: Option<TruthCurves>,
+    pub truth: Option<Box<TruthCurves>>,
     /// The axis of the scene's `plot`: its label and range.
     pub plot: Option<PlotAxis>,
     /// The two coordinates (0, 1, 2) trajectories are projected on: the widest, `up` vertical.
@@ -96,7 +96,7 @@ pub struct RunSeries {
     pub fixed: Vec<[f64; 2]>,
     /// The motion in 3D; None where no page is written, or it would be too large.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub playback: Option<Playback>,
+    pub playback: Option<Box<Playback>>,
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -57,6 +57,7 @@ pub fn hostile() -> Report {
             errors: values.into(),
             plot: values.into(),
             paths: vec![vec![values, values], vec![values], vec![]],
+            phase: vec![values, values],
         });
     }
     report.series_mut().curves.push(Curves {
@@ -67,6 +68,7 @@ pub fn hostile() -> Report {
         errors: vec![],
         plot: vec![],
         paths: vec![],
+        phase: vec![],
     });
     // Errors of instants that are not there.
     let mut errors_alone = report.series_mut().curves[0].clone();

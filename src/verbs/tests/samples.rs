@@ -42,6 +42,7 @@ pub fn oscillator(timesteps: &[f64], duration: f64, engines: usize) -> Report {
                 t: run.t,
                 energy: run.energy,
                 errors: Vec::new(),
+                phase: Vec::new(),
                 paths: vec![run.path],
             });
             report.outcomes_mut().push(outcome);

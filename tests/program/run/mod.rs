@@ -50,7 +50,9 @@ fn a_run_prints_a_table_and_writes_a_report() {
     let place = folder.path().join("pa1/scene01");
     let expected = [
         "energy.svg",
+        "energy_error.svg",
         "error.svg",
+        "phase.svg",
         "plot.svg",
         "report.html",
         "report.json",

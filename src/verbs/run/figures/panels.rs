@@ -56,7 +56,7 @@ pub fn by_timestep(
         let title = titled.then(|| format!("h = {} s", words::short(h)));
         Runs {
             title: title.unwrap_or_default(),
-            truth: series.truth.as_ref().map(&truth).unwrap_or_default(),
+            truth: series.truth.as_deref().map(&truth).unwrap_or_default(),
             runs: runs.collect(),
         }
     });

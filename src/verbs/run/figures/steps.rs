@@ -26,7 +26,7 @@ pub fn steps(report: &Report) -> Option<Chart> {
         [] | [_] => Paths::new(),
         [_, later @ ..] => {
             let sizes: Vec<f64> = later.iter().map(|size| size.abs().max(LEAST)).collect();
-            over_time(&run.t[1..], &sizes)
+            over_time(run.t.get(1..).unwrap_or_default(), &sizes)
         }
     };
     let by_timestep = by_timestep(report, |_| Paths::new(), later)?;

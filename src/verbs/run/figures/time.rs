@@ -71,12 +71,17 @@ fn sizes(
             [] | [_] => Paths::new(),
             [_, later @ ..] => {
                 let seen: Vec<f64> = later.iter().map(|size| size.abs().max(least)).collect();
-                over_time(&run.t[1..], &seen)
+                over_time(run.t.get(1..).unwrap_or_default(), &seen)
             }
         },
     )?;
     let mut chart = curves(report, titles, panels, |panel| {
-        let [lo, hi] = panel.shown(1, None);
+        // What ended early may leave the picture, where others did not.
+        let whole = panel
+            .spans(1)
+            .filter(|(o, _)| o.status == Status::Completed);
+        let whole = range(whole.flat_map(|(_, span)| span));
+        let [lo, hi] = whole.unwrap_or_else(|| panel.shown(1, None));
         let lowest = if floor > 0.0 { lo.min(floor) } else { lo };
         ChartAxis {
             scale: Scale::Log,

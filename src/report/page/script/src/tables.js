@@ -29,19 +29,21 @@ const SECONDS = { ns: 1e-9, "µs": 1e-6, ms: 1e-3, s: 1, min: 60, h: 3600 };
 
 /** The number of a text that begins with one, times of different units in seconds, else the text. @param {string} text */
 export function quantity(text) {
-  const found = /^(-?[\d.]+(?:e[+-]?\d+)?)(?:\s+(\S+))?/.exec(text.trim());
-  if (!found || Number.isNaN(Number(found[1]))) return text.trim();
-  return String(Number(found[1]) * (SECONDS[found[2] ?? ""] ?? 1));
+  const found = /^[+±]?(-?[\d.,]+(?:e[+-]?\d+)?)(?:\s+(\S+))?/.exec(text.trim());
+  const number = Number(found?.[1].replaceAll(",", ""));
+  if (!found || Number.isNaN(number)) return text.trim();
+  return String(number * (SECONDS[found[2] ?? ""] ?? 1));
 }
 
 /** @param {HTMLTableCellElement | undefined} cell */
 const valueOf = (cell) => (cell ? cell.dataset.value ?? quantity(cell.textContent ?? "") : "");
 
-/** @param {HTMLTableElement} table */
+/** @param {HTMLTableElement} table @returns {boolean} whether it is one to sort */
 function sortable(table) {
   const body = table.tBodies[0];
   const heads = [...(table.tHead?.rows[0]?.cells ?? [])];
-  if (!body) return;
+  // A table of facts, without titles, is in its order.
+  if (!body || !heads.length || heads.some((head) => !head.textContent?.trim())) return false;
   heads.forEach((head, column) => {
     const button = document.createElement("button");
     button.type = "button";
@@ -55,6 +57,7 @@ function sortable(table) {
       body.append(...order(rows.map((row) => valueOf(row.cells[column])), down).map((i) => rows[i]));
     });
   });
+  return true;
 }
 
 /** Uses the input that stands before the table, or puts one there where the table is long. @param {HTMLTableElement} table */
@@ -83,8 +86,7 @@ function filterable(table) {
 
 export function linkTables() {
   for (const table of /** @type {NodeListOf<HTMLTableElement>} */ (document.querySelectorAll("table.sortable"))) {
-    sortable(table);
-    filterable(table);
+    if (sortable(table)) filterable(table);
   }
   // What scrolls sideways can be scrolled by keyboard too.
   for (const box of document.querySelectorAll(".scroll, figure")) {

@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Clock, firstSpeed, seconds } from "../src/clock.js";
-import { timeAxis } from "../src/figures.js";
-import { compare, order } from "../src/tables.js";
+import { timeAxis, valueAt } from "../src/figures.js";
+import { compare, order, quantity } from "../src/tables.js";
 
 test("a moment and its pixel belong together", () => {
   const axis = timeAxis("0,10,50,250");
@@ -42,4 +42,19 @@ test("a thousandth of the motion shows in its time", () => {
   assert.equal(seconds(1.23456, 10), "1.23 s");
   assert.equal(seconds(0.00123456, 0.01), "0.00123 s");
   assert.equal(seconds(7, 0), "7 s");
+});
+
+test("a quantity with a unit of time is in seconds, a word stays a word", () => {
+  for (const [text, value] of [["12.3 ms ±14%", 0.0123], ["178 µs", 1.78e-4], ["1.2e-3", 1.2e-3], ["-0.92", -0.92], ["+11", 11], ["±2.5e-3", 2.5e-3], ["1,000", 1000], ["2 min", 120]]) {
+    assert.ok(Math.abs(Number(quantity(text)) - value) <= 1e-15 + 1e-12 * Math.abs(value), `${text}: ${quantity(text)}`);
+  }
+  for (const text of ["floor", "-", "", "growing"]) assert.equal(quantity(text), text);
+});
+
+test("a figure reads out the stored value that is nearest in time", () => {
+  const values = "0 1,0.1 2,0.3 4";
+  assert.deepEqual(valueAt(values, 0.09), [0.1, 2]);
+  assert.deepEqual(valueAt(values, 9), [0.3, 4]);
+  assert.deepEqual(valueAt(values, -1), [0, 1]);
+  assert.equal(valueAt("", 0), null);
 });
